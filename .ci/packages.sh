@@ -1,0 +1,80 @@
+# Sourced by Examples/quickstart.sh and Testing/run-tests.sh: the Debian packages they need.
+# Nothing is installed, and no network is used, where all of them are there already.
+
+mcor_die() { echo "$(basename "$0"): $*" >&2; exit 1; }
+
+mcor_is_installed() { # PACKAGE
+  [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
+# Plain VTK's and ParaView's development packages exclude each other on Debian, so a machine has one
+# of them. Prints the one to use: what was asked for, else what is there, else plain VTK.
+mcor_choose_sdk() { # "" | vtk | paraview
+  case "${1:-}" in
+    vtk) mcor_is_installed python3-paraview &&
+      mcor_die "ParaView's VTK is installed, which excludes plain VTK; remove python3-paraview or use --sdk paraview" ;;
+    paraview) mcor_is_installed python3-vtk9 &&
+      mcor_die "plain VTK is installed, which excludes ParaView's; remove python3-vtk9 or use --sdk vtk" ;;
+    "") ;;
+    *) mcor_die "--sdk is vtk or paraview, not '$1'" ;;
+  esac
+  if [ -n "${1:-}" ]; then echo "$1"
+  elif mcor_is_installed paraview-dev; then echo paraview
+  else echo vtk; fi
+}
+
+mcor_common_packages() {
+  echo cmake ninja-build gcc g++ pkg-config python3 python3-numpy \
+    ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd \
+    xvfb xauth libgl1-mesa-dri
+}
+
+mcor_test_packages() { echo libcmocka-dev; }
+
+mcor_sdk_packages() { # vtk | paraview
+  if [ "$1" = vtk ]; then
+    echo libvtk9-dev python3-vtk9
+    return
+  fi
+  # ParaView's CMake files look for every library that ParaView was built with.
+  echo paraview-dev python3-paraview \
+    libhdf5-mpi-dev libutfcpp-dev libexpat1-dev libdouble-conversion-dev libeigen3-dev libfreetype-dev \
+    libgl2ps-dev libglew-dev libjpeg-dev libjsoncpp-dev libxml2-dev liblz4-dev liblzma-dev libnetcdf-dev \
+    libogg-dev libpng-dev libpugixml-dev libproj-dev libsqlite3-dev libtheora-dev libtiff-dev zlib1g-dev \
+    libprotobuf-dev protobuf-compiler libpython3-dev libcgns-dev libboost-dev libgdal-dev libavcodec-dev \
+    libavformat-dev libavutil-dev libswscale-dev nlohmann-json3-dev libfmt-dev libx11-dev libxt-dev \
+    mpi-default-dev
+  if [ "$(. /etc/os-release && echo "${VERSION_ID:-0}")" -ge 13 ]; then
+    echo qt6-base-dev qt6-tools-dev qt6-svg-dev qt6-5compat-dev qt6-documentation-tools libxkbcommon-dev
+  else
+    echo qtbase5-dev qttools5-dev libqt5svg5-dev libqt5opengl5-dev libqt5x11extras5-dev \
+      qtxmlpatterns5-dev-tools
+  fi
+}
+
+mcor_install() { # PACKAGE...
+  local package missing=() sudo=()
+  command -v dpkg-query >/dev/null ||
+    mcor_die "this is not a Debian system; CONTRIBUTING.md lists what to install by hand"
+  for package in "$@"; do
+    mcor_is_installed "$package" || missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null ||
+      mcor_die "needs root or sudo to install: ${missing[*]}"
+    sudo=(sudo)
+  fi
+  echo "Installing ${#missing[@]} packages: ${missing[*]}"
+  # apt's hundreds of lines are shown only if it fails.
+  local log
+  log=$(mktemp)
+  if ! { "${sudo[@]}" apt-get update -q &&
+    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -q -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null; then
+    tail -n 30 "$log" >&2
+    rm -f "$log"
+    mcor_die "the packages could not be installed (apt's last lines are above)"
+  fi
+  rm -f "$log"
+}

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Installs what is needed (Debian 12 or 13; root, or a user with sudo), builds, and extracts two
+# surfaces from the dam break in Examples/Data: an isosurface of the speed, and the free surface.
+#
+#   ./Examples/quickstart.sh [--sdk vtk|paraview]
+#
+# --sdk chooses on a machine that has neither; plain VTK is the default. Results: build/quickstart/.
+set -euo pipefail
+cd "$(dirname "$(readlink -f "$0")")/.."
+. .ci/packages.sh
+
+sdk=
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --sdk) sdk=${2:-}; shift $(($# > 1 ? 2 : 1)); [ -n "$sdk" ] || mcor_die "--sdk is vtk or paraview" ;;
+    --help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) mcor_die "unknown option $1 (see --help)" ;;
+  esac
+done
+
+sdk=$(mcor_choose_sdk "$sdk")
+# shellcheck disable=SC2046  # the functions print lists of words
+mcor_install $(mcor_common_packages) $(mcor_sdk_packages "$sdk")
+
+# Debian's VTK and ParaView belong to Debian's python3, whatever other python3 is on the PATH.
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=OFF \
+  -DMCOR_BUILD_EXAMPLES=ON -DPython3_EXECUTABLE=/usr/bin/python3 --log-level=WARNING
+cmake --build build
+
+out=build/quickstart
+mkdir -p "$out"
+extract() { # NAME OPTIONS...
+  local name=$1
+  shift
+  echo
+  echo "== $name: marching-correctors Examples/Data/dam_break_45k.vtp $out/$name.vtp $*"
+  xvfb-run -a build/bin/marching-correctors Examples/Data/dam_break_45k.vtp "$out/$name.vtp" "$@" \
+    --fluid ParticleType=0 --screenshot "$out/$name.png" --stats "$out/$name.json"
+}
+extract speed --scalar Velocity --component magnitude --iso 1.0
+extract free_surface --free-surface
+
+echo
+echo "Surfaces, pictures and statistics:"
+du -a --apparent-size -B 1000 "$out"/* | awk '{ printf "%8d kB  %s\n", $1, $2 }'

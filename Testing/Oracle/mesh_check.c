@@ -1,0 +1,383 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh_check.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char* mesh_fault_name(mesh_fault fault)
+{
+  static const char* const names[MESH_FAULT_COUNT] = { "bad index", "bad coordinate",
+    "repeated index", "zero area", "duplicate triangle", "non-manifold edge", "orientation clash",
+    "non-manifold vertex", "isolated point", "coincident point" };
+  return fault < MESH_FAULT_COUNT ? names[fault] : "unknown";
+}
+
+static void mesh_add_fault(mesh_report* report, mesh_fault fault, const char* format, ...)
+{
+  if (report->faults[fault]++ == 0)
+  {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(report->first[fault], sizeof(report->first[fault]), format, arguments);
+    va_end(arguments);
+  }
+}
+
+void mesh_free_report(mesh_report* report)
+{
+  free(report->side);
+  free(report->component);
+  memset(report, 0, sizeof(*report));
+}
+
+/* ---- triangles one by one ----------------------------------------------------------------------- */
+
+static int mesh_check_ranges(const double* points, const int32_t* triangles, mesh_report* report)
+{
+  for (int64_t p = 0; p < report->points; ++p)
+  {
+    if (!isfinite(points[3 * p]) || !isfinite(points[3 * p + 1]) || !isfinite(points[3 * p + 2]))
+    {
+      mesh_add_fault(report, MESH_BAD_COORDINATE, "point %" PRId64, p);
+    }
+  }
+  for (int64_t c = 0; c < 3 * report->triangles; ++c)
+  {
+    if (triangles[c] < 0 || triangles[c] >= report->points)
+    {
+      mesh_add_fault(
+        report, MESH_BAD_INDEX, "triangle %" PRId64 " names point %" PRId32, c / 3, triangles[c]);
+    }
+  }
+  return report->faults[MESH_BAD_COORDINATE] == 0 && report->faults[MESH_BAD_INDEX] == 0;
+}
+
+static void mesh_measure_triangle(
+  const double* points, const int32_t* triangle, int64_t t, mesh_report* report)
+{
+  if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
+  {
+    mesh_add_fault(report, MESH_REPEATED_INDEX, "triangle %" PRId64 " (%d, %d, %d)", t,
+      (int)triangle[0], (int)triangle[1], (int)triangle[2]);
+    return;
+  }
+  /* Relative to one point of the mesh, so that an offset does not cost digits. */
+  double corner[3][3];
+  for (int c = 0; c < 3; ++c)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      corner[c][axis] = points[3 * triangle[c] + axis] - points[axis];
+    }
+  }
+  double u[3];
+  double v[3];
+  double longest = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      square += pow(corner[c][axis] - corner[(c + 1) % 3][axis], 2.0);
+      u[axis] = corner[1][axis] - corner[0][axis];
+      v[axis] = corner[2][axis] - corner[0][axis];
+    }
+    longest = fmax(longest, square);
+  }
+  const double n[3] = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+    u[0] * v[1] - u[1] * v[0] };
+  const double area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  report->area += area;
+  report->volume +=
+    (corner[0][0] * n[0] + corner[0][1] * n[1] + corner[0][2] * n[2]) / 6.0;
+  if (!(area > 1e-12 * longest))
+  {
+    mesh_add_fault(report, MESH_ZERO_AREA, "triangle %" PRId64 " (%d, %d, %d)", t,
+      (int)triangle[0], (int)triangle[1], (int)triangle[2]);
+  }
+}
+
+/* ---- sides -------------------------------------------------------------------------------------- */
+
+static int mesh_compare_sides(const void* x, const void* y)
+{
+  const mesh_edge* p = x;
+  const mesh_edge* q = y;
+  if (p->a != q->a)
+  {
+    return p->a < q->a ? -1 : 1;
+  }
+  if (p->b != q->b)
+  {
+    return p->b < q->b ? -1 : 1;
+  }
+  return (p->triangle > q->triangle) - (p->triangle < q->triangle);
+}
+
+static void mesh_list_sides(const int32_t* triangles, mesh_report* report)
+{
+  for (int64_t t = 0; t < report->triangles; ++t)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const int32_t from = triangles[3 * t + c];
+      const int32_t to = triangles[3 * t + (c + 1) % 3];
+      mesh_edge* side = &report->side[3 * t + c];
+      side->a = from < to ? from : to;
+      side->b = from < to ? to : from;
+      side->triangle = t;
+      side->forward = from < to;
+    }
+  }
+  report->side_count = 3 * report->triangles;
+  qsort(report->side, (size_t)report->side_count, sizeof(mesh_edge), mesh_compare_sides);
+}
+
+static int64_t mesh_first_side(const mesh_report* report, int32_t a, int32_t b)
+{
+  int64_t low = 0;
+  int64_t high = report->side_count;
+  while (low < high)
+  {
+    const int64_t middle = low + (high - low) / 2;
+    const mesh_edge* side = &report->side[middle];
+    if (side->a < a || (side->a == a && side->b < b))
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b)
+{
+  const int32_t low = a < b ? a : b;
+  const int32_t high = a < b ? b : a;
+  const int64_t first = mesh_first_side(report, low, high);
+  int64_t count = 0;
+  while (first + count < report->side_count && report->side[first + count].a == low &&
+    report->side[first + count].b == high)
+  {
+    ++count;
+  }
+  return count;
+}
+
+/* ---- union of corners (fans) and triangles (components) -------------------------------------------- */
+
+static int64_t mesh_root(int64_t* parent, int64_t n)
+{
+  while (parent[n] != n)
+  {
+    parent[n] = parent[parent[n]];
+    n = parent[n];
+  }
+  return n;
+}
+
+static void mesh_unite(int64_t* parent, int64_t a, int64_t b)
+{
+  a = mesh_root(parent, a);
+  b = mesh_root(parent, b);
+  parent[a > b ? a : b] = a > b ? b : a;
+}
+
+static int64_t mesh_corner(const int32_t* triangles, int64_t t, int32_t point)
+{
+  return 3 * t + (triangles[3 * t] == point ? 0 : triangles[3 * t + 1] == point ? 1 : 2);
+}
+
+/* Walks over the groups of sides that share an edge. */
+static void mesh_check_edges(
+  const int32_t* triangles, mesh_report* report, int64_t* corner_parent, int64_t* parent)
+{
+  for (int64_t s = 0; s < report->side_count;)
+  {
+    const mesh_edge* first = &report->side[s];
+    int64_t count = 1;
+    int64_t forward = first->forward;
+    for (; s + count < report->side_count && first[count].a == first->a &&
+         first[count].b == first->b;
+         ++count)
+    {
+      forward += first[count].forward;
+      mesh_unite(parent, first->triangle, first[count].triangle);
+      mesh_unite(corner_parent, mesh_corner(triangles, first->triangle, first->a),
+        mesh_corner(triangles, first[count].triangle, first->a));
+      mesh_unite(corner_parent, mesh_corner(triangles, first->triangle, first->b),
+        mesh_corner(triangles, first[count].triangle, first->b));
+    }
+    ++report->edges;
+    report->boundary_edges += count == 1;
+    if (count > 2)
+    {
+      mesh_add_fault(report, MESH_NON_MANIFOLD_EDGE,
+        "edge (%d, %d) has %" PRId64 " triangles, one is %" PRId64, (int)first->a,
+        (int)first->b, count, first->triangle);
+    }
+    else if (count == 2 && forward != 1)
+    {
+      mesh_add_fault(report, MESH_ORIENTATION_CLASH,
+        "edge (%d, %d), triangles %" PRId64 " and %" PRId64, (int)first->a, (int)first->b,
+        first->triangle, first[1].triangle);
+    }
+    s += count;
+  }
+}
+
+static void mesh_check_fans(
+  const int32_t* triangles, mesh_report* report, int64_t* corner_parent, int64_t* fan)
+{
+  int64_t used = 0;
+  for (int64_t p = 0; p < report->points; ++p)
+  {
+    fan[p] = -1;
+  }
+  for (int64_t c = 0; c < 3 * report->triangles; ++c)
+  {
+    const int64_t root = mesh_root(corner_parent, c);
+    int64_t* at = &fan[triangles[c]];
+    used += *at == -1;
+    if (*at >= 0 && *at != root)
+    {
+      mesh_add_fault(report, MESH_NON_MANIFOLD_VERTEX, "point %d, triangles %" PRId64
+        " and %" PRId64, (int)triangles[c], *at / 3, c / 3);
+      *at = -2; /* so that each point counts once */
+    }
+    else if (*at == -1)
+    {
+      *at = root;
+    }
+  }
+  for (int64_t p = 0; p < report->points; ++p)
+  {
+    if (fan[p] == -1)
+    {
+      mesh_add_fault(report, MESH_ISOLATED_POINT, "point %" PRId64, p);
+    }
+  }
+  report->euler = used - report->edges + report->triangles;
+}
+
+static void mesh_number_components(mesh_report* report)
+{
+  for (int64_t t = 0; t < report->triangles; ++t)
+  {
+    const int64_t up = report->component[t];
+    report->component[t] = up == t ? report->components++ : report->component[up];
+  }
+}
+
+/* ---- duplicates ---------------------------------------------------------------------------------- */
+
+static int mesh_compare_triples(const void* x, const void* y)
+{
+  const double* p = x;
+  const double* q = y;
+  for (int c = 0; c < 3; ++c)
+  {
+    if (p[c] != q[c])
+    {
+      return p[c] < q[c] ? -1 : 1;
+    }
+  }
+  return (p[3] > q[3]) - (p[3] < q[3]);
+}
+
+/* quads: [count][4], a triple and the number of its owner. */
+static void mesh_check_triples(
+  double* quads, int64_t count, mesh_fault fault, mesh_report* report)
+{
+  qsort(quads, (size_t)count, 4 * sizeof(double), mesh_compare_triples);
+  for (int64_t n = 1; n < count; ++n)
+  {
+    const double* p = &quads[4 * n - 4];
+    if (p[0] == p[4] && p[1] == p[5] && p[2] == p[6])
+    {
+      mesh_add_fault(report, fault, "%s %.0f and %.0f",
+        fault == MESH_COINCIDENT_POINT ? "points" : "triangles", p[3], p[7]);
+    }
+  }
+}
+
+static int mesh_check_duplicates(
+  const double* points, const int32_t* triangles, mesh_report* report)
+{
+  const int64_t most =
+    report->points > report->triangles ? report->points : report->triangles;
+  double* quads = malloc(((size_t)most + 1) * 4 * sizeof(double));
+  if (!quads)
+  {
+    return 0;
+  }
+  for (int64_t p = 0; p < report->points; ++p)
+  {
+    memcpy(&quads[4 * p], &points[3 * p], 3 * sizeof(double));
+    quads[4 * p + 3] = (double)p;
+  }
+  mesh_check_triples(quads, report->points, MESH_COINCIDENT_POINT, report);
+  for (int64_t t = 0; t < report->triangles; ++t)
+  {
+    const double a = triangles[3 * t];
+    const double b = triangles[3 * t + 1];
+    const double c = triangles[3 * t + 2];
+    quads[4 * t] = fmin(a, fmin(b, c));
+    quads[4 * t + 2] = fmax(a, fmax(b, c));
+    quads[4 * t + 1] = a + b + c - quads[4 * t] - quads[4 * t + 2];
+    quads[4 * t + 3] = (double)t;
+  }
+  mesh_check_triples(quads, report->triangles, MESH_DUPLICATE_TRIANGLE, report);
+  free(quads);
+  return 1;
+}
+
+int mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
+  int64_t triangle_count, mesh_report* report)
+{
+  memset(report, 0, sizeof(*report));
+  report->points = point_count;
+  report->triangles = triangle_count;
+  if (!mesh_check_ranges(points, triangles, report))
+  {
+    return 1;
+  }
+  const size_t n = (size_t)triangle_count + 1;
+  int64_t* corner_parent = malloc(3 * n * sizeof(int64_t));
+  int64_t* fan = malloc(((size_t)point_count + 1) * sizeof(int64_t));
+  report->side = malloc(3 * n * sizeof(mesh_edge));
+  report->component = malloc(n * sizeof(int64_t));
+  const int enough = corner_parent && fan && report->side && report->component &&
+    mesh_check_duplicates(points, triangles, report);
+  if (enough)
+  {
+    for (int64_t t = 0; t < triangle_count; ++t)
+    {
+      mesh_measure_triangle(points, &triangles[3 * t], t, report);
+      report->component[t] = t;
+      for (int64_t c = 3 * t; c < 3 * t + 3; ++c)
+      {
+        corner_parent[c] = c;
+      }
+    }
+    mesh_list_sides(triangles, report);
+    mesh_check_edges(triangles, report, corner_parent, report->component);
+    mesh_check_fans(triangles, report, corner_parent, fan);
+    mesh_number_components(report);
+  }
+  free(corner_parent);
+  free(fan);
+  if (!enough)
+  {
+    mesh_free_report(report);
+  }
+  return enough;
+}

@@ -1,0 +1,79 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef oracle_compare_h
+#define oracle_compare_h
+
+/* Compares a surface that mcor_extract made with what the oracle found on the same particles. */
+
+#include "mcor.h"
+#include "mesh_check.h"
+#include "oracle.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+  /* A field on its lattice, classified for one iso value. */
+  typedef struct oracle_reference
+  {
+    oracle_particles particles;
+    oracle_field field;
+    oracle_lattice lattice;
+    oracle_surface surface;
+    oracle_limits limits;
+    double range; /* of the scalar over fluid particles; 1 for the weight */
+    double unit;  /* roundoff of the working precision */
+  } oracle_reference;
+
+  /* Reads input and options in the way mcor.h describes, evaluates the whole lattice. 0 with a reason
+   * in message if that is impossible. same_sort: see oracle_compute_volumes. */
+  int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
+    const mcor_options* options, int64_t node_limit, char message[256]);
+  /* Makes the reference that of another iso value. */
+  int oracle_set_iso(oracle_reference* reference, double iso);
+  void oracle_free_reference(oracle_reference* reference);
+
+  typedef struct oracle_comparison
+  {
+    int64_t edges;        /* of the oracle */
+    int64_t matched;      /* vertices that lie on one of them */
+    int64_t missing;      /* edges without a vertex, not excused */
+    int64_t extra;        /* vertices on an edge that is not crossed, not excused */
+    int64_t excused;      /* missing or extra, but a value or weight is within rounding */
+    int64_t rounding;     /* missing or extra, excused by the bound on rounding alone */
+    int64_t trimmed;      /* edges whose vertex is rightly cut away */
+    int64_t off_lattice;  /* unflagged vertices that lie on no lattice edge */
+    int64_t doubled;      /* two vertices on one edge */
+    int64_t components;   /* of the oracle */
+    int64_t components_missing, components_partial; /* unexcused edges missing: all, some */
+    int64_t pinched_edges; /* valid cells touch only in the edge: its vertex has two fans */
+
+    double residual;      /* max |f - iso| / range over vertices on edges */
+    double distance;      /* max distance to the surface f = iso, in cubes */
+    double normal_degrees;   /* max angle between normal and -gradient */
+    int64_t flat_vertices;   /* gradient too small for a meaningful normal; not in normal_degrees */
+    int64_t inverted_triangles;  /* right-hand normal against -gradient */
+    int64_t inverted_components; /* of the mesh, judged by area */
+
+    int64_t segments_missing; /* faces whose crossings the mesh does not connect as it must */
+    int64_t holes;            /* boundary edges that neither trimming nor an invalid cell explains */
+
+    int64_t trim_vertices, trim_linear;
+    double trim_weight_error, trim_residual; /* of exact trim vertices */
+    int64_t below_threshold;                 /* vertices kept although their weight is too low */
+    double weight_error, gradient_error;     /* of the optional arrays; gradient relative */
+    char first[160];                         /* the first fault of a vertex or edge, in words */
+  } oracle_comparison;
+
+  /* trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must be
+   * there. mesh: the report on the same surface. 0 if memory ran out. */
+  int oracle_compare(const oracle_reference* reference, const mcor_options* options,
+    const mcor_surface* surface, const mesh_report* mesh, int trimmed,
+    oracle_comparison* comparison);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

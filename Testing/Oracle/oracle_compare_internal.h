@@ -1,0 +1,43 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef oracle_compare_internal_h
+#define oracle_compare_internal_h
+
+/* Shared by oracle_compare.c (edges) and oracle_compare_mesh.c (vertices, triangles, faces). */
+
+#include "oracle_compare.h"
+
+enum
+{
+  COMPARE_OFF_LATTICE = -1,
+  COMPARE_TRIM_VERTEX = -2,
+  COMPARE_ON_NODE = -3 /* and lower: on node -3 - value; which of its edges is open */
+};
+
+typedef struct compare_state
+{
+  const oracle_reference* reference;
+  const mcor_options* options;
+  const mcor_surface* surface;
+  const mesh_report* mesh;
+  int trimmed;
+  oracle_comparison* result;
+  int64_t* vertex_edge; /* [point_count], an edge of the lattice or COMPARE_* */
+  int64_t* edge_vertex; /* [edge_count] of the oracle's surface, a point or -1 */
+  double* gradient;     /* [point_count][3], by the oracle */
+} compare_state;
+
+/* The first fault is kept in words. */
+void compare_note(compare_state* state, const char* format, ...);
+void compare_note_edge(compare_state* state, const char* what, int64_t edge);
+
+/* 1 if either end of the edge has the flag. */
+int compare_end_flag(const oracle_lattice* lattice, int64_t edge, int flag);
+
+void compare_vertices(compare_state* state);
+int compare_orientation(compare_state* state); /* 0 if memory ran out */
+void compare_faces(compare_state* state);
+void compare_boundary(compare_state* state);
+void compare_count_pinched(compare_state* state);
+
+#endif

@@ -1,0 +1,409 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int oracle_create_particles(oracle_particles* particles, int64_t count)
+{
+  const size_t n = (size_t)(count > 0 ? count : 1);
+  memset(particles, 0, sizeof(*particles));
+  particles->count = count;
+  particles->position = calloc(3 * n, sizeof(double));
+  particles->smoothing_length = calloc(n, sizeof(double));
+  particles->volume = calloc(n, sizeof(double));
+  particles->scalar = calloc(n, sizeof(double));
+  particles->solid = calloc(n, 1);
+  if (particles->position && particles->smoothing_length && particles->volume &&
+    particles->scalar && particles->solid)
+  {
+    return 1;
+  }
+  oracle_free_particles(particles);
+  return 0;
+}
+
+void oracle_free_particles(oracle_particles* particles)
+{
+  free(particles->position);
+  free(particles->smoothing_length);
+  free(particles->volume);
+  free(particles->scalar);
+  free(particles->solid);
+  memset(particles, 0, sizeof(*particles));
+}
+
+double oracle_scalar_range(const oracle_particles* particles)
+{
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (int64_t j = 0; j < particles->count; ++j)
+  {
+    if (!particles->solid[j])
+    {
+      low = fmin(low, particles->scalar[j]);
+      high = fmax(high, particles->scalar[j]);
+    }
+  }
+  return high >= low ? high - low : 0.0;
+}
+
+double oracle_smallest_h(const oracle_particles* particles)
+{
+  double smallest = INFINITY;
+  for (int64_t j = 0; j < particles->count; ++j)
+  {
+    if (!particles->solid[j])
+    {
+      smallest = fmin(smallest, particles->smoothing_length[j]);
+    }
+  }
+  return smallest;
+}
+
+/* ---- kd-tree: particles [begin,end) of `order`, split at the middle, leaves of a few ------------ */
+
+enum
+{
+  ORACLE_LEAF_SIZE = 12
+};
+
+typedef struct oracle_tree_node
+{
+  double low[3], high[3]; /* bounds of the particle centres */
+  double reach;           /* largest support radius below this node */
+} oracle_tree_node;
+
+struct oracle_tree
+{
+  int64_t* order;
+  oracle_tree_node* node; /* as a heap: children of n at 2n+1, 2n+2 */
+};
+
+typedef struct oracle_sort_item
+{
+  double key;
+  int64_t particle;
+} oracle_sort_item;
+
+static int oracle_compare_items(const void* a, const void* b)
+{
+  const oracle_sort_item* x = a;
+  const oracle_sort_item* y = b;
+  if (x->key != y->key)
+  {
+    return x->key < y->key ? -1 : 1;
+  }
+  return (x->particle > y->particle) - (x->particle < y->particle);
+}
+
+static double oracle_reach(const oracle_field* field, int64_t j)
+{
+  return oracle_support(field->kernel) * field->h_scale * field->particles->smoothing_length[j];
+}
+
+static void oracle_bound_node(
+  const oracle_field* field, oracle_tree_node* node, int64_t begin, int64_t end)
+{
+  node->reach = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    node->low[axis] = INFINITY;
+    node->high[axis] = -INFINITY;
+  }
+  for (int64_t s = begin; s < end; ++s)
+  {
+    const int64_t j = field->tree->order[s];
+    node->reach = fmax(node->reach, oracle_reach(field, j));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      node->low[axis] = fmin(node->low[axis], field->particles->position[3 * j + axis]);
+      node->high[axis] = fmax(node->high[axis], field->particles->position[3 * j + axis]);
+    }
+  }
+}
+
+static void oracle_build_node(
+  const oracle_field* field, oracle_sort_item* items, int64_t n, int64_t begin, int64_t end)
+{
+  oracle_tree_node* node = &field->tree->node[n];
+  oracle_bound_node(field, node, begin, end);
+  if (end - begin <= ORACLE_LEAF_SIZE)
+  {
+    return;
+  }
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+  {
+    if (node->high[a] - node->low[a] > node->high[axis] - node->low[axis])
+    {
+      axis = a;
+    }
+  }
+  for (int64_t s = begin; s < end; ++s)
+  {
+    items[s].particle = field->tree->order[s];
+    items[s].key = field->particles->position[3 * items[s].particle + axis];
+  }
+  qsort(items + begin, (size_t)(end - begin), sizeof(*items), oracle_compare_items);
+  for (int64_t s = begin; s < end; ++s)
+  {
+    field->tree->order[s] = items[s].particle;
+  }
+  const int64_t middle = begin + (end - begin) / 2;
+  oracle_build_node(field, items, 2 * n + 1, begin, middle);
+  oracle_build_node(field, items, 2 * n + 2, middle, end);
+}
+
+int oracle_create_field(oracle_field* field, const oracle_particles* particles,
+  oracle_kernel kernel, oracle_kind kind, double h_scale)
+{
+  memset(field, 0, sizeof(*field));
+  field->particles = particles;
+  field->kernel = kernel;
+  field->kind = kind;
+  field->h_scale = h_scale;
+  field->tree = calloc(1, sizeof(*field->tree));
+  const size_t n = (size_t)(particles->count > 0 ? particles->count : 1);
+  oracle_sort_item* items = malloc(n * sizeof(*items));
+  size_t nodes = 1;
+  for (size_t leaf = n; leaf > ORACLE_LEAF_SIZE; leaf = (leaf + 1) / 2)
+  {
+    nodes = 2 * nodes + 1;
+  }
+  if (field->tree)
+  {
+    field->tree->order = malloc(n * sizeof(int64_t));
+    field->tree->node = calloc(nodes, sizeof(oracle_tree_node));
+  }
+  if (!items || !field->tree || !field->tree->order || !field->tree->node)
+  {
+    free(items);
+    oracle_free_field(field);
+    return 0;
+  }
+  for (int64_t j = 0; j < particles->count; ++j)
+  {
+    field->tree->order[j] = j;
+  }
+  oracle_build_node(field, items, 0, 0, particles->count);
+  free(items);
+  return 1;
+}
+
+void oracle_free_field(oracle_field* field)
+{
+  if (field->tree)
+  {
+    free(field->tree->order);
+    free(field->tree->node);
+    free(field->tree);
+  }
+  memset(field, 0, sizeof(*field));
+}
+
+typedef void (*oracle_visitor)(const oracle_field* field, int64_t particle, void* user);
+
+/* Visits all particles that may reach `point`, or (radius > 0) may lie within radius of it. */
+static void oracle_visit(const oracle_field* field, const double point[3], double radius,
+  oracle_visitor visitor, void* user, int64_t n, int64_t begin, int64_t end)
+{
+  const oracle_tree_node* node = &field->tree->node[n];
+  const double distance = radius > 0.0 ? radius : node->reach;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    /* Written so that rounding can only visit too much: the kernel is 0 out there anyway. */
+    if (point[axis] - node->high[axis] > distance * (1.0 + 1e-12) ||
+      node->low[axis] - point[axis] > distance * (1.0 + 1e-12))
+    {
+      return;
+    }
+  }
+  if (end - begin <= ORACLE_LEAF_SIZE)
+  {
+    for (int64_t s = begin; s < end; ++s)
+    {
+      visitor(field, field->tree->order[s], user);
+    }
+    return;
+  }
+  const int64_t middle = begin + (end - begin) / 2;
+  oracle_visit(field, point, radius, visitor, user, 2 * n + 1, begin, middle);
+  oracle_visit(field, point, radius, visitor, user, 2 * n + 2, middle, end);
+}
+
+/* ---- sums -------------------------------------------------------------------------------------- */
+
+typedef struct oracle_sums
+{
+  double point[3];
+  const double* scalar;
+  double fw, w, solid_w; /* sum V A W, sum V W of fluid, of solids */
+  double grad_fw[3], grad_w[3], grad_solid[3];
+  double magnitude;           /* of the terms of the gradient */
+  double center, unit, error; /* for oracle_rounding */
+} oracle_sums;
+
+static double oracle_offset_kernel(
+  const oracle_field* field, const double point[3], int64_t j, double gradient[3])
+{
+  const double* x = &field->particles->position[3 * j];
+  const double offset[3] = { point[0] - x[0], point[1] - x[1], point[2] - x[2] };
+  return oracle_kernel_value(
+    field->kernel, field->h_scale * field->particles->smoothing_length[j], offset, gradient);
+}
+
+static void oracle_add_particle(const oracle_field* field, int64_t j, void* user)
+{
+  oracle_sums* sums = user;
+  double gradient[3];
+  const double volume = field->particles->volume[j];
+  const double w = oracle_offset_kernel(field, sums->point, j, gradient);
+  if (field->particles->solid[j])
+  {
+    sums->solid_w += volume * w;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sums->grad_solid[axis] += volume * gradient[axis];
+    }
+    return;
+  }
+  const double amount = field->kind == ORACLE_WEIGHT ? 1.0 : fabs(sums->scalar[j] - sums->center);
+  sums->magnitude += volume * amount *
+    sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
+  sums->fw += volume * sums->scalar[j] * w;
+  sums->w += volume * w;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    sums->grad_fw[axis] += volume * sums->scalar[j] * gradient[axis];
+    sums->grad_w[axis] += volume * gradient[axis];
+  }
+}
+
+void oracle_evaluate(
+  const oracle_field* field, const double* scalar, const double point[3], oracle_sample* sample)
+{
+  oracle_sums sums;
+  memset(&sums, 0, sizeof(sums));
+  memcpy(sums.point, point, sizeof(sums.point));
+  sums.scalar = scalar ? scalar : field->particles->scalar;
+  sums.center = field->kind == ORACLE_SHEPARD ? field->center : 0.0;
+  memset(sample, 0, sizeof(*sample));
+  if (field->particles->count > 0)
+  {
+    oracle_visit(
+      field, point, 0.0, oracle_add_particle, &sums, 0, 0, field->particles->count);
+  }
+  const int solids = !field->particles->ignore_solids;
+  sample->weight = sums.w;
+  sample->trim_weight = sums.w + (solids ? sums.solid_w : 0.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    sample->trim_gradient[axis] = sums.grad_w[axis] + (solids ? sums.grad_solid[axis] : 0.0);
+    sample->gradient[axis] =
+      field->kind == ORACLE_WEIGHT ? sums.grad_w[axis] : sums.grad_fw[axis];
+  }
+  sample->value = field->kind == ORACLE_WEIGHT ? sums.w : sums.fw;
+  sample->gradient_scale = sums.magnitude;
+  if (field->kind == ORACLE_SHEPARD)
+  {
+    sample->value = sums.w != 0.0 ? sums.fw / sums.w : 0.0;
+    sample->gradient_scale = sums.w != 0.0 ? sums.magnitude / fabs(sums.w) : 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sample->gradient[axis] = sums.w != 0.0
+        ? (sums.grad_fw[axis] - sample->value * sums.grad_w[axis]) / sums.w
+        : 0.0;
+    }
+  }
+}
+
+static void oracle_add_error(const oracle_field* field, int64_t j, void* user)
+{
+  oracle_sums* sums = user;
+  if (field->particles->solid[j])
+  {
+    return;
+  }
+  double gradient[3];
+  const double w = oracle_offset_kernel(field, sums->point, j, gradient);
+  const double slope = fabs(gradient[0]) + fabs(gradient[1]) + fabs(gradient[2]);
+  const double amount =
+    field->kind == ORACLE_WEIGHT ? 1.0 : fabs(field->particles->scalar[j] - sums->center);
+  sums->w += field->particles->volume[j] * w;
+  sums->error += field->particles->volume[j] * amount * sums->unit *
+    (16.0 * fabs(w) + 4.0 * oracle_reach(field, j) * slope);
+}
+
+double oracle_rounding(const oracle_field* field, const double point[3], double unit)
+{
+  oracle_sample sample;
+  oracle_evaluate(field, NULL, point, &sample);
+  oracle_sums sums;
+  memset(&sums, 0, sizeof(sums));
+  memcpy(sums.point, point, sizeof(sums.point));
+  sums.center = field->kind == ORACLE_SHEPARD ? sample.value : 0.0;
+  sums.unit = unit;
+  oracle_visit(field, point, 0.0, oracle_add_error, &sums, 0, 0, field->particles->count);
+  if (field->kind != ORACLE_SHEPARD)
+  {
+    return sums.error;
+  }
+  return sums.w != 0.0 ? sums.error / fabs(sums.w) : INFINITY;
+}
+
+/* ---- volumes ------------------------------------------------------------------------------------ */
+
+typedef struct oracle_volume_sum
+{
+  int64_t j;
+  const double* mass;
+  int same_sort;
+  double sum;
+} oracle_volume_sum;
+
+static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
+{
+  oracle_volume_sum* at = user;
+  const oracle_particles* p = field->particles;
+  if (at->same_sort && (p->solid[k] != 0) != (p->solid[at->j] != 0))
+  {
+    return;
+  }
+  double offset[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    offset[axis] = p->position[3 * at->j + axis] - p->position[3 * k + axis];
+  }
+  at->sum += (at->mass ? at->mass[k] : 1.0) *
+    oracle_kernel_value(field->kernel, p->smoothing_length[at->j], offset, NULL);
+}
+
+int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, const double* mass,
+  const double* density, int same_sort)
+{
+  oracle_field field;
+  if (mass && density)
+  {
+    for (int64_t j = 0; j < particles->count; ++j)
+    {
+      particles->volume[j] = mass[j] / density[j];
+    }
+    return 1;
+  }
+  if (!oracle_create_field(&field, particles, kernel, ORACLE_WEIGHT, 1.0))
+  {
+    return 0;
+  }
+  for (int64_t j = 0; j < particles->count; ++j)
+  {
+    oracle_volume_sum at = { j, mass, same_sort, 0.0 };
+    oracle_visit(&field, &particles->position[3 * j], oracle_reach(&field, j), oracle_add_density,
+      &at, 0, 0, particles->count);
+    particles->volume[j] = (mass ? mass[j] : 1.0) / at.sum;
+  }
+  oracle_free_field(&field);
+  return 1;
+}

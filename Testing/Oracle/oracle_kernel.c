@@ -1,0 +1,135 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle.h"
+
+#include <math.h>
+
+#define ORACLE_PI 3.14159265358979323846
+
+double oracle_support(oracle_kernel kernel)
+{
+  return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : 2.0;
+}
+
+/* Monaghan's M4 without the factor 1/h^3, and its derivative in q. */
+static double oracle_cubic(double q, double* slope)
+{
+  if (q < 1.0)
+  {
+    *slope = (-3.0 * q + 2.25 * q * q) / ORACLE_PI;
+    return (1.0 - 1.5 * q * q + 0.75 * q * q * q) / ORACLE_PI;
+  }
+  *slope = -0.75 * (2.0 - q) * (2.0 - q) / ORACLE_PI;
+  return 0.25 * (2.0 - q) * (2.0 - q) * (2.0 - q) / ORACLE_PI;
+}
+
+static double oracle_quadratic(double q, double* slope)
+{
+  *slope = 5.0 / (4.0 * ORACLE_PI) * (0.375 * q - 0.75);
+  return 5.0 / (4.0 * ORACLE_PI) * (0.1875 * q * q - 0.75 * q + 0.75);
+}
+
+static double oracle_quintic(double q, double* slope)
+{
+  static const double factor[3] = { 1.0, -6.0, 15.0 };
+  double value = 0.0;
+  *slope = 0.0;
+  for (int term = 0; term < 3; ++term)
+  {
+    const double u = 3.0 - term - q;
+    if (u > 0.0)
+    {
+      value += factor[term] * pow(u, 5.0);
+      *slope -= 5.0 * factor[term] * pow(u, 4.0);
+    }
+  }
+  *slope /= 120.0 * ORACLE_PI;
+  return value / (120.0 * ORACLE_PI);
+}
+
+static double oracle_wendland(double q, double* slope)
+{
+  const double u = 1.0 - 0.5 * q;
+  *slope = 21.0 / (16.0 * ORACLE_PI) * (2.0 * pow(u, 4.0) - 2.0 * pow(u, 3.0) * (2.0 * q + 1.0));
+  return 21.0 / (16.0 * ORACLE_PI) * pow(u, 4.0) * (2.0 * q + 1.0);
+}
+
+/* One axis of M'4: m(u) and the derivative in u, u = |dx| / h < 2. */
+static double oracle_m_prime_4(double u, double* slope)
+{
+  if (u < 1.0)
+  {
+    *slope = -5.0 * u + 4.5 * u * u;
+    return 1.0 - 2.5 * u * u + 1.5 * u * u * u;
+  }
+  *slope = -0.5 * (2.0 - u) * (4.0 - 3.0 * u);
+  return 0.5 * (2.0 - u) * (2.0 - u) * (1.0 - u);
+}
+
+static double oracle_tensor_value(double h, const double offset[3], double gradient[3])
+{
+  double value[3];
+  double slope[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double u = fabs(offset[axis]) / h;
+    if (!(u < 2.0))
+    {
+      return 0.0;
+    }
+    value[axis] = oracle_m_prime_4(u, &slope[axis]) / h;
+    slope[axis] *= (offset[axis] < 0.0 ? -1.0 : 1.0) / (h * h);
+  }
+  if (gradient)
+  {
+    gradient[0] = slope[0] * value[1] * value[2];
+    gradient[1] = value[0] * slope[1] * value[2];
+    gradient[2] = value[0] * value[1] * slope[2];
+  }
+  return value[0] * value[1] * value[2];
+}
+
+double oracle_kernel_value(
+  oracle_kernel kernel, double h, const double offset[3], double gradient[3])
+{
+  if (gradient)
+  {
+    gradient[0] = gradient[1] = gradient[2] = 0.0;
+  }
+  if (kernel == ORACLE_M_PRIME_4)
+  {
+    return oracle_tensor_value(h, offset, gradient);
+  }
+  const double r =
+    sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
+  const double q = r / h;
+  if (!(q < oracle_support(kernel)))
+  {
+    return 0.0;
+  }
+  double slope = 0.0;
+  double value = 0.0;
+  switch (kernel)
+  {
+    case ORACLE_QUADRATIC:
+      value = oracle_quadratic(q, &slope);
+      break;
+    case ORACLE_QUINTIC_SPLINE:
+      value = oracle_quintic(q, &slope);
+      break;
+    case ORACLE_WENDLAND_C2:
+      value = oracle_wendland(q, &slope);
+      break;
+    default:
+      value = oracle_cubic(q, &slope);
+      break;
+  }
+  if (gradient && r > 0.0)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      gradient[axis] = slope / (h * h * h * h) * offset[axis] / r;
+    }
+  }
+  return value / (h * h * h);
+}

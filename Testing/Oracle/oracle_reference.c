@@ -1,0 +1,175 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle_compare.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double reference_read(const mcor_array* array, int64_t tuple, int component)
+{
+  const int64_t components = array->components > 0 ? array->components : 1;
+  const int64_t at = tuple * components + component;
+  if (!array->data)
+  {
+    return array->constant;
+  }
+  return array->type == MCOR_FLOAT32 ? (double)((const float*)array->data)[at]
+                                     : ((const double*)array->data)[at];
+}
+
+static double reference_scalar(const mcor_input* input, int64_t tuple)
+{
+  const int components = input->scalar.components > 0 ? input->scalar.components : 1;
+  double sum = 0.0;
+  if (input->scalar_dot.data)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      sum += reference_read(&input->scalar, tuple, c) * reference_read(&input->scalar_dot, tuple, c);
+    }
+    return sum;
+  }
+  if (components == 1 || input->scalar_component != MCOR_MAGNITUDE)
+  {
+    return reference_read(&input->scalar, tuple, components > 1 ? input->scalar_component : 0);
+  }
+  for (int c = 0; c < components; ++c)
+  {
+    const double value = reference_read(&input->scalar, tuple, c);
+    sum += value * value;
+  }
+  return sqrt(sum);
+}
+
+static oracle_kernel reference_kernel(mcor_sph_kernel kernel)
+{
+  switch (kernel)
+  {
+    case MCOR_QUADRATIC:
+      return ORACLE_QUADRATIC;
+    case MCOR_M_PRIME_4:
+      return ORACLE_M_PRIME_4;
+    case MCOR_QUINTIC_SPLINE:
+      return ORACLE_QUINTIC_SPLINE;
+    case MCOR_WENDLAND_C2:
+      return ORACLE_WENDLAND_C2;
+    default:
+      return ORACLE_CUBIC_SPLINE;
+  }
+}
+
+static oracle_kind reference_kind(mcor_field field)
+{
+  return field == MCOR_SUM ? ORACLE_SUM : field == MCOR_WEIGHT_SUM ? ORACLE_WEIGHT : ORACLE_SHEPARD;
+}
+
+static int reference_volumes(
+  oracle_particles* particles, const mcor_input* input, oracle_kernel kernel)
+{
+  const size_t n = (size_t)particles->count + 1;
+  double* mass = input->has_mass ? malloc(n * sizeof(double)) : NULL;
+  double* density = input->has_mass && input->has_density ? malloc(n * sizeof(double)) : NULL;
+  int enough = (mass || !input->has_mass) && (density || !(input->has_mass && input->has_density));
+  for (int64_t j = 0; enough && j < particles->count; ++j)
+  {
+    if (mass)
+    {
+      mass[j] = reference_read(&input->mass, j, 0);
+    }
+    if (density)
+    {
+      density[j] = reference_read(&input->density, j, 0);
+    }
+  }
+  enough = enough && oracle_compute_volumes(particles, kernel, mass, density, 0);
+  free(mass);
+  free(density);
+  return enough;
+}
+
+static int reference_particles(
+  oracle_particles* particles, const mcor_input* input, const mcor_options* options)
+{
+  const oracle_kernel kernel = reference_kernel(options->sph_kernel);
+  if (!oracle_create_particles(particles, input->count))
+  {
+    return 0;
+  }
+  particles->ignore_solids = input->ignore_solids;
+  for (int64_t j = 0; j < input->count; ++j)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const mcor_array xyz = { input->positions.data, input->positions.type, 3, 0.0 };
+      particles->position[3 * j + axis] = reference_read(&xyz, j, axis);
+    }
+    particles->smoothing_length[j] = reference_read(&input->smoothing_length, j, 0) /
+      (input->smoothing_length_is_support_radius ? oracle_support(kernel) : 1.0);
+    particles->solid[j] = input->solid && input->solid[j];
+    particles->volume[j] = input->has_volume ? reference_read(&input->volume, j, 0) : 0.0;
+    particles->scalar[j] =
+      options->field == MCOR_WEIGHT_SUM ? 0.0 : reference_scalar(input, j);
+  }
+  return input->has_volume || reference_volumes(particles, input, kernel);
+}
+
+int oracle_set_iso(oracle_reference* reference, double iso)
+{
+  /* In single precision rounding may change the side of a node whose value is this close. */
+  const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;
+  reference->limits.iso = iso;
+  reference->field.center = iso;
+  reference->limits.close = relative * reference->range;
+  reference->limits.margin = relative;
+  oracle_free_surface(&reference->surface);
+  oracle_classify(&reference->lattice, reference->field.kind, &reference->limits);
+  return oracle_create_surface(&reference->surface, &reference->lattice);
+}
+
+int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
+  const mcor_options* options, int64_t node_limit, char message[256])
+{
+  memset(reference, 0, sizeof(*reference));
+  message[0] = '\0';
+  reference->unit = options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON
+                                                       : 0.5 * DBL_EPSILON;
+  reference->limits.node_threshold = options->node_threshold;
+  if (!reference_particles(&reference->particles, input, options) ||
+    !oracle_create_field(&reference->field, &reference->particles,
+      reference_kernel(options->sph_kernel), reference_kind(options->field), options->h_scale))
+  {
+    snprintf(message, 256, "out of memory for the particles");
+    oracle_free_reference(reference);
+    return 0;
+  }
+  reference->range =
+    options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
+  const double cube = options->cube_size > 0.0
+    ? options->cube_size
+    : options->cube_size_factor * oracle_smallest_h(&reference->particles);
+  if (!oracle_create_lattice(&reference->lattice, &reference->field, cube, node_limit))
+  {
+    snprintf(message, 256, "more than %lld nodes, or out of memory", (long long)node_limit);
+    oracle_free_reference(reference);
+    return 0;
+  }
+  if (!oracle_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5))
+  {
+    snprintf(message, 256, "out of memory for the crossed edges");
+    oracle_free_reference(reference);
+    return 0;
+  }
+  return 1;
+}
+
+void oracle_free_reference(oracle_reference* reference)
+{
+  oracle_free_surface(&reference->surface);
+  oracle_free_lattice(&reference->lattice);
+  oracle_free_field(&reference->field);
+  oracle_free_particles(&reference->particles);
+  memset(reference, 0, sizeof(*reference));
+}

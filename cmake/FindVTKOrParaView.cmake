@@ -1,0 +1,39 @@
+# Finds plain VTK, or ParaView and the VTK inside it. Sets MCOR_VTK_PACKAGE (VTK or ParaView) and
+# MCOR_WRAP_PYTHON, and offers MCOR_BUILD_PLUGIN: on where there is a ParaView, unless it was turned
+# off. On Debian only one of both SDKs can be installed.
+#
+# Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
+set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel)
+set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersGeneral FiltersSources
+  FiltersPoints FiltersModeling IOXML IOLegacy IOImage InteractionStyle RenderingCore RenderingOpenGL2
+  RenderingFreeType TestingRendering TestingCore)
+
+set(MCOR_VTK_PACKAGE "")
+if (MCOR_BUILD_PLUGIN OR NOT DEFINED MCOR_BUILD_PLUGIN)
+  find_package(ParaView QUIET)
+endif ()
+option(MCOR_BUILD_PLUGIN "Build the ParaView plugin" "${ParaView_FOUND}")
+if (NOT MCOR_BUILD_PLUGIN)
+  find_package(VTK 9.1 QUIET COMPONENTS ${mcor_vtk_components}
+    OPTIONAL_COMPONENTS ${mcor_vtk_optional})
+  if (VTK_FOUND)
+    set(MCOR_VTK_PACKAGE VTK)
+  endif ()
+endif ()
+if (NOT MCOR_VTK_PACKAGE)
+  find_package(ParaView QUIET)
+  if (ParaView_FOUND)
+    set(MCOR_VTK_PACKAGE ParaView)
+  else ()
+    message(FATAL_ERROR "Neither VTK >= 9.1 nor ParaView was found (Debian: libvtk9-dev, or "
+      "paraview-dev). Set VTK_DIR or ParaView_DIR, or build the core alone with -DMCOR_BUILD_VTK=OFF.")
+  endif ()
+endif ()
+message(STATUS "Building for ${MCOR_VTK_PACKAGE} ${${MCOR_VTK_PACKAGE}_VERSION}")
+
+set(mcor_can_wrap OFF)
+if (TARGET VTK::WrappingPythonCore AND TARGET VTK::Python)
+  set(mcor_can_wrap ON)
+  find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
+endif ()
+option(MCOR_WRAP_PYTHON "Make the filter usable from Python" ${mcor_can_wrap})

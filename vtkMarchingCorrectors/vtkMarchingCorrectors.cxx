@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMarchingCorrectors.h"
+
+#include "mcor.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMarchingCorrectorsInput.h"
+#include "vtkMarchingCorrectorsOutput.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkVersionMacros.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+//------------------------------------------------------------------------------
+// What outlives a run: the core's context, and what the last run's particles and scalar were.
+class vtkMarchingCorrectors::vtkInternals
+{
+public:
+  ~vtkInternals() { mcor_free_context(this->Context); }
+
+  mcor_context* Context = nullptr;
+  std::string Device; // what the context was created for
+
+  std::vector<std::uint64_t> Particles, Scalar;
+  std::uint64_t ParticlesVersion = 0, ScalarVersion = 0;
+
+  // The scalar is kept in the order of the particles: new particles make a new scalar.
+  void SetVersions(vtkMarchingCorrectorsInput& input)
+  {
+    const bool sameParticles = input.ParticlesSignature == this->Particles;
+    if (!sameParticles || input.ScalarSignature != this->Scalar)
+    {
+      ++this->ScalarVersion;
+    }
+    if (!sameParticles)
+    {
+      ++this->ParticlesVersion;
+    }
+    this->Particles = input.ParticlesSignature;
+    this->Scalar = input.ScalarSignature;
+    input.Core.particles_version = this->ParticlesVersion;
+    input.Core.scalar_version = this->ScalarVersion;
+  }
+};
+
+namespace
+{
+int IsOn(vtkTypeBool value)
+{
+  return value ? 1 : 0;
+}
+
+// Runs between device launches; returns nonzero to stop.
+int ReportProgress(void* user, double fraction, const char* phase)
+{
+  auto* filter = static_cast<vtkMarchingCorrectors*>(user);
+  filter->SetProgressText(phase);
+  filter->UpdateProgress(fraction);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230101)
+  return filter->CheckAbort() ? 1 : 0;
+#else
+  return filter->GetAbortExecute() ? 1 : 0;
+#endif
+}
+
+vtkMarchingCorrectorsRequest FindRequest(
+  vtkMarchingCorrectors* filter, int index, vtkInformationVector** inputVector)
+{
+  vtkMarchingCorrectorsRequest request;
+  vtkInformationVector* all =
+    filter->GetInformation()->Get(vtkAlgorithm::INPUT_ARRAYS_TO_PROCESS());
+  if (!all || index >= all->GetNumberOfInformationObjects())
+  {
+    return request;
+  }
+  vtkInformation* info = all->GetInformationObject(index);
+  const char* name = info->Get(vtkDataObject::FIELD_NAME());
+  request.Name = name ? name : "";
+  if (!request.Name.empty() || info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+  {
+    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    request.Array = filter->GetInputAbstractArrayToProcess(index, inputVector, association);
+    request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  }
+  return request;
+}
+
+void PrintName(ostream& os, vtkIndent indent, const char* label, const std::string& name)
+{
+  os << indent << label << ": " << (name.empty() ? "(none)" : name) << "\n";
+}
+}
+
+//------------------------------------------------------------------------------
+vtkStandardNewMacro(vtkMarchingCorrectors);
+
+//------------------------------------------------------------------------------
+// The context is created by the first run: constructing the filter must not touch OpenCL.
+vtkMarchingCorrectors::vtkMarchingCorrectors()
+  : Internals(new vtkInternals)
+{
+  this->ContourValues->SetNumberOfContours(0);
+  this->FreeSurfaceValues->SetValue(0, 0.5);
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+}
+
+vtkMarchingCorrectors::~vtkMarchingCorrectors() = default;
+
+//------------------------------------------------------------------------------
+vtkMTimeType vtkMarchingCorrectors::GetMTime()
+{
+  return std::max({ this->Superclass::GetMTime(), this->ContourValues->GetMTime(),
+    this->FreeSurfaceValues->GetMTime() });
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::SetFreeSurfaceValue(double value)
+{
+  this->FreeSurfaceValues->SetNumberOfContours(1);
+  this->FreeSurfaceValues->SetValue(0, value);
+}
+
+//------------------------------------------------------------------------------
+bool vtkMarchingCorrectors::SetKernelByName(const char* name)
+{
+  const int kernel = name ? mcor_find_sph_kernel(name) : -1;
+  if (kernel >= 0)
+  {
+    this->SetKernel(kernel);
+  }
+  return kernel >= 0;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkMarchingCorrectors::GetKernelName() const
+{
+  return mcor_sph_kernel_name(static_cast<mcor_sph_kernel>(this->Kernel));
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMarchingCorrectors::ListDevices()
+{
+  char* text = nullptr;
+  mcor_list_devices(&text);
+  const std::string result = text ? text : "";
+  std::free(text);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::ReleaseDeviceMemory()
+{
+  if (this->Internals->Context)
+  {
+    mcor_release_memory(this->Internals->Context);
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::Fail(const std::string& message)
+{
+  this->ErrorMessage = message;
+  vtkErrorMacro(<< message);
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMarchingCorrectors::PrepareDevice()
+{
+  vtkInternals& internals = *this->Internals;
+  if (internals.Context && internals.Device == this->Device)
+  {
+    return true;
+  }
+  mcor_free_context(internals.Context);
+  internals.Context = nullptr;
+  internals.Device = this->Device;
+  if (mcor_create_context(this->Device.c_str(), &internals.Context) == MCOR_OK)
+  {
+    return true;
+  }
+  this->Fail(internals.Context ? mcor_last_error(internals.Context) : "Host memory ran out.");
+  mcor_free_context(internals.Context);
+  internals.Context = nullptr;
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::FillOptions(mcor_options& options, bool nearestParticle)
+{
+  vtkContourValues* values = this->FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
+  mcor_set_default_options(&options);
+  options.sph_kernel = static_cast<mcor_sph_kernel>(this->Kernel);
+  options.field = this->FreeSurface ? MCOR_WEIGHT_SUM
+    : this->ShepardNormalization    ? MCOR_SHEPARD
+                                    : MCOR_SUM;
+  options.seeds = this->SeedMode == PAIRS ? MCOR_PAIRS : MCOR_COMPLETE;
+  options.h_scale = this->HScaleFactor;
+  options.cube_size_factor = this->CubeSizeFactor;
+  options.cube_size = this->CubeSize;
+  options.iso_values = values->GetValues();
+  options.iso_count = static_cast<int>(values->GetNumberOfContours());
+  options.node_threshold = this->NodeThreshold;
+  options.vertex_threshold = this->VertexThreshold;
+  options.preview = IsOn(this->Preview);
+  options.tolerance = this->Tolerance;
+  options.iteration_limit = this->IterationLimit;
+  options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
+  options.normals = IsOn(this->ComputeNormals);
+  options.gradients = IsOn(this->ComputeGradients);
+  options.weight_sum = IsOn(this->ComputeWeightSum);
+  options.correction_length = IsOn(this->ComputeCorrectionLength);
+  options.residual = IsOn(this->ComputeResidual);
+  options.boundary_flag = IsOn(this->ComputeBoundaryFlag);
+  options.iso_value = IsOn(this->ComputeScalars);
+  options.nearest_particle = nearestParticle ? 1 : 0;
+  options.progress = ReportProgress;
+  options.progress_user = this;
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPointSet* particles = vtkPointSet::GetData(inputVector[0]);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  this->ErrorMessage.clear();
+  if (!particles || !output || particles->GetNumberOfPoints() == 0)
+  {
+    return 1;
+  }
+  vtkMarchingCorrectorsInput input(this, particles);
+  if (!this->FreeSurface && this->GetNumberOfContours() == 0)
+  {
+    return this->Fail("No iso value was set: set at least one, or turn the free surface on.");
+  }
+  if (!input.Collect(FindRequest(this, 0, inputVector), FindRequest(this, 1, inputVector)))
+  {
+    return this->Fail(input.Error);
+  }
+  this->SetUsedNames(input);
+  if (input.FluidCount == 0)
+  {
+    vtkWarningMacro("No particle has " << this->FluidArrayName << " = " << this->FluidValue
+                                       << ", so there is no fluid and no surface.");
+    return 1;
+  }
+  if (!this->PrepareDevice())
+  {
+    return 0;
+  }
+  return this->Extract(input, output);
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyData* output)
+{
+  mcor_options options;
+  mcor_surface surface = {};
+  this->FillOptions(options, !input.FromNearest.empty());
+  this->Internals->SetVersions(input);
+  const mcor_status status =
+    mcor_extract(this->Internals->Context, &input.Core, &options, &surface);
+  if (status == MCOR_OK)
+  {
+    vtkMarchingCorrectorsOutput builder(this, input, options, surface);
+    builder.BuildFieldData(output->GetFieldData());
+    builder.BuildMesh(output);
+  }
+  mcor_free_surface(&surface);
+  if (status == MCOR_OK || status == MCOR_CANCELLED)
+  {
+    return 1;
+  }
+  std::string message = mcor_last_error(this->Internals->Context);
+  if (status == MCOR_INVALID_DATA)
+  {
+    message += " (" + input.DescribeArrays() + ")";
+  }
+  return this->Fail(message);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::SetUsedNames(const vtkMarchingCorrectorsInput& input)
+{
+  const auto nameOf = [](vtkDataArray* array) {
+    return std::string(array && array->GetName() ? array->GetName() : "");
+  };
+  this->UsedSmoothingLengthArrayName = nameOf(input.SmoothingLength);
+  this->UsedVolumeArrayName = nameOf(input.Volume);
+  this->UsedMassArrayName = nameOf(input.Mass);
+  this->UsedDensityArrayName = nameOf(input.Density);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  this->ContourValues->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "Scalar Component: " << this->ScalarComponent << "\n";
+  os << indent << "Shepard Normalization: " << this->ShepardNormalization << "\n";
+  os << indent << "Free Surface: " << this->FreeSurface << "\n";
+  this->FreeSurfaceValues->PrintSelf(os, indent.GetNextIndent());
+  PrintName(os, indent, "Smoothing Length Array Name", this->SmoothingLengthArrayName);
+  os << indent << "Smoothing Length: " << this->SmoothingLength << "\n";
+  os << indent << "Estimate Smoothing Length: " << this->EstimateSmoothingLength << "\n";
+  os << indent
+     << "Smoothing Length Is Support Radius: " << this->SmoothingLengthIsSupportRadius << "\n";
+  PrintName(os, indent, "Volume Array Name", this->VolumeArrayName);
+  PrintName(os, indent, "Mass Array Name", this->MassArrayName);
+  PrintName(os, indent, "Density Array Name", this->DensityArrayName);
+  os << indent << "Mass: " << this->Mass << "\n";
+  os << indent << "Density: " << this->Density << "\n";
+  os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
+  PrintName(os, indent, "Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
+  PrintName(os, indent, "Used Volume Array Name", this->UsedVolumeArrayName);
+  PrintName(os, indent, "Used Mass Array Name", this->UsedMassArrayName);
+  PrintName(os, indent, "Used Density Array Name", this->UsedDensityArrayName);
+  os << indent << "Kernel: " << this->GetKernelName() << "\n";
+  os << indent << "H Scale Factor: " << this->HScaleFactor << "\n";
+  os << indent << "Cube Size Factor: " << this->CubeSizeFactor << "\n";
+  os << indent << "Cube Size: " << this->CubeSize << "\n";
+  os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
+  os << indent << "Preview: " << this->Preview << "\n";
+  os << indent << "Node Threshold: " << this->NodeThreshold << "\n";
+  os << indent << "Vertex Threshold: " << this->VertexThreshold << "\n";
+  PrintName(os, indent, "Fluid Array Name", this->FluidArrayName);
+  os << indent << "Fluid Value: " << this->FluidValue << "\n";
+  os << indent << "Ignore Solids: " << this->IgnoreSolids << "\n";
+  os << indent << "Compute Normals: " << this->ComputeNormals << "\n";
+  os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
+  os << indent << "Compute Scalars: " << this->ComputeScalars << "\n";
+  os << indent << "Compute Weight Sum: " << this->ComputeWeightSum << "\n";
+  os << indent << "Compute Correction Length: " << this->ComputeCorrectionLength << "\n";
+  os << indent << "Compute Residual: " << this->ComputeResidual << "\n";
+  os << indent << "Compute Boundary Flag: " << this->ComputeBoundaryFlag << "\n";
+  os << indent << "Interpolate Attributes: " << this->InterpolateAttributes << "\n";
+  os << indent << "Output Points Precision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "Precision: " << this->Precision << "\n";
+  PrintName(os, indent, "Device", this->Device);
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Iteration Limit: " << this->IterationLimit << "\n";
+  PrintName(os, indent, "Error Message", this->ErrorMessage);
+}

@@ -1,0 +1,342 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMarchingCorrectorsOutput.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkIdList.h"
+#include "vtkIntArray.h"
+#include "vtkMarchingCorrectors.h"
+#include "vtkMarchingCorrectorsInput.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+namespace
+{
+/** Hands a malloc'ed buffer over to a VTK array. */
+template <typename ArrayT, typename ValueT>
+vtkSmartPointer<ArrayT> Adopt(ValueT*& values, int components, vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfComponents(components);
+  if (values && tuples > 0)
+  {
+    array->SetArray(values, tuples * components, 0, ArrayT::VTK_DATA_ARRAY_FREE);
+    values = nullptr;
+  }
+  return array;
+}
+
+vtkSmartPointer<vtkDataArray> RoundToFloat(const double* values, int components, vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  if (values)
+  {
+    std::transform(values, values + tuples * components, array->GetPointer(0),
+      [](double value) { return static_cast<float>(value); });
+  }
+  return array;
+}
+
+/** double values as an array of either precision. */
+vtkSmartPointer<vtkDataArray> AdoptReal(
+  double*& values, int components, vtkIdType tuples, bool asFloat)
+{
+  if (asFloat)
+  {
+    return RoundToFloat(values, components, tuples);
+  }
+  return Adopt<vtkDoubleArray>(values, components, tuples);
+}
+
+void Add(vtkFieldData* data, const char* name, vtkSmartPointer<vtkAbstractArray> array)
+{
+  array->SetName(name);
+  data->AddArray(array);
+}
+
+void AddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  Add(data, name, array);
+}
+
+void AddCount(vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values)
+{
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  Add(data, name, array);
+}
+
+void AddText(vtkFieldData* data, const char* name, const std::string& text)
+{
+  auto array = vtkSmartPointer<vtkStringArray>::New();
+  array->InsertNextValue(text);
+  Add(data, name, array);
+}
+
+void AddArrayName(vtkFieldData* data, const char* name, vtkAbstractArray* array)
+{
+  AddText(data, name, array && array->GetName() ? array->GetName() : "");
+}
+}
+
+//------------------------------------------------------------------------------
+vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(vtkMarchingCorrectors* filter,
+  const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface)
+  : Filter(filter)
+  , Input(input)
+  , Options(options)
+  , Surface(surface)
+{
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output)
+{
+  const int precision = this->Filter->GetOutputPointsPrecision();
+  const bool asFloat = precision == vtkAlgorithm::SINGLE_PRECISION ||
+    (precision == vtkAlgorithm::DEFAULT_PRECISION &&
+      this->Input.Core.positions.type == MCOR_FLOAT32);
+  vtkNew<vtkPoints> points;
+  points->SetData(AdoptReal(this->Surface.points, 3, this->Surface.point_count, asFloat));
+  output->SetPoints(points);
+  this->BuildTriangles(output);
+  // Computed arrays come last: they win over input arrays of the same name.
+  this->BuildInterpolatedArrays(output);
+  this->BuildComputedArrays(output);
+  this->BuildIsoValue(output);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
+{
+  const vtkIdType count = this->Surface.triangle_count;
+  vtkNew<vtkCellArray> triangles;
+  if (count < std::numeric_limits<vtkTypeInt32>::max() / 3)
+  {
+    vtkNew<vtkTypeInt32Array> offsets;
+    offsets->SetNumberOfValues(count + 1);
+    for (vtkIdType i = 0; i <= count; ++i)
+    {
+      offsets->SetValue(i, static_cast<vtkTypeInt32>(3 * i));
+    }
+    triangles->SetData(offsets, Adopt<vtkTypeInt32Array>(this->Surface.triangles, 1, 3 * count));
+  }
+  else
+  {
+    vtkNew<vtkTypeInt64Array> corners;
+    corners->SetNumberOfValues(3 * count);
+    std::copy(
+      this->Surface.triangles, this->Surface.triangles + 3 * count, corners->GetPointer(0));
+    vtkNew<vtkTypeInt64Array> offsets;
+    offsets->SetNumberOfValues(count + 1);
+    for (vtkIdType i = 0; i <= count; ++i)
+    {
+      offsets->SetValue(i, 3 * i);
+    }
+    triangles->SetData(offsets, corners);
+  }
+  output->SetPolys(triangles);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
+{
+  vtkPointData* pointData = output->GetPointData();
+  const vtkIdType count = this->Surface.point_count;
+  const auto add = [pointData](vtkAbstractArray* from, vtkAbstractArray* to) {
+    to->CopyComponentNames(from);
+    Add(pointData, from->GetName(), to);
+  };
+  for (size_t i = 0; this->Surface.attributes && i < this->Input.Interpolated.size(); ++i)
+  {
+    vtkDataArray* from = this->Input.Interpolated[i];
+    add(from,
+      AdoptReal(this->Surface.attributes[i], from->GetNumberOfComponents(), count,
+        from->GetDataType() == VTK_FLOAT));
+  }
+  if (!this->Surface.nearest_particle)
+  {
+    return;
+  }
+  vtkNew<vtkIdList> nearest;
+  nearest->SetNumberOfIds(count);
+  std::copy(this->Surface.nearest_particle, this->Surface.nearest_particle + count,
+    nearest->GetPointer(0));
+  for (vtkAbstractArray* from : this->Input.FromNearest)
+  {
+    auto to = vtkSmartPointer<vtkAbstractArray>::Take(
+      vtkAbstractArray::CreateArray(from->GetDataType()));
+    to->SetNumberOfComponents(from->GetNumberOfComponents());
+    to->SetNumberOfTuples(count);
+    from->GetTuples(nearest, to);
+    add(from, to);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
+{
+  vtkPointData* pointData = output->GetPointData();
+  mcor_surface& s = this->Surface;
+  const vtkIdType count = s.point_count;
+  if (s.normals)
+  {
+    Add(pointData, "Normals", Adopt<vtkFloatArray>(s.normals, 3, count));
+    pointData->SetActiveNormals("Normals");
+  }
+  if (s.gradients)
+  {
+    Add(pointData, "Gradients", Adopt<vtkDoubleArray>(s.gradients, 3, count));
+  }
+  if (s.weight_sum)
+  {
+    Add(pointData, "WeightSum", Adopt<vtkFloatArray>(s.weight_sum, 1, count));
+  }
+  if (s.correction_length)
+  {
+    Add(pointData, "CorrectionLength", Adopt<vtkFloatArray>(s.correction_length, 1, count));
+  }
+  if (s.residual)
+  {
+    Add(pointData, "Residual", Adopt<vtkFloatArray>(s.residual, 1, count));
+  }
+  if (s.boundary_flag)
+  {
+    Add(pointData, "BoundaryFlag", Adopt<vtkUnsignedCharArray>(s.boundary_flag, 1, count));
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
+{
+  if (!this->Surface.iso_value)
+  {
+    return;
+  }
+  const char* name = this->Input.ScalarName.c_str();
+  const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
+  Add(output->GetPointData(), name,
+    AdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
+  output->GetPointData()->SetActiveScalars(name);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildFieldData(vtkFieldData* fieldData) const
+{
+  this->AddSeconds(fieldData);
+  this->AddStatistics(fieldData);
+  this->AddParameters(fieldData);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::AddSeconds(vtkFieldData* fieldData) const
+{
+  const mcor_statistics& s = this->Surface.statistics;
+  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
+  seconds->SetNumberOfComponents(MCOR_PHASE_COUNT + 2);
+  seconds->SetNumberOfTuples(1);
+  double total = s.build_seconds;
+  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
+  {
+    seconds->SetComponentName(phase, mcor_phase_name(static_cast<mcor_phase>(phase)));
+    seconds->SetComponent(0, phase, s.seconds[phase]);
+    total += s.seconds[phase];
+  }
+  seconds->SetComponentName(MCOR_PHASE_COUNT, "program build");
+  seconds->SetComponent(0, MCOR_PHASE_COUNT, s.build_seconds);
+  seconds->SetComponentName(MCOR_PHASE_COUNT + 1, "total");
+  seconds->SetComponent(0, MCOR_PHASE_COUNT + 1, total);
+  Add(fieldData, "Seconds", seconds);
+  AddText(fieldData, "Device", s.device);
+  AddText(fieldData, "Platform", s.platform);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
+{
+  const mcor_statistics& s = this->Surface.statistics;
+  AddCount(fieldData, "FluidParticles", { s.fluid_particles });
+  AddCount(fieldData, "SolidParticles", { s.solid_particles });
+  AddReal(
+    fieldData, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
+  AddReal(fieldData, "ScalarRange", { s.scalar_min, s.scalar_max });
+  AddReal(fieldData, "CubeSize", { s.cube_size });
+  AddCount(fieldData, "LatticeOrigin",
+    { s.lattice_origin[0], s.lattice_origin[1], s.lattice_origin[2] });
+  AddCount(
+    fieldData, "LatticeCells", { s.lattice_cells[0], s.lattice_cells[1], s.lattice_cells[2] });
+  AddCount(fieldData, "VirtualCells", { s.virtual_cells });
+  AddCount(fieldData, "SeedCells", { s.seed_cells });
+  AddCount(fieldData, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
+  AddCount(fieldData, "CellsUsed", { s.cells_used });
+  AddCount(fieldData, "Bricks", { s.bricks });
+  AddCount(fieldData, "NodesEvaluated", { s.nodes_evaluated });
+  AddCount(fieldData, "MarchRounds", { s.march_rounds });
+  AddCount(fieldData, "Points", { this->Surface.point_count });
+  AddCount(fieldData, "Triangles", { this->Surface.triangle_count });
+  AddCount(fieldData, "TrianglesBeforeTrimming", { s.triangles_before_trimming });
+  AddReal(fieldData, "CorrectionMean", { s.correction_mean });
+  AddReal(fieldData, "CorrectionMax", { s.correction_max });
+  AddReal(fieldData, "CorrectionStandardDeviation", { s.correction_deviation });
+  AddCount(fieldData, "VerticesCorrected", { s.vertices_corrected });
+  AddCount(fieldData, "VerticesAboveTolerance", { s.vertices_above_tolerance });
+  AddReal(fieldData, "IterationsMean", { s.iterations_mean });
+  AddCount(fieldData, "IterationsMax", { s.iterations_max });
+  AddCount(fieldData, "NewtonEvaluations", { s.newton_evaluations });
+  AddReal(fieldData, "ResidualMax", { s.residual_max });
+  AddCount(fieldData, "TrimVertices", { s.trim_vertices });
+  AddCount(fieldData, "TrimVerticesLinear", { s.trim_vertices_linear });
+  AddCount(fieldData, "DeviceBytesPeak", { s.device_bytes_peak });
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
+{
+  const mcor_options& o = this->Options;
+  auto isoValues = vtkSmartPointer<vtkDoubleArray>::New();
+  for (int i = 0; i < o.iso_count; ++i)
+  {
+    isoValues->InsertNextValue(o.iso_values[i]);
+  }
+  Add(fieldData, "IsoValues", isoValues);
+  const char* const fields[] = { "shepard", "sum", "weight sum" };
+  AddText(fieldData, "Field", fields[o.field]);
+  AddText(fieldData, "Scalar", o.field == MCOR_WEIGHT_SUM ? "" : this->Input.ScalarName);
+  AddArrayName(fieldData, "SmoothingLengthArray", this->Input.SmoothingLength);
+  AddArrayName(fieldData, "VolumeArray", this->Input.Volume);
+  AddArrayName(fieldData, "MassArray", this->Input.Mass);
+  AddArrayName(fieldData, "DensityArray", this->Input.Density);
+  AddText(fieldData, "Kernel", mcor_sph_kernel_name(o.sph_kernel));
+  AddText(fieldData, "SeedMode", o.seeds == MCOR_PAIRS ? "pairs" : "complete");
+  AddText(fieldData, "Precision", o.precision == MCOR_FLOAT64 ? "double" : "single");
+  AddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
+  AddReal(fieldData, "HScaleFactor", { o.h_scale });
+  AddReal(fieldData, "NodeThreshold", { o.node_threshold });
+  AddReal(fieldData, "VertexThreshold", { o.vertex_threshold });
+  AddReal(fieldData, "Tolerance", { o.tolerance });
+  AddCount(fieldData, "IterationLimit", { o.iteration_limit });
+  AddCount(fieldData, "Preview", { o.preview });
+}

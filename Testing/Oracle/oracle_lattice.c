@@ -287,20 +287,28 @@ void oracle_edge_root(const oracle_lattice* lattice, const oracle_field* field, 
   oracle_edge_ends(lattice, edge, nodes);
   oracle_node_position(lattice, nodes[0], point);
   oracle_node_position(lattice, nodes[1], end);
-  double low = point[axis];
-  double high = end[axis];
-  const int low_above = (lattice->flags[nodes[0]] & ORACLE_NODE_ABOVE) != 0;
-  for (int step = 0; step < 60; ++step)
+  double x[2] = { point[axis], end[axis] };
+  double f[2] = { lattice->value[nodes[0]] - iso, lattice->value[nodes[1]] - iso };
+  const int low_above = f[0] >= 0.0;
+  double previous = INFINITY;
+  /* Regula falsi, halving the value of the end that stays (Illinois), and every third step a true
+   * bisection, so that nothing depends on how smooth the field is. */
+  for (int step = 0; step < 120; ++step)
   {
-    point[axis] = 0.5 * (low + high);
+    const double t = f[0] / (f[0] - f[1]);
+    const int bisect = step % 3 == 2 || !(t > 0.0 && t < 1.0);
+    point[axis] = bisect ? 0.5 * (x[0] + x[1]) : x[0] + t * (x[1] - x[0]);
     oracle_evaluate(field, NULL, point, sample);
-    if ((sample->value >= iso) == low_above)
+    const double value = sample->value - iso;
+    const int side = (value >= 0.0) == low_above ? 0 : 1;
+    x[side] = point[axis];
+    f[side] = value;
+    f[1 - side] *= bisect ? 1.0 : 0.5;
+    if (value == 0.0 || fabs(x[1] - x[0]) < 1e-13 * lattice->cube ||
+      fabs(point[axis] - previous) < 1e-13 * lattice->cube)
     {
-      low = point[axis];
+      return;
     }
-    else
-    {
-      high = point[axis];
-    }
+    previous = point[axis];
   }
 }

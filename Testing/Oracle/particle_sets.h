@@ -1,0 +1,50 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef particle_sets_h
+#define particle_sets_h
+
+/* Analytic particle sets for tests. The same name always gives the same particles. */
+
+#include "mcor.h"
+
+#include <stdint.h>
+
+typedef struct particle_set
+{
+  int64_t count, capacity;
+  double* position;         /* [count][3] */
+  double* smoothing_length; /* [count] */
+  double* volume;           /* [count] */
+  double* scalar;           /* [count] */
+  uint8_t* solid;           /* [count] */
+  int has_solids;
+} particle_set;
+
+typedef struct particle_set_entry
+{
+  const char* name;
+  const char* purpose;
+  int (*make)(particle_set* set); /* 0 if memory ran out */
+  double iso;                     /* of the scalar */
+  mcor_field field;               /* the one that the set was made for */
+} particle_set_entry;
+
+/* All sets; the last entry has the name NULL. */
+extern const particle_set_entry particle_sets[];
+const particle_set_entry* particle_set_find(const char* name);
+
+void particle_set_free(particle_set* set);
+
+/* The set as input of mcor_extract; borrowed from the set. */
+mcor_input particle_set_input(const particle_set* set);
+
+/* x -> scale * x + offset, with lengths and volumes. */
+void particle_set_transform(particle_set* set, double scale, const double offset[3]);
+/* Puts the particles into another, seemingly random order. */
+void particle_set_shuffle(particle_set* set, uint64_t seed);
+
+/* A small fast generator (splitmix64), the same on every machine. */
+uint64_t random_bits(uint64_t* state);
+double random_unit(uint64_t* state); /* in [0, 1) */
+
+#endif

@@ -3,7 +3,7 @@
 # off. On Debian only one of both SDKs can be installed.
 #
 # Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
-set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel)
+set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc)
 set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersGeneral FiltersSources
   FiltersPoints FiltersModeling IOXML IOLegacy IOImage InteractionStyle RenderingCore RenderingOpenGL2
   RenderingFreeType TestingRendering TestingCore)

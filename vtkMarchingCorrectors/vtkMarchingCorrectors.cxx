@@ -69,28 +69,6 @@ int ReportProgress(void* user, double fraction, const char* phase)
 #endif
 }
 
-vtkMarchingCorrectorsRequest FindRequest(
-  vtkMarchingCorrectors* filter, int index, vtkInformationVector** inputVector)
-{
-  vtkMarchingCorrectorsRequest request;
-  vtkInformationVector* all =
-    filter->GetInformation()->Get(vtkAlgorithm::INPUT_ARRAYS_TO_PROCESS());
-  if (!all || index >= all->GetNumberOfInformationObjects())
-  {
-    return request;
-  }
-  vtkInformation* info = all->GetInformationObject(index);
-  const char* name = info->Get(vtkDataObject::FIELD_NAME());
-  request.Name = name ? name : "";
-  if (!request.Name.empty() || info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
-  {
-    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    request.Array = filter->GetInputAbstractArrayToProcess(index, inputVector, association);
-    request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  }
-  return request;
-}
-
 void PrintName(ostream& os, vtkIndent indent, const char* label, const std::string& name)
 {
   os << indent << label << ": " << (name.empty() ? "(none)" : name) << "\n";
@@ -171,6 +149,30 @@ int vtkMarchingCorrectors::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
+// Superclasses would report an error for a second array that was never asked for.
+vtkMarchingCorrectorsRequest vtkMarchingCorrectors::FindRequest(
+  int index, vtkInformationVector** inputVector)
+{
+  vtkMarchingCorrectorsRequest request;
+  vtkInformationVector* all =
+    this->GetInformation()->Get(INPUT_ARRAYS_TO_PROCESS());
+  if (!all || index >= all->GetNumberOfInformationObjects())
+  {
+    return request;
+  }
+  vtkInformation* info = all->GetInformationObject(index);
+  const char* name = info->Get(vtkDataObject::FIELD_NAME());
+  request.Name = name ? name : "";
+  if (!request.Name.empty() || info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+  {
+    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    request.Array = this->GetInputAbstractArrayToProcess(index, inputVector, association);
+    request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  }
+  return request;
+}
+
+//------------------------------------------------------------------------------
 int vtkMarchingCorrectors::Fail(const std::string& message)
 {
   this->ErrorMessage = message;
@@ -248,7 +250,7 @@ int vtkMarchingCorrectors::RequestData(
   {
     return this->Fail("No iso value was set: set at least one, or turn the free surface on.");
   }
-  if (!input.Collect(FindRequest(this, 0, inputVector), FindRequest(this, 1, inputVector)))
+  if (!input.Collect(this->FindRequest(0, inputVector), this->FindRequest(1, inputVector)))
   {
     return this->Fail(input.Error);
   }

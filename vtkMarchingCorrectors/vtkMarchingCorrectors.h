@@ -54,6 +54,7 @@
  * The volume of a particle is the volume array; else mass / density; else, with masses alone, m_j
  * over the mass density that they sum up to; else 1 / sum_k W(x_j - x_k, h_j). What was chosen is
  * retrievable (GetUsedSmoothingLengthArrayName() and its kin) and stands in the output field data.
+ * In place of any array name, "(automatic)" and "(none)" mean the same as an empty one.
  *
  * The output point data holds "Normals", the arrays asked for ("Gradients", "WeightSum",
  * "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see ComputeScalars) and all other
@@ -108,6 +109,7 @@
 
 class vtkMarchingCorrectorsInput;
 struct mcor_options;
+struct vtkMarchingCorrectorsRequest;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkPolyDataAlgorithm
 {
@@ -597,6 +599,7 @@ private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
+  vtkMarchingCorrectorsRequest FindRequest(int index, vtkInformationVector** inputVector);
   bool PrepareDevice();
   void FillOptions(mcor_options& options, bool nearestParticle);
   int Extract(vtkMarchingCorrectorsInput& input, vtkPolyData* output);

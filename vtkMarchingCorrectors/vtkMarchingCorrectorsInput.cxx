@@ -41,6 +41,12 @@ std::string Quote(const std::string& name)
   return "'" + name + "'";
 }
 
+/** What lists of arrays show in place of an array, as in ParaView's panel, is no name. */
+std::string RealName(const std::string& name)
+{
+  return name == "(automatic)" || name == "(none)" ? std::string() : name;
+}
+
 std::string NameOf(vtkAbstractArray* array)
 {
   return array->GetName() ? array->GetName() : "";
@@ -115,7 +121,7 @@ bool vtkMarchingCorrectorsInput::CollectScalar(
   }
   const int components = this->Scalar->GetNumberOfComponents();
   const int component = this->Filter->GetScalarComponent();
-  if (!dot.Name.empty())
+  if (!RealName(dot.Name).empty())
   {
     this->ScalarDot = this->Check("second vector of the dot product", dot.Name, dot.Array);
     if (this->ScalarDot && this->ScalarDot->GetNumberOfComponents() != components)
@@ -179,8 +185,8 @@ bool vtkMarchingCorrectorsInput::CollectVolume()
 {
   vtkMarchingCorrectors* f = this->Filter;
   const std::vector<std::string> none;
-  const bool massOrDensitySet = *f->GetMassArrayName() || *f->GetDensityArrayName() ||
-    f->GetMass() != 0.0 || f->GetDensity() != 0.0;
+  const bool massOrDensitySet = !RealName(f->GetMassArrayName()).empty() ||
+    !RealName(f->GetDensityArrayName()).empty() || f->GetMass() != 0.0 || f->GetDensity() != 0.0;
   if (!this->CollectQuantity("volume", f->GetVolumeArrayName(), 0.0,
         massOrDensitySet ? none : VolumeNames, this->Volume, this->Core.volume,
         this->Core.has_volume))
@@ -199,10 +205,11 @@ bool vtkMarchingCorrectorsInput::CollectVolume()
 
 //------------------------------------------------------------------------------
 // A constant goes before a name, a name before the usual names. `given` stays 0 if there is nothing.
-bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role, const std::string& name,
-  double constant, const std::vector<std::string>& usualNames, vtkDataArray*& array,
-  mcor_array& core, int& given)
+bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role,
+  const std::string& setName, double constant, const std::vector<std::string>& usualNames,
+  vtkDataArray*& array, mcor_array& core, int& given)
 {
+  const std::string name = RealName(setName);
   if (constant != 0.0)
   {
     core.constant = constant;
@@ -240,13 +247,13 @@ bool vtkMarchingCorrectorsInput::CollectSolids()
 {
   this->FluidCount = static_cast<vtkIdType>(this->Core.count);
   this->Core.ignore_solids = this->Filter->GetIgnoreSolids() ? 1 : 0;
-  const std::string name = this->Filter->GetFluidArrayName();
+  const std::string name = RealName(this->Filter->GetFluidArrayName());
   if (name.empty())
   {
     return true;
   }
-  vtkDataArray* array = this->Find("fluid", name);
-  if (!array)
+  this->Fluid = this->Find("fluid", name);
+  if (!this->Fluid)
   {
     return false;
   }
@@ -255,7 +262,7 @@ bool vtkMarchingCorrectorsInput::CollectSolids()
   this->FluidCount = 0;
   for (vtkIdType i = 0; i < this->Core.count; ++i)
   {
-    const bool isFluid = array->GetComponent(i, 0) == fluid;
+    const bool isFluid = this->Fluid->GetComponent(i, 0) == fluid;
     this->Solid[static_cast<size_t>(i)] = isFluid ? 0 : 1;
     this->FluidCount += isFluid ? 1 : 0;
   }
@@ -320,15 +327,13 @@ void vtkMarchingCorrectorsInput::CollectAttributes()
 void vtkMarchingCorrectorsInput::Sign()
 {
   std::vector<std::uint64_t>& particles = this->ParticlesSignature;
-  vtkPointData* pointData = this->Points->GetPointData();
   SignObject(particles, this->Points);
   SignObject(particles, this->Points->GetPoints()->GetData());
   SignObject(particles, this->SmoothingLength);
   SignObject(particles, this->Volume);
   SignObject(particles, this->Mass);
   SignObject(particles, this->Density);
-  SignObject(particles,
-    this->Solid.empty() ? nullptr : pointData->GetArray(this->Filter->GetFluidArrayName()));
+  SignObject(particles, this->Fluid);
   particles.push_back(BitsOf(this->Filter->GetFluidValue()));
   particles.push_back(BitsOf(this->Core.smoothing_length.constant));
   particles.push_back(BitsOf(this->Core.mass.constant));

@@ -55,6 +55,7 @@ public:
   vtkDataArray* Volume = nullptr;
   vtkDataArray* Mass = nullptr;
   vtkDataArray* Density = nullptr;
+  vtkDataArray* Fluid = nullptr;
   vtkIdType FluidCount = 0;
 
   std::vector<vtkDataArray*> Interpolated;       // in the order of Core.attributes
@@ -76,7 +77,7 @@ private:
   vtkDataArray* Check(const std::string& role, const std::string& name, vtkAbstractArray* array);
   vtkDataArray* Find(const std::string& role, const std::string& name);
   vtkDataArray* Detect(const std::vector<std::string>& usualNames);
-  bool CollectQuantity(const std::string& role, const std::string& name, double constant,
+  bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
     const std::vector<std::string>& usualNames, vtkDataArray*& array, mcor_array& core, int& given);
   std::string ListPointArrays() const;
 

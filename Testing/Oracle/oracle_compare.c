@@ -327,6 +327,7 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
     compare_extra(&state);
     compare_vertices(&state);
     compare_count_pinched(&state);
+    compare_count_unsettled(&state);
     compare_boundary(&state);
     if (!trimmed)
     {

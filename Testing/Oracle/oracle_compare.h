@@ -22,7 +22,8 @@ extern "C"
     oracle_lattice lattice;
     oracle_surface surface;
     oracle_limits limits;
-    double range; /* of the scalar over fluid particles; 1 for the weight */
+    /* Of the scalar over fluid particles; its largest magnitude if all are equal; 1 for the weight. */
+    double range;
     double unit;  /* roundoff of the working precision */
   } oracle_reference;
 
@@ -50,6 +51,7 @@ extern "C"
     int64_t pinched_edges; /* valid cells touch only in the edge: its vertex has two fans */
 
     double residual;      /* max |f - iso| / range over vertices on edges */
+    int64_t jumps;        /* vertices where f jumps over iso; not in residual and normal_degrees */
     double distance;      /* max distance to the surface f = iso, in cubes */
     double normal_degrees;   /* max angle between normal and -gradient */
     int64_t flat_vertices;   /* gradient too small for a meaningful normal; not in normal_degrees */
@@ -62,6 +64,8 @@ extern "C"
     int64_t trim_vertices, trim_linear;
     double trim_weight_error, trim_residual; /* of exact trim vertices */
     int64_t below_threshold;                 /* vertices kept although their weight is too low */
+    int64_t near_threshold;                  /* vertices that rounding may keep or cut away */
+    int64_t unsettled; /* nodes and cells at the surface whose state depends on rounding */
     double weight_error, gradient_error;     /* of the optional arrays; gradient relative */
     char first[160];                         /* the first fault of a vertex or edge, in words */
   } oracle_comparison;

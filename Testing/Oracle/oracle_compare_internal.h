@@ -39,5 +39,6 @@ int compare_orientation(compare_state* state); /* 0 if memory ran out */
 void compare_faces(compare_state* state);
 void compare_boundary(compare_state* state);
 void compare_count_pinched(compare_state* state);
+void compare_count_unsettled(compare_state* state);
 
 #endif

@@ -37,6 +37,28 @@ static double compare_distance(
   return isnan(distance) ? 0.0 : distance; /* 0 / 0: exactly on a flat spot */
 }
 
+/* Shepard's field jumps where the fluid weight falls to 0: the last particle in reach leaves with a
+ * value of its own. Weight of solids can keep the cells there valid. No point of the edge then has
+ * the value iso; the vertex must be where the side changes. */
+static int compare_jump(
+  const compare_state* state, const double point[3], int axis, const oracle_sample* sample)
+{
+  const oracle_reference* reference = state->reference;
+  const double step = 1e-5 * reference->lattice.cube;
+  double p[3] = { point[0], point[1], point[2] };
+  oracle_sample low;
+  oracle_sample high;
+  if (reference->field.kind != ORACLE_SHEPARD || fabs(sample->weight) > 1e-6)
+  {
+    return 0;
+  }
+  p[axis] = point[axis] - step;
+  oracle_evaluate(&reference->field, NULL, p, &low);
+  p[axis] = point[axis] + step;
+  oracle_evaluate(&reference->field, NULL, p, &high);
+  return (low.value >= reference->limits.iso) != (high.value >= reference->limits.iso);
+}
+
 static void compare_normal(compare_state* state, int64_t v, const oracle_sample* sample)
 {
   oracle_comparison* result = state->result;
@@ -89,47 +111,66 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
+static void compare_trim_vertex(
+  compare_state* state, int64_t v, const oracle_sample* sample, double residual)
+{
+  oracle_comparison* result = state->result;
+  ++result->trim_vertices;
+  if (state->surface->boundary_flag[v] == 2)
+  {
+    ++result->trim_linear;
+    return;
+  }
+  result->trim_residual = fmax(result->trim_residual, residual);
+  result->trim_weight_error = fmax(result->trim_weight_error,
+    fabs(sample->trim_weight - state->options->vertex_threshold));
+}
+
+/* A vertex on a lattice edge; 1 if f is iso there, 0 if f only jumps over it. */
+static int compare_edge_vertex(
+  compare_state* state, int64_t v, const oracle_sample* sample, double residual)
+{
+  oracle_comparison* result = state->result;
+  const double* point = &state->surface->points[3 * v];
+  const int axis = (int)(state->vertex_edge[v] % 3);
+  const double threshold = state->options->vertex_threshold;
+  result->below_threshold += state->trimmed && sample->trim_weight < threshold - 1e-5;
+  result->near_threshold += fabs(sample->trim_weight - threshold) <= 1e-5;
+  if (residual > 1e-6 && compare_jump(state, point, axis, sample))
+  {
+    ++result->jumps;
+    return 0;
+  }
+  if (!(residual <= result->residual))
+  {
+    result->residual = residual;
+  }
+  result->distance = fmax(result->distance, compare_distance(state, point, axis, sample));
+  return 1;
+}
+
 void compare_vertices(compare_state* state)
 {
   const oracle_reference* reference = state->reference;
-  const mcor_surface* surface = state->surface;
-  oracle_comparison* result = state->result;
-  const double threshold = state->options->vertex_threshold;
-  for (int64_t v = 0; v < surface->point_count; ++v)
+  for (int64_t v = 0; v < state->surface->point_count; ++v)
   {
-    const double* point = &surface->points[3 * v];
     oracle_sample sample;
-    oracle_evaluate(&reference->field, NULL, point, &sample);
+    int on_surface = 1;
+    oracle_evaluate(&reference->field, NULL, &state->surface->points[3 * v], &sample);
     memcpy(&state->gradient[3 * v], sample.gradient, sizeof(sample.gradient));
     compare_optional_arrays(state, v, &sample);
     const double residual = fabs(sample.value - reference->limits.iso) / reference->range;
     if (state->vertex_edge[v] == COMPARE_TRIM_VERTEX)
     {
-      const int linear = surface->boundary_flag[v] == 2;
-      ++result->trim_vertices;
-      result->trim_linear += linear;
-      if (!linear)
-      {
-        result->trim_residual = fmax(result->trim_residual, residual);
-        result->trim_weight_error =
-          fmax(result->trim_weight_error, fabs(sample.trim_weight - threshold));
-      }
-      else
-      {
-        continue; /* off the surface by definition: its normal need not be that of the surface */
-      }
+      compare_trim_vertex(state, v, &sample, residual);
+      /* A linear cut is off the surface: its normal need not be that of the surface. */
+      on_surface = state->surface->boundary_flag[v] != 2;
     }
     else if (state->vertex_edge[v] >= 0)
     {
-      if (!(residual <= result->residual))
-      {
-        result->residual = residual;
-      }
-      result->distance = fmax(result->distance,
-        compare_distance(state, point, (int)(state->vertex_edge[v] % 3), &sample));
-      result->below_threshold += state->trimmed && sample.trim_weight < threshold - 1e-5;
+      on_surface = compare_edge_vertex(state, v, &sample, residual);
     }
-    if (surface->normals)
+    if (state->surface->normals && on_surface)
     {
       compare_normal(state, v, &sample);
     }
@@ -325,6 +366,23 @@ void compare_boundary(compare_state* state)
       ++state->result->holes;
       compare_note(state, "open edge between vertices %d and %d", (int)side->a, (int)side->b);
     }
+  }
+}
+
+void compare_count_unsettled(compare_state* state)
+{
+  const oracle_lattice* lattice = &state->reference->lattice;
+  const int64_t nodes = oracle_node_count(lattice);
+  for (int64_t n = 0; n < nodes; ++n)
+  {
+    state->result->unsettled += (lattice->flags[n] & ORACLE_NODE_CLOSE) &&
+      (lattice->flags[n] & (ORACLE_NODE_VALID | ORACLE_NODE_MARGIN));
+  }
+  for (int64_t c = 0; c < state->reference->surface.cell_count; ++c)
+  {
+    const int64_t node = state->reference->surface.cell[c];
+    state->result->unsettled += !oracle_cell_certain(lattice, node % lattice->size[0],
+      node / lattice->size[0] % lattice->size[1], node / lattice->size[0] / lattice->size[1]);
   }
 }
 

@@ -98,12 +98,14 @@ static int reference_particles(
   {
     return 0;
   }
-  particles->ignore_solids = input->ignore_solids;
+  /* Solids count in the weight that trims; nothing is trimmed when the weight itself is contoured. */
+  particles->ignore_solids = input->ignore_solids || options->field == MCOR_WEIGHT_SUM;
   for (int64_t j = 0; j < input->count; ++j)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      const mcor_array xyz = { input->positions.data, input->positions.type, 3, 0.0 };
+      mcor_array xyz = input->positions;
+      xyz.components = 3;
       particles->position[3 * j + axis] = reference_read(&xyz, j, axis);
     }
     particles->smoothing_length[j] = reference_read(&input->smoothing_length, j, 0) /
@@ -147,6 +149,11 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
   }
   reference->range =
     options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
+  if (!(reference->range > 0.0))
+  {
+    const double any = reference->particles.count > 0 ? reference->particles.scalar[0] : 0.0;
+    reference->range = any != 0.0 ? fabs(any) : 1.0;
+  }
   const double cube = options->cube_size > 0.0
     ? options->cube_size
     : options->cube_size_factor * oracle_smallest_h(&reference->particles);

@@ -392,16 +392,27 @@ const particle_set_entry* particle_set_find(const char* name)
   return NULL;
 }
 
+mcor_array particle_array(const double* data, int components, double constant)
+{
+  mcor_array array;
+  memset(&array, 0, sizeof(array));
+  array.data = data;
+  array.type = MCOR_FLOAT64;
+  array.components = components;
+  array.constant = constant;
+  return array;
+}
+
 mcor_input particle_set_input(const particle_set* set)
 {
   mcor_input input;
   memset(&input, 0, sizeof(input));
   input.count = set->count;
-  input.positions = (mcor_array){ set->position, MCOR_FLOAT64, 3, 0.0 };
-  input.smoothing_length = (mcor_array){ set->smoothing_length, MCOR_FLOAT64, 1, 0.0 };
-  input.volume = (mcor_array){ set->volume, MCOR_FLOAT64, 1, 0.0 };
+  input.positions = particle_array(set->position, 3, 0.0);
+  input.smoothing_length = particle_array(set->smoothing_length, 1, 0.0);
+  input.volume = particle_array(set->volume, 1, 0.0);
   input.has_volume = 1;
-  input.scalar = (mcor_array){ set->scalar, MCOR_FLOAT64, 1, 0.0 };
+  input.scalar = particle_array(set->scalar, 1, 0.0);
   input.solid = set->has_solids ? set->solid : NULL;
   return input;
 }

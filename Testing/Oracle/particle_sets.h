@@ -33,6 +33,9 @@ typedef struct particle_set_entry
 extern const particle_set_entry particle_sets[];
 const particle_set_entry* particle_set_find(const char* name);
 
+/* A borrowed array of doubles; a constant where data is NULL. */
+mcor_array particle_array(const double* data, int components, double constant);
+
 void particle_set_free(particle_set* set);
 
 /* The set as input of mcor_extract; borrowed from the set. */

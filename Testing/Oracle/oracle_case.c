@@ -1,0 +1,326 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle_case.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int oracle_begin_suite(oracle_suite* suite, int argc, char** argv)
+{
+  const char* device = NULL;
+  const char* results = NULL;
+  memset(suite, 0, sizeof(*suite));
+  for (int n = 1; n < argc; ++n)
+  {
+    const char* value = n + 1 < argc ? argv[n + 1] : NULL;
+    if (strcmp(argv[n], "--update") == 0)
+    {
+      suite->update = 1;
+    }
+    else if (value && strcmp(argv[n], "--results") == 0)
+    {
+      results = argv[++n];
+    }
+    else if (value && strcmp(argv[n], "--case") == 0)
+    {
+      suite->filter = argv[++n];
+    }
+    else if (value && strcmp(argv[n], "--device") == 0)
+    {
+      device = argv[++n];
+    }
+    else
+    {
+      fprintf(stderr, "unknown argument %s\n", argv[n]);
+      return 0;
+    }
+  }
+  if (!results || !results_load(&suite->results, results))
+  {
+    fprintf(stderr, "no readable table of results; use --results FILE\n");
+    return 0;
+  }
+  if (mcor_create_context(device, &suite->context) != MCOR_OK)
+  {
+    fprintf(stderr, "no device: %s\n", mcor_last_error(suite->context));
+    mcor_free_context(suite->context);
+    results_free(&suite->results);
+    return 0;
+  }
+  return 1;
+}
+
+int oracle_end_suite(oracle_suite* suite)
+{
+  if (suite->update && !results_save(&suite->results))
+  {
+    fprintf(stderr, "cannot write %s\n", suite->results.path);
+    ++suite->failures;
+  }
+  printf("%d cases, %d failed\n", suite->cases, suite->failures);
+  const int failed = suite->failures > 0 || suite->cases == 0;
+  mcor_free_context(suite->context);
+  results_free(&suite->results);
+  return failed;
+}
+
+int oracle_wants_case(const oracle_suite* suite, const char* name)
+{
+  return !suite->filter || strstr(name, suite->filter) != NULL;
+}
+
+mcor_options oracle_case_options(const double* iso)
+{
+  mcor_options options;
+  mcor_set_default_options(&options);
+  options.iso_values = iso;
+  options.iso_count = 1;
+  options.normals = options.gradients = options.weight_sum = options.boundary_flag = 1;
+  options.residual = options.correction_length = 1;
+  return options;
+}
+
+/* ---- one extraction --------------------------------------------------------------------------------- */
+
+typedef struct case_run
+{
+  const oracle_case* at;
+  const oracle_reference* reference;
+  const char* mode; /* "complete", "trimmed" or "pairs" */
+  mcor_options options;
+  mcor_surface surface;
+  mesh_report mesh;
+  oracle_comparison comparison;
+  int good;
+} case_run;
+
+static void case_expect(case_run* run, int condition, const char* format, ...)
+{
+  if (!condition)
+  {
+    va_list arguments;
+    va_start(arguments, format);
+    printf("  FAILED: %s %s: ", run->at->name, run->mode);
+    vprintf(format, arguments);
+    printf("\n");
+    va_end(arguments);
+    run->good = 0;
+  }
+}
+
+static void case_print(const case_run* run)
+{
+  const oracle_comparison* c = &run->comparison;
+  const mesh_report* m = &run->mesh;
+  printf("%-44s %-8s edges %lld found %lld missing %lld extra %lld excused %lld+%lld trimmed %lld"
+         " comp %lld/-%lld tri %lld residual %.2g jumps %lld dist %.2g normal %.3g (flat %lld) open %lld"
+         " holes %lld nonmanifold %lld+%lld clash %lld degenerate %lld coincident %lld trim %lld"
+         " linear %lld w %.2g f %.2g\n",
+    run->at->name, run->mode, (long long)c->edges, (long long)c->matched, (long long)c->missing,
+    (long long)c->extra, (long long)c->excused, (long long)c->rounding, (long long)c->trimmed,
+    (long long)c->components, (long long)c->components_missing,
+    (long long)run->surface.triangle_count, c->residual, (long long)c->jumps, c->distance, c->normal_degrees,
+    (long long)c->flat_vertices, (long long)m->boundary_edges, (long long)c->holes,
+    (long long)m->faults[MESH_NON_MANIFOLD_EDGE], (long long)m->faults[MESH_NON_MANIFOLD_VERTEX],
+    (long long)m->faults[MESH_ORIENTATION_CLASH],
+    (long long)(m->faults[MESH_ZERO_AREA] + m->faults[MESH_REPEATED_INDEX]),
+    (long long)m->faults[MESH_COINCIDENT_POINT], (long long)c->trim_vertices,
+    (long long)c->trim_linear, c->trim_weight_error, c->trim_residual);
+}
+
+static void case_check_mesh(case_run* run, int trimmed)
+{
+  const oracle_comparison* c = &run->comparison;
+  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
+  {
+    /* Where valid cells touch only in an edge, its one vertex has two fans; trimming removes them. */
+    const int64_t allowed =
+      fault == MESH_NON_MANIFOLD_VERTEX && !trimmed ? c->pinched_edges : 0;
+    case_expect(run, run->mesh.faults[fault] <= allowed, "%lld x %s: %s",
+      (long long)run->mesh.faults[fault], mesh_fault_name((mesh_fault)fault),
+      run->mesh.first[fault]);
+  }
+  case_expect(run, c->holes == 0, "%lld holes: %s", (long long)c->holes, c->first);
+}
+
+static void case_check_edges(case_run* run, int pairs)
+{
+  const oracle_comparison* c = &run->comparison;
+  case_expect(run, c->off_lattice == 0, "%lld vertices off the lattice: %s",
+    (long long)c->off_lattice, c->first);
+  case_expect(run, c->doubled == 0, "%lld edges with two vertices", (long long)c->doubled);
+  case_expect(run, c->extra == 0, "%lld extra edges: %s", (long long)c->extra, c->first);
+  case_expect(run, c->segments_missing == 0, "%lld faces not connected: %s",
+    (long long)c->segments_missing, c->first);
+  if (pairs)
+  {
+    /* The paper's seeds may miss components, but what they find must be whole. */
+    case_expect(run, c->components_partial == 0, "%lld components torn: %s",
+      (long long)c->components_partial, c->first);
+  }
+  else
+  {
+    case_expect(run, c->missing == 0, "%lld missing edges (%lld whole components): %s",
+      (long long)c->missing, (long long)c->components_missing, c->first);
+  }
+}
+
+static void case_check_accuracy(case_run* run)
+{
+  const oracle_comparison* c = &run->comparison;
+  const int single = run->options.precision == MCOR_FLOAT32;
+  const double residual = single ? 5e-6 : 1e-6;
+  case_expect(run, c->residual <= residual, "residual %.3g", c->residual);
+  case_expect(run, c->weight_error <= (single ? 1e-5 : 1e-9), "weight off by %.3g",
+    c->weight_error);
+  case_expect(run, c->inverted_components == 0, "%lld components inside out",
+    (long long)c->inverted_components);
+  case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g",
+    c->trim_weight_error);
+  case_expect(run, c->trim_residual <= residual, "trim vertices: residual %.3g", c->trim_residual);
+  case_expect(run, c->below_threshold == 0, "%lld vertices below the vertex threshold",
+    (long long)c->below_threshold);
+  if (!run->at->rough)
+  {
+    case_expect(run, c->distance <= 1e-4, "distance %.3g cubes", c->distance);
+    case_expect(run, c->normal_degrees <= (single ? 0.5 : 0.1), "normal off by %.3g degrees",
+      c->normal_degrees);
+    case_expect(run, c->gradient_error <= (single ? 1e-4 : 1e-9), "gradient off by %.3g",
+      c->gradient_error);
+  }
+}
+
+/* Extracts, checks, prints; the surface and its report stay in *run. */
+static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
+{
+  run->good = 1;
+  run->options = run->at->options;
+  run->options.seeds = pairs ? MCOR_PAIRS : MCOR_COMPLETE;
+  run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : 0.0;
+  memset(&run->surface, 0, sizeof(run->surface));
+  memset(&run->mesh, 0, sizeof(run->mesh));
+  memset(&run->comparison, 0, sizeof(run->comparison));
+  const mcor_status status =
+    mcor_extract(suite->context, &run->at->input, &run->options, &run->surface);
+  case_expect(run, status == MCOR_OK, "%s: %s", mcor_status_name(status),
+    mcor_last_error(suite->context));
+  if (status != MCOR_OK)
+  {
+    return 0;
+  }
+  const int enough = mesh_check(run->surface.points, run->surface.point_count,
+                       run->surface.triangles, run->surface.triangle_count, &run->mesh) &&
+    (run->mesh.faults[MESH_BAD_INDEX] + run->mesh.faults[MESH_BAD_COORDINATE] > 0 ||
+      oracle_compare(run->reference, &run->options, &run->surface, &run->mesh, trimmed,
+        &run->comparison));
+  case_expect(run, enough, "out of memory");
+  case_print(run);
+  const double cube = run->surface.statistics.cube_size;
+  case_expect(run, fabs(cube / run->reference->lattice.cube - 1.0) < 1e-12, "cube size %.17g",
+    cube);
+  case_check_mesh(run, trimmed);
+  case_check_edges(run, pairs);
+  case_check_accuracy(run);
+  return run->good;
+}
+
+static void case_release(case_run* run)
+{
+  mesh_free_report(&run->mesh);
+  mcor_free_surface(&run->surface);
+}
+
+/* ---- one case --------------------------------------------------------------------------------------- */
+
+/* Counts may differ from the table only where rounding decides, so that another device passes. */
+static int case_check_row(
+  oracle_suite* suite, const results_row* row, int64_t slack, int64_t trim_slack)
+{
+  if (suite->update)
+  {
+    return results_set(&suite->results, row);
+  }
+  const results_row* kept = results_find(&suite->results, row->name);
+  if (!kept)
+  {
+    printf("  FAILED: %s is not in the table of results\n", row->name);
+    return 0;
+  }
+  int good = 1;
+  for (int n = 0; n < RESULTS_COUNTS; ++n)
+  {
+    const int64_t allowed = n < 4 ? slack : trim_slack;
+    if (llabs(kept->counts[n] - row->counts[n]) > allowed)
+    {
+      printf("  FAILED: %s: %s is %lld, was %lld\n", row->name, results_names[n],
+        (long long)row->counts[n], (long long)kept->counts[n]);
+      good = 0;
+    }
+  }
+  return good;
+}
+
+static int case_run_modes(oracle_suite* suite, const oracle_case* at, case_run* run)
+{
+  results_row row;
+  memset(&row, 0, sizeof(row));
+  snprintf(row.name, sizeof(row.name), "%s", at->name);
+  run->mode = "complete";
+  int good = case_extract(suite, run, 0, 0);
+  const int64_t slack = 20 * run->comparison.unsettled;
+  const int64_t trim_slack = slack + 8 * run->comparison.near_threshold;
+  row.counts[0] = run->comparison.edges;
+  row.counts[1] = run->comparison.components;
+  row.counts[2] = run->surface.point_count;
+  row.counts[3] = run->surface.triangle_count;
+  row.residual = run->comparison.residual;
+  case_release(run);
+  if (at->options.field != MCOR_WEIGHT_SUM)
+  {
+    run->mode = "trimmed";
+    good = case_extract(suite, run, 1, 0) && good;
+    row.counts[4] = run->surface.point_count;
+    row.counts[5] = run->surface.triangle_count;
+    row.counts[6] = run->comparison.trim_vertices;
+    case_release(run);
+  }
+  if (!at->skip_pairs)
+  {
+    run->mode = "pairs";
+    good = case_extract(suite, run, 0, 1) && good;
+    row.counts[7] = run->surface.point_count;
+    case_release(run);
+  }
+  return case_check_row(suite, &row, slack, trim_slack) && good;
+}
+
+int oracle_run_case(oracle_suite* suite, const oracle_case* at)
+{
+  char message[256];
+  oracle_reference reference;
+  case_run run;
+  if (!oracle_wants_case(suite, at->name))
+  {
+    return 1;
+  }
+  ++suite->cases;
+  int good = oracle_create_reference(&reference, &at->input, &at->options,
+    at->node_limit > 0 ? at->node_limit : 60000000, message);
+  if (!good)
+  {
+    printf("  FAILED: %s: the oracle has %s\n", at->name, message);
+  }
+  else
+  {
+    run.at = at;
+    run.reference = &reference;
+    good = case_run_modes(suite, at, &run);
+    oracle_free_reference(&reference);
+  }
+  suite->failures += !good;
+  fflush(stdout);
+  return good;
+}

@@ -1,0 +1,55 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef oracle_case_h
+#define oracle_case_h
+
+/* Runs the library and the oracle on the same particles, prints one line per extraction, compares,
+ * and keeps the table of results. Shared by the test programs. */
+
+#include "mcor.h"
+#include "oracle_compare.h"
+#include "oracle_results.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+  typedef struct oracle_suite
+  {
+    mcor_context* context;
+    results_table results;
+    int update;         /* rewrite rows instead of comparing */
+    const char* filter; /* run only cases whose name contains it; NULL: all */
+    int cases, failures;
+  } oracle_suite;
+
+  /* Command line: --results FILE [--update] [--case SUBSTRING] [--device NAME]. 0 after a message if
+   * the suite cannot run. */
+  int oracle_begin_suite(oracle_suite* suite, int argc, char** argv);
+  /* Saves the table if asked to; prints the summary; the exit status of the program. */
+  int oracle_end_suite(oracle_suite* suite);
+  int oracle_wants_case(const oracle_suite* suite, const char* name);
+
+  /* The defaults of mcor.h with every optional array on and one iso value, borrowed. */
+  mcor_options oracle_case_options(const double* iso);
+
+  typedef struct oracle_case
+  {
+    char name[96];
+    mcor_input input;
+    mcor_options options; /* one iso value; seeds and vertex_threshold are set by the run */
+    int skip_pairs;       /* do not run with MCOR_PAIRS */
+    int rough; /* values without any smoothness, or equal to iso in places: only edges and mesh */
+    int64_t node_limit; /* 0: 60 million */
+  } oracle_case;
+
+  /* Runs complete without trimming, complete with trimming (not for the weight), and pairs; 1 if all
+   * is as it must be. */
+  int oracle_run_case(oracle_suite* suite, const oracle_case* at);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,325 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The library against the oracle on analytic particle sets: every kernel, field, cube factor and h
+ * scale on one set, every set with its fields, ways of giving volumes and smoothing lengths, scaled
+ * and shifted data, single and double precision. */
+
+#include "oracle_case.h"
+#include "particle_sets.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char* const field_names[3] = { "shepard", "sum", "weight" };
+
+/* What differs from the defaults; zero: as the set and the library have it. */
+typedef struct variant
+{
+  const char* set;
+  const char* suffix; /* of the case's name; NULL: none */
+  mcor_sph_kernel kernel;
+  mcor_field field;
+  double cube_factor, cube_size, h_scale;
+  int in_double;
+  double iso; /* used if has_iso */
+  int has_iso, rough, skip_pairs;
+} variant;
+
+static void fill_case(oracle_case* at, const variant* v, const particle_set* set, const double* iso)
+{
+  memset(at, 0, sizeof(*at));
+  at->input = particle_set_input(set);
+  at->options = oracle_case_options(iso);
+  at->options.sph_kernel = v->kernel;
+  at->options.field = v->field;
+  at->options.cube_size_factor = v->cube_factor > 0.0 ? v->cube_factor : 0.5;
+  at->options.cube_size = v->cube_size;
+  at->options.h_scale = v->h_scale > 0.0 ? v->h_scale : 1.0;
+  at->options.precision = v->in_double ? MCOR_FLOAT64 : MCOR_FLOAT32;
+  at->rough = v->rough;
+  at->skip_pairs = v->skip_pairs || v->field == MCOR_WEIGHT_SUM; /* w has no pairs to straddle */
+  snprintf(at->name, sizeof(at->name), "%s/%s/%s/c%g/h%g%s%s", v->set,
+    mcor_sph_kernel_name(v->kernel), field_names[v->field],
+    v->cube_size > 0.0 ? v->cube_size : at->options.cube_size_factor, at->options.h_scale,
+    v->suffix ? v->suffix : "", v->in_double ? "/double" : "");
+}
+
+/* Loads the set of the variant, lets `change` (or nothing) alter the case, runs it. */
+static void run_variant(oracle_suite* suite, const variant* v,
+  void (*change)(particle_set* set, oracle_case* at, double* iso))
+{
+  const particle_set_entry* entry = particle_set_find(v->set);
+  particle_set set;
+  oracle_case at;
+  memset(&set, 0, sizeof(set));
+  if (!entry || !entry->make(&set))
+  {
+    printf("  FAILED: no set %s\n", v->set);
+    ++suite->failures;
+    return;
+  }
+  double iso = v->has_iso ? v->iso : v->field == MCOR_WEIGHT_SUM ? 0.5 : entry->iso;
+  fill_case(&at, v, &set, &iso);
+  if (oracle_wants_case(suite, at.name))
+  {
+    if (change)
+    {
+      change(&set, &at, &iso);
+    }
+    oracle_run_case(suite, &at);
+  }
+  particle_set_free(&set);
+}
+
+/* ---- every combination of kernel, field, cube factor and h scale -------------------------------------- */
+
+static void run_matrix(oracle_suite* suite)
+{
+  const double cube_factors[2] = { 0.5, 1.0 };
+  const double h_scales[3] = { 1.0, 0.75, 0.5 };
+  for (int n = 0; n < MCOR_SPH_KERNEL_COUNT * 18; ++n)
+  {
+    variant v;
+    memset(&v, 0, sizeof(v));
+    v.set = "gyroid";
+    v.kernel = (mcor_sph_kernel)(n / 18);
+    v.field = (mcor_field)(n % 18 / 6);
+    v.cube_factor = cube_factors[n % 6 / 3];
+    v.h_scale = h_scales[n % 3];
+    run_variant(suite, &v, NULL);
+  }
+}
+
+/* ---- every set ---------------------------------------------------------------------------------------- */
+
+static const variant set_variants[] = {
+  { .set = "sphere" },
+  { .set = "sphere", .field = MCOR_SUM },
+  { .set = "sphere", .in_double = 1 },
+  { .set = "torus" },
+  { .set = "torus", .cube_factor = 1.0 },
+  { .set = "gyroid", .in_double = 1 },
+  { .set = "gyroid", .field = MCOR_SUM, .in_double = 1 },
+  { .set = "gyroid", .field = MCOR_WEIGHT_SUM, .in_double = 1 },
+  { .set = "gyroid", .kernel = MCOR_M_PRIME_4, .in_double = 1 },
+  { .set = "gyroid", .kernel = MCOR_QUADRATIC, .in_double = 1 },
+  { .set = "saddle" },
+  { .set = "saddle", .cube_factor = 1.0 },
+  { .set = "saddle", .field = MCOR_SUM },
+  { .set = "saddle", .kernel = MCOR_M_PRIME_4, .cube_factor = 1.0 },
+  { .set = "noise" },
+  { .set = "noise", .cube_factor = 1.0 },
+  { .set = "noise", .h_scale = 0.5 },
+  { .set = "noise", .field = MCOR_SUM },
+  { .set = "noise", .kernel = MCOR_QUADRATIC, .cube_factor = 1.0 },
+  { .set = "noise", .kernel = MCOR_M_PRIME_4, .cube_factor = 1.0 },
+  { .set = "noise", .in_double = 1 },
+  { .set = "sheets" },
+  { .set = "sheets", .field = MCOR_SUM },
+  { .set = "sheets", .field = MCOR_WEIGHT_SUM },
+  { .set = "sheets", .cube_factor = 1.0 },
+  { .set = "blobs" },
+  { .set = "blobs", .field = MCOR_SUM },
+  { .set = "blobs", .field = MCOR_SUM, .cube_factor = 0.3 },
+  { .set = "blobs", .field = MCOR_WEIGHT_SUM },
+  { .set = "drops", .field = MCOR_WEIGHT_SUM },
+  { .set = "drops", .field = MCOR_WEIGHT_SUM, .cube_factor = 1.0 },
+  { .set = "drops", .field = MCOR_WEIGHT_SUM, .h_scale = 0.5 },
+  { .set = "drops", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
+  { .set = "puddle" },
+  { .set = "puddle", .field = MCOR_SUM },
+  { .set = "puddle", .field = MCOR_WEIGHT_SUM },
+  { .set = "puddle", .in_double = 1 },
+  { .set = "variable_4" },
+  { .set = "variable_4", .field = MCOR_SUM },
+  { .set = "variable_4", .field = MCOR_WEIGHT_SUM },
+  { .set = "variable_4", .kernel = MCOR_QUINTIC_SPLINE, .cube_factor = 1.0 },
+  { .set = "variable_4", .kernel = MCOR_M_PRIME_4, .cube_factor = 1.0 },
+  { .set = "variable_16", .cube_factor = 1.0 },
+  { .set = "variable_16", .field = MCOR_WEIGHT_SUM, .cube_factor = 1.0 },
+  { .set = "variable_128", .cube_size = 0.03 },
+  { .set = "variable_128", .field = MCOR_WEIGHT_SUM, .cube_size = 0.03 },
+  { .set = "single", .field = MCOR_WEIGHT_SUM },
+  { .set = "single", .field = MCOR_SUM },
+  { .set = "coincident" },
+  { .set = "coincident", .field = MCOR_SUM },
+  /* Node values equal to iso up to rounding: which edges are crossed is open, but the mesh must be
+   * whole and every vertex on the surface. */
+  { .set = "on_nodes", .rough = 1 },
+  { .set = "on_nodes", .field = MCOR_SUM, .rough = 1 },
+  { .set = "on_nodes", .rough = 1, .in_double = 1 },
+  { .set = "plateau", .rough = 1, .skip_pairs = 1 },
+};
+
+/* ---- how data are given --------------------------------------------------------------------------------- */
+
+static void ignore_solids(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)set;
+  (void)iso;
+  at->input.ignore_solids = 1;
+}
+
+static void no_volume(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)set;
+  (void)iso;
+  at->input.has_volume = 0;
+}
+
+/* The volume array is read as mass: each particle then has its own. */
+static void mass_alone(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)iso;
+  at->input.has_volume = 0;
+  at->input.has_mass = 1;
+  at->input.mass = particle_array(set->volume, 1, 0.0);
+}
+
+static void mass_and_density(particle_set* set, oracle_case* at, double* iso)
+{
+  mass_alone(set, at, iso);
+  at->input.has_density = 1;
+  at->input.density = particle_array(NULL, 1, 0.9);
+}
+
+static void support_radius(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)iso;
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    set->smoothing_length[j] *= mcor_support_factor(at->options.sph_kernel);
+  }
+  at->input.smoothing_length_is_support_radius = 1;
+}
+
+static void constant_length(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)set;
+  (void)iso;
+  at->input.smoothing_length = particle_array(NULL, 1, 0.13);
+}
+
+static void vector_magnitude(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)iso;
+  at->input.scalar = particle_array(set->position, 3, 0.0);
+  at->input.scalar_component = MCOR_MAGNITUDE;
+}
+
+static void vector_component(particle_set* set, oracle_case* at, double* iso)
+{
+  vector_magnitude(set, at, iso);
+  at->input.scalar_component = 1;
+}
+
+static void vector_dot(particle_set* set, oracle_case* at, double* iso)
+{
+  vector_magnitude(set, at, iso);
+  at->input.scalar_dot = at->input.scalar;
+}
+
+/* All arrays in single precision, in place: the first half of each array then holds the floats. */
+static void single_arrays(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)iso;
+  double* const arrays[4] = { set->position, set->smoothing_length, set->volume, set->scalar };
+  for (int a = 0; a < 4; ++a)
+  {
+    for (int64_t n = 0; n < (a == 0 ? 3 : 1) * set->count; ++n)
+    {
+      const float value = (float)arrays[a][n];
+      memcpy((char*)arrays[a] + sizeof(float) * (size_t)n, &value, sizeof(value));
+    }
+  }
+  at->input.positions.type = at->input.smoothing_length.type = MCOR_FLOAT32;
+  at->input.volume.type = at->input.scalar.type = MCOR_FLOAT32;
+}
+
+/* Pressure above an ambient of 101325, the variation of interest being of size 1. */
+static void large_scalar(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)at;
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    set->scalar[j] += 101325.0;
+  }
+  *iso += 101325.0;
+}
+
+static void far_away(particle_set* set, oracle_case* at, double* iso)
+{
+  const double offset[3] = { 2e6, -1e6, 3e5 };
+  (void)at;
+  (void)iso;
+  particle_set_transform(set, 1.0, offset);
+}
+
+static void tiny(particle_set* set, oracle_case* at, double* iso)
+{
+  const double offset[3] = { 0.0, 0.0, 0.0 };
+  (void)at;
+  (void)iso;
+  particle_set_transform(set, 1e-9, offset);
+}
+
+static void huge(particle_set* set, oracle_case* at, double* iso)
+{
+  const double offset[3] = { 0.0, 0.0, 0.0 };
+  (void)at;
+  (void)iso;
+  particle_set_transform(set, 1e9, offset);
+}
+
+static void run_inputs(oracle_suite* suite)
+{
+  static const struct
+  {
+    variant v;
+    void (*change)(particle_set* set, oracle_case* at, double* iso);
+  } inputs[] = {
+    { { .set = "puddle", .suffix = "/ignore_solids" }, ignore_solids },
+    { { .set = "puddle", .suffix = "/no_volume" }, no_volume },
+    { { .set = "variable_4", .suffix = "/no_volume" }, no_volume },
+    { { .set = "variable_4", .suffix = "/mass_alone" }, mass_alone },
+    { { .set = "variable_4", .suffix = "/mass_density" }, mass_and_density },
+    { { .set = "gyroid", .suffix = "/support_radius" }, support_radius },
+    { { .set = "gyroid", .suffix = "/support_radius", .kernel = MCOR_QUINTIC_SPLINE },
+      support_radius },
+    { { .set = "gyroid", .suffix = "/constant_length" }, constant_length },
+    { { .set = "sphere", .suffix = "/magnitude" }, vector_magnitude },
+    { { .set = "sphere", .suffix = "/component", .has_iso = 1, .iso = 0.123 }, vector_component },
+    { { .set = "sphere", .suffix = "/dot", .has_iso = 1, .iso = 0.25 }, vector_dot },
+    { { .set = "gyroid", .suffix = "/float32" }, single_arrays },
+    { { .set = "gyroid", .suffix = "/large_scalar" }, large_scalar },
+    { { .set = "gyroid", .suffix = "/large_scalar", .in_double = 1 }, large_scalar },
+    { { .set = "gyroid", .suffix = "/far_away" }, far_away },
+    { { .set = "gyroid", .suffix = "/far_away", .field = MCOR_SUM }, far_away },
+    { { .set = "gyroid", .suffix = "/tiny" }, tiny },
+    { { .set = "gyroid", .suffix = "/tiny", .field = MCOR_WEIGHT_SUM }, tiny },
+    { { .set = "gyroid", .suffix = "/huge" }, huge },
+    { { .set = "gyroid", .suffix = "/huge", .field = MCOR_SUM }, huge },
+  };
+  for (size_t n = 0; n < sizeof(inputs) / sizeof(inputs[0]); ++n)
+  {
+    run_variant(suite, &inputs[n].v, inputs[n].change);
+  }
+}
+
+int main(int argc, char** argv)
+{
+  oracle_suite suite;
+  if (!oracle_begin_suite(&suite, argc, argv))
+  {
+    return 1;
+  }
+  for (size_t n = 0; n < sizeof(set_variants) / sizeof(set_variants[0]); ++n)
+  {
+    run_variant(&suite, &set_variants[n], NULL);
+  }
+  run_inputs(&suite);
+  run_matrix(&suite);
+  return oracle_end_suite(&suite);
+}

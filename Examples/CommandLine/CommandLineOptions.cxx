@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CommandLineOptions.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+namespace
+{
+
+double ToNumber(const std::string& option, const std::string& text)
+{
+  double value = 0.0;
+  if (!ParseNumber(text, value))
+  {
+    throw UsageError(option + " needs a finite number, not '" + text + "'");
+  }
+  return value;
+}
+
+double ToPositive(const std::string& option, const std::string& text)
+{
+  const double value = ToNumber(option, text);
+  if (value <= 0.0)
+  {
+    throw UsageError(option + " must be greater than 0, not " + text);
+  }
+  return value;
+}
+
+double ToThreshold(const std::string& option, const std::string& text)
+{
+  const double value = ToNumber(option, text);
+  if (value < 0.0)
+  {
+    throw UsageError(option + " must be 0 or greater, not " + text);
+  }
+  return value;
+}
+
+int ToCount(const std::string& option, const std::string& text, int smallest)
+{
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  if (result.ec != std::errc() || result.ptr != end || value < smallest)
+  {
+    throw UsageError(
+      option + " needs a whole number from " + std::to_string(smallest) + ", not '" + text + "'");
+  }
+  return value;
+}
+
+std::string ToChoice(
+  const std::string& option, const std::string& text, const std::vector<std::string>& choices)
+{
+  if (std::find(choices.begin(), choices.end(), text) == choices.end())
+  {
+    std::string list;
+    for (const std::string& choice : choices)
+    {
+      list += (list.empty() ? "" : ", ") + choice;
+    }
+    throw UsageError(option + " is one of " + list + ", not '" + text + "'");
+  }
+  return text;
+}
+
+/// An array name, or a constant, which must then be greater than 0.
+std::string ToQuantity(const std::string& option, const std::string& text)
+{
+  double value = 0.0;
+  if (ParseNumber(text, value))
+  {
+    ToPositive(option, text);
+  }
+  return text;
+}
+
+std::vector<double> ToNumbers(const std::string& option, const std::string& text)
+{
+  std::vector<double> values;
+  std::istringstream stream(text + ",");
+  for (std::string item; std::getline(stream, item, ',');)
+  {
+    values.push_back(ToNumber(option, item));
+  }
+  return values;
+}
+
+void SetFluid(CommandLineOptions& options, const std::string& option, const std::string& text)
+{
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0)
+  {
+    throw UsageError(option + " needs NAME=VALUE, not '" + text + "'");
+  }
+  options.FluidArray = text.substr(0, equals);
+  options.FluidValue = ToNumber(option, text.substr(equals + 1));
+}
+
+void SetComponent(CommandLineOptions& options, const std::string& option, const std::string& text)
+{
+  options.Magnitude = text == "magnitude";
+  if (!options.Magnitude)
+  {
+    options.Component = ToCount(option, text, 0);
+  }
+}
+
+using Options = CommandLineOptions;
+using Text = const std::string&;
+
+struct Option
+{
+  const char* Name;
+  const char* Argument; ///< what stands for it in the help; empty: the option has none
+  const char* Help;
+  std::function<void(Options&, Text option, Text value)> Set;
+};
+
+/// Every option, in the order of the help. An option without a name starts a group.
+const std::vector<Option>& AllOptions()
+{
+  static const std::vector<Option> all = {
+    { "", "", "What to contour", {} },
+    { "--scalar", "NAME", "point array to contour",
+      [](Options& o, Text, Text v) { o.Scalar = v; } },
+    { "--component", "N|magnitude", "component of a vector (from 0), or its magnitude (default)",
+      SetComponent },
+    { "--iso", "V[,V...]", "iso values; with --free-surface the weight sum (default 0.5)",
+      [](Options& o, Text n, Text v) { o.IsoValues = ToNumbers(n, v); } },
+    { "--free-surface", "", "contour the weight sum; needs no scalar",
+      [](Options& o, Text, Text) { o.FreeSurface = true; } },
+    { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum",
+      [](Options& o, Text n, Text v) {
+        o.Field = ToChoice(n, v, { "shepard", "sum" });
+      } },
+
+    { "", "", "The particles (arrays are found by their usual names if not given)", {} },
+    { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or from the spacing",
+      [](Options& o, Text n, Text v) { o.SmoothingLength = ToQuantity(n, v); } },
+    { "--volume", "NAME", "array of particle volumes",
+      [](Options& o, Text, Text v) { o.Volume = v; } },
+    { "--mass", "NAME|VALUE", "array of particle masses, or one value",
+      [](Options& o, Text n, Text v) { o.Mass = ToQuantity(n, v); } },
+    { "--density", "NAME|VALUE", "array of densities, or one value",
+      [](Options& o, Text n, Text v) { o.Density = ToQuantity(n, v); } },
+    { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
+    { "--solids", "weight|ignore", "solids count in the trimming weight (default), or not at all",
+      [](Options& o, Text n, Text v) {
+        o.IgnoreSolids = ToChoice(n, v, { "weight", "ignore" }) == "ignore";
+      } },
+
+    { "", "", "The method", {} },
+    { "--kernel", "NAME", "cubic (default), quadratic, mprime4, quintic or wendland",
+      [](Options& o, Text n, Text v) {
+        o.Kernel = ToChoice(n, v, { "cubic", "quadratic", "mprime4", "quintic", "wendland" });
+      } },
+    { "--h-scale", "S", "the kernel uses S times the smoothing length (default 1)",
+      [](Options& o, Text n, Text v) { o.HScale = ToPositive(n, v); } },
+    { "--cube-factor", "C", "cube size / smallest smoothing length (default 0.5)",
+      [](Options& o, Text n, Text v) { o.CubeFactor = ToPositive(n, v); } },
+    { "--cube-size", "D", "cube size itself, in the unit of the positions",
+      [](Options& o, Text n, Text v) { o.CubeSize = ToPositive(n, v); } },
+    { "--seeds", "pairs|complete", "the paper's seeds, or such that nothing is missed (default)",
+      [](Options& o, Text n, Text v) {
+        o.Seeds = ToChoice(n, v, { "pairs", "complete" });
+      } },
+    { "--preview", "", "no correction, normals of the triangles",
+      [](Options& o, Text, Text) { o.Preview = true; } },
+    { "--node-threshold", "T", "discard cells with a node of lower weight (default 0.1)",
+      [](Options& o, Text n, Text v) { o.NodeThreshold = ToThreshold(n, v); } },
+    { "--vertex-threshold", "T", "trim triangles where the weight is lower (default 0.5)",
+      [](Options& o, Text n, Text v) { o.VertexThreshold = ToThreshold(n, v); } },
+    { "--precision", "single|double", "of the field evaluation on the device (default single)",
+      [](Options& o, Text n, Text v) {
+        o.Precision = ToChoice(n, v, { "single", "double" });
+      } },
+
+    { "", "", "Output", {} },
+    { "--weight-sum", "", "add the array WeightSum",
+      [](Options& o, Text, Text) { o.WeightSum = true; } },
+    { "--gradients", "", "add the array Gradients",
+      [](Options& o, Text, Text) { o.Gradients = true; } },
+    { "--stats", "FILE.json", "write the statistics of the run",
+      [](Options& o, Text, Text v) { o.StatisticsFile = v; } },
+    { "--screenshot", "FILE.png", "write a picture of the surface (may need a display)",
+      [](Options& o, Text, Text v) { o.PictureFile = v; } },
+    { "--repeat", "N", "run N times from scratch, statistics of each (default 1)",
+      [](Options& o, Text n, Text v) { o.Repeat = ToCount(n, v, 1); } },
+    { "--quiet", "", "print errors and warnings only",
+      [](Options& o, Text, Text) { o.Quiet = true; } },
+
+    { "", "", "Device and help", {} },
+    { "--device", "N|SUBSTRING", "OpenCL device: number, or part of its name (see --list-devices)",
+      [](Options& o, Text, Text v) { o.Device = v; } },
+    { "--list-devices", "", "list the OpenCL devices",
+      [](Options& o, Text, Text) { o.ListDevices = true; } },
+    { "--help", "", "print this text", [](Options& o, Text, Text) { o.Help = true; } },
+    { "--version", "", "print the version", [](Options& o, Text, Text) { o.Version = true; } },
+  };
+  return all;
+}
+
+bool EndsWith(const std::string& text, const std::string& end)
+{
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// What can be said without looking at the input.
+void Check(const CommandLineOptions& options)
+{
+  if (options.Output.empty())
+  {
+    throw UsageError("needs INPUT and OUTPUT.vtp");
+  }
+  if (!EndsWith(options.Output, ".vtp"))
+  {
+    throw UsageError("the output is a .vtp file, not '" + options.Output + "'");
+  }
+  if (!options.PictureFile.empty() && !EndsWith(options.PictureFile, ".png"))
+  {
+    throw UsageError("--screenshot writes a .png file, not '" + options.PictureFile + "'");
+  }
+  if (options.FreeSurface && !options.Scalar.empty())
+  {
+    throw UsageError("--free-surface contours the weight sum; leave out --scalar");
+  }
+  if (!options.FreeSurface && options.Scalar.empty())
+  {
+    throw UsageError("needs --scalar NAME and --iso V, or --free-surface");
+  }
+  if (!options.FreeSurface && options.IsoValues.empty())
+  {
+    throw UsageError("--scalar needs an iso value, --iso V");
+  }
+}
+
+/// Takes the option at argv[i], and moves i to its last word.
+void ParseOption(CommandLineOptions& options, int argc, char* argv[], int& i)
+{
+  std::string name = argv[i];
+  std::string value;
+  const std::size_t equals = name.find('=');
+  const bool joined = equals != std::string::npos;
+  if (joined)
+  {
+    value = name.substr(equals + 1);
+    name.resize(equals);
+  }
+  const std::vector<Option>& all = AllOptions();
+  const auto option = std::find_if(
+    all.begin(), all.end(), [&](const Option& o) { return !name.empty() && name == o.Name; });
+  if (option == all.end())
+  {
+    throw UsageError("unknown option " + name);
+  }
+  const bool takesValue = option->Argument[0] != '\0';
+  if (joined && !takesValue)
+  {
+    throw UsageError(name + " takes no value");
+  }
+  if (takesValue && !joined)
+  {
+    if (i + 1 >= argc || std::string(argv[i + 1]).compare(0, 2, "--") == 0)
+    {
+      throw UsageError(name + " needs " + option->Argument);
+    }
+    value = argv[++i];
+  }
+  if (takesValue && value.empty())
+  {
+    throw UsageError(name + " needs " + option->Argument);
+  }
+  option->Set(options, name, value);
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+bool ParseNumber(const std::string& text, double& value)
+{
+  // from_chars reads 1.5 as 1.5 in every locale, but knows no leading plus.
+  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(begin, end, value);
+  return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
+}
+
+//------------------------------------------------------------------------------
+std::string CommandLineHelp()
+{
+  std::ostringstream help;
+  help << "usage: marching-correctors INPUT OUTPUT.vtp [options]\n\n"
+          "Extracts an isosurface from SPH particles. INPUT is a .vtp, .vtu or legacy .vtk file.\n";
+  for (const Option& option : AllOptions())
+  {
+    if (option.Name[0] == '\0')
+    {
+      help << "\n" << option.Help << ":\n";
+      continue;
+    }
+    std::string left = std::string("  ") + option.Name + " " + option.Argument;
+    left.resize(std::max<std::size_t>(left.size() + 1, 32), ' ');
+    help << left << option.Help << "\n";
+  }
+  help << "\nExit status: 0 a surface was written, 1 bad data or a device problem, 2 wrong usage.\n"
+          "Example: marching-correctors dam_break_45k.vtp speed.vtp --scalar Velocity --iso 1 "
+          "--fluid ParticleType=0\n";
+  return help.str();
+}
+
+//------------------------------------------------------------------------------
+CommandLineOptions ParseCommandLine(int argc, char* argv[])
+{
+  CommandLineOptions options;
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string word = argv[i];
+    if (word.compare(0, 2, "--") == 0)
+    {
+      ParseOption(options, argc, argv, i);
+    }
+    else if (options.Input.empty())
+    {
+      options.Input = word;
+    }
+    else if (options.Output.empty())
+    {
+      options.Output = word;
+    }
+    else
+    {
+      throw UsageError("does not know what to do with '" + word + "'");
+    }
+  }
+  if (!options.Help && !options.Version && !options.ListDevices)
+  {
+    Check(options);
+  }
+  return options;
+}

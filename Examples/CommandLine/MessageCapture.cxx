@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MessageCapture.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(MessageCapture);
+
+namespace
+{
+
+/// "ERROR: In F.cxx, line 1\nvtkClass (0x55): It failed.\n\n" -> "It failed.", and
+/// "Generic Warning: In F.cxx, line 1\nIt failed.\n\n" the same
+std::string Sentence(const char* text)
+{
+  std::string message = text ? text : "";
+  const std::size_t address = message.find(" (0x");
+  const std::size_t colon =
+    address == std::string::npos ? std::string::npos : message.find("): ", address);
+  if (colon != std::string::npos)
+  {
+    message.erase(0, colon + 3);
+  }
+  else if (message.find(": In ") < message.find('\n'))
+  {
+    message.erase(0, message.find('\n') + 1);
+  }
+  for (char& c : message)
+  {
+    c = c == '\n' || c == '\r' ? ' ' : c;
+  }
+  message.erase(message.find_last_not_of(' ') + 1);
+  return message;
+}
+
+}
+
+//------------------------------------------------------------------------------
+MessageCapture::MessageCapture() = default;
+MessageCapture::~MessageCapture() = default;
+
+//------------------------------------------------------------------------------
+void MessageCapture::DisplayText(const char* text)
+{
+  this->AddWarning(Sentence(text));
+}
+
+//------------------------------------------------------------------------------
+void MessageCapture::DisplayErrorText(const char* text)
+{
+  this->Errors.push_back(Sentence(text));
+}
+
+//------------------------------------------------------------------------------
+void MessageCapture::DisplayWarningText(const char* text)
+{
+  this->AddWarning(Sentence(text));
+}
+
+//------------------------------------------------------------------------------
+void MessageCapture::DisplayGenericWarningText(const char* text)
+{
+  this->AddWarning(Sentence(text));
+}
+
+//------------------------------------------------------------------------------
+// The legacy readers only warn ("Error reading ascii data") where a file ends in mid-array.
+void MessageCapture::AddWarning(const std::string& sentence)
+{
+  (sentence.compare(0, 5, "Error") == 0 ? this->Errors : this->Warnings).push_back(sentence);
+}
+
+//------------------------------------------------------------------------------
+void MessageCapture::DisplayDebugText(const char*) {}
+
+//------------------------------------------------------------------------------
+void MessageCapture::Clear()
+{
+  this->Errors.clear();
+  this->Warnings.clear();
+}

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef MessageCapture_h
+#define MessageCapture_h
+
+#include "vtkOutputWindow.h"
+
+#include <string>
+#include <vector>
+
+/// Keeps VTK's messages instead of printing them: one failure makes VTK report several times, over
+/// many lines, with source files and addresses, where the user needs one sentence.
+class MessageCapture : public vtkOutputWindow
+{
+public:
+  static MessageCapture* New();
+  vtkTypeMacro(MessageCapture, vtkOutputWindow);
+
+  void DisplayText(const char* text) override;
+  void DisplayErrorText(const char* text) override;
+  void DisplayWarningText(const char* text) override;
+  void DisplayGenericWarningText(const char* text) override;
+  void DisplayDebugText(const char* text) override;
+
+  /// What has been reported as an error since the last Clear(), without file, line and address.
+  const std::vector<std::string>& GetErrors() const { return this->Errors; }
+  const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
+  void Clear();
+
+protected:
+  MessageCapture();
+  ~MessageCapture() override;
+
+private:
+  MessageCapture(const MessageCapture&) = delete;
+  void operator=(const MessageCapture&) = delete;
+
+  void AddWarning(const std::string& sentence);
+
+  std::vector<std::string> Errors;
+  std::vector<std::string> Warnings;
+};
+
+#endif

@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RunStatistics.h"
+
+#include "CommandLineOptions.h"
+#include "JsonText.h"
+
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkStringArray.h"
+#include "vtkVersion.h"
+
+#include <cctype>
+#include <iomanip>
+#include <sstream>
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/resource.h>
+#endif
+
+namespace
+{
+
+const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
+  "DensityArray" };
+const char* const ParameterNames[] = { "IsoValues", "Field", "Kernel", "SeedMode", "Precision",
+  "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "VertexThreshold", "Tolerance",
+  "IterationLimit", "Preview" };
+const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "SmoothingLengthRange",
+  "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells", "SeedCells",
+  "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds", "Points",
+  "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+  "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
+  "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
+  "DeviceBytesPeak" };
+
+double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
+{
+  vtkDataArray* array = run->GetArray(name);
+  const int components = array ? array->GetNumberOfComponents() : 1;
+  return array && index < array->GetNumberOfValues()
+    ? array->GetComponent(index / components, static_cast<int>(index % components))
+    : 0.0;
+}
+
+std::string Text(vtkFieldData* run, const char* name)
+{
+  vtkStringArray* array = vtkStringArray::SafeDownCast(run->GetAbstractArray(name));
+  return array && array->GetNumberOfValues() > 0 ? std::string(array->GetValue(0)) : "";
+}
+
+/// Counts in full, everything else with six digits.
+std::string Format(double value)
+{
+  std::ostringstream stream;
+  const bool whole = value == static_cast<double>(static_cast<long long>(value));
+  stream << std::setprecision(whole ? 15 : 6) << value;
+  return stream.str();
+}
+
+std::string Format(vtkFieldData* run, const char* name, vtkIdType index = 0)
+{
+  return Format(Number(run, name, index));
+}
+
+std::string DescribeVolume(vtkFieldData* run)
+{
+  const std::string volume = Text(run, "VolumeArray");
+  const std::string mass = Text(run, "MassArray");
+  const std::string density = Text(run, "DensityArray");
+  if (!volume.empty())
+  {
+    return "array " + volume;
+  }
+  if (!mass.empty() && !density.empty())
+  {
+    return mass + " / " + density;
+  }
+  return mass.empty() && density.empty() ? "no array" : "array " + mass + density;
+}
+
+std::string DescribeParticles(vtkFieldData* run)
+{
+  const double low = Number(run, "SmoothingLengthRange", 0);
+  const double high = Number(run, "SmoothingLengthRange", 1);
+  const std::string array = Text(run, "SmoothingLengthArray");
+  return Format(run, "FluidParticles") + " fluid, " + Format(run, "SolidParticles") +
+    " solid; smoothing length " + Format(low) + (low < high ? " .. " + Format(high) : "") +
+    (array.empty() ? "" : " (array " + array + ")") + "; volume: " + DescribeVolume(run);
+}
+
+std::string DescribeField(vtkFieldData* run)
+{
+  const std::string scalar = Text(run, "Scalar");
+  std::string line = scalar.empty() ? "weight sum" : scalar;
+  vtkDataArray* values = run->GetArray("IsoValues");
+  for (vtkIdType i = 0; values && i < values->GetNumberOfValues(); ++i)
+  {
+    line += (i ? ", " : " = ") + Format(run, "IsoValues", i);
+  }
+  if (!scalar.empty())
+  {
+    line += "; range " + Format(run, "ScalarRange", 0) + " .. " + Format(run, "ScalarRange", 1) +
+      "; field " + Text(run, "Field");
+  }
+  return line + "; kernel " + Text(run, "Kernel") + "; cube size " + Format(run, "CubeSize");
+}
+
+std::string DescribeCorrection(vtkFieldData* run)
+{
+  if (Number(run, "Preview") != 0.0)
+  {
+    return "none (preview)";
+  }
+  return "length: mean " + Format(run, "CorrectionMean") + ", max " + Format(run, "CorrectionMax") +
+    ", deviation " + Format(run, "CorrectionStandardDeviation") + "; iterations: mean " +
+    Format(run, "IterationsMean") + ", max " + Format(run, "IterationsMax") +
+    "; largest residual " + Format(run, "ResidualMax");
+}
+
+/// "SeedCellsNotIntersected" -> "seed_cells_not_intersected", "search grid" -> "search_grid"
+std::string Key(const std::string& name)
+{
+  std::string key;
+  for (const char c : name)
+  {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isupper(byte) && !key.empty())
+    {
+      key += '_';
+    }
+    key += std::isalnum(byte) ? static_cast<char>(std::tolower(byte)) : '_';
+  }
+  return key;
+}
+
+void WriteArray(JsonText& json, vtkFieldData* run, const char* name)
+{
+  vtkDataArray* numbers = run->GetArray(name);
+  if (!numbers)
+  {
+    json.Value(Key(name), Text(run, name));
+  }
+  else if (numbers->GetNumberOfValues() == 1 && std::string(name) != "IsoValues")
+  {
+    json.Value(Key(name), Number(run, name));
+  }
+  else
+  {
+    std::vector<double> values;
+    for (vtkIdType i = 0; i < numbers->GetNumberOfValues(); ++i)
+    {
+      values.push_back(Number(run, name, i));
+    }
+    json.Value(Key(name), values);
+  }
+}
+
+template <std::size_t N>
+void WriteGroup(JsonText& json, vtkFieldData* run, const char* group, const char* const (&names)[N])
+{
+  json.Begin(group);
+  for (const char* name : names)
+  {
+    if (run->GetAbstractArray(name))
+    {
+      WriteArray(json, run, name);
+    }
+  }
+  json.End();
+}
+
+void WriteSeconds(JsonText& json, vtkFieldData* run)
+{
+  vtkDataArray* seconds = run->GetArray("Seconds");
+  json.Begin("seconds");
+  for (int i = 0; seconds && i < seconds->GetNumberOfComponents(); ++i)
+  {
+    json.Value(Key(seconds->GetComponentName(i)), seconds->GetComponent(0, i));
+  }
+  json.End();
+}
+
+double PeakResidentBytes()
+{
+#if defined(__unix__) || defined(__APPLE__)
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return static_cast<double>(usage.ru_maxrss);
+#else
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+#endif
+#else
+  return 0.0;
+#endif
+}
+
+}
+
+//------------------------------------------------------------------------------
+std::string DescribeSeconds(vtkFieldData* run)
+{
+  vtkDataArray* seconds = run->GetArray("Seconds");
+  if (!seconds)
+  {
+    return "";
+  }
+  std::ostringstream line;
+  line << "seconds     " << std::fixed << std::setprecision(3);
+  for (int i = 0; i < seconds->GetNumberOfComponents(); ++i)
+  {
+    line << (i ? ", " : "") << seconds->GetComponentName(i) << " " << seconds->GetComponent(0, i);
+  }
+  return line.str() + "\n";
+}
+
+//------------------------------------------------------------------------------
+std::string DescribeRun(vtkFieldData* run)
+{
+  if (!run->GetArray("Seconds"))
+  {
+    return "";
+  }
+  std::ostringstream text;
+  text << "particles   " << DescribeParticles(run) << "\n"
+       << "contour     " << DescribeField(run) << "\n"
+       << "device      " << Text(run, "Device") << " (" << Text(run, "Platform") << ")\n"
+       << "cells       " << Format(run, "VirtualCells") << " virtual, " << Format(run, "SeedCells")
+       << " seeds (" << Format(run, "SeedCellsNotIntersected") << " not intersected), "
+       << Format(run, "CellsUsed") << " used\n"
+       << "correction  " << DescribeCorrection(run) << "\n"
+       << "surface     " << Format(run, "Points") << " points, " << Format(run, "Triangles")
+       << " triangles (" << Format(run, "TrianglesBeforeTrimming") << " before trimming)\n";
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string StatisticsAsJson(const CommandLineOptions& options,
+  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds)
+{
+  vtkFieldData* last = runs.back();
+  JsonText json;
+  json.Begin("");
+  json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
+  json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
+  json.Value("input", options.Input);
+  json.Value("output", options.Output);
+  json.Value("device", Text(last, "Device"));
+  json.Value("platform", Text(last, "Platform"));
+  WriteGroup(json, last, "arrays", ArrayNames);
+  WriteGroup(json, last, "parameters", ParameterNames);
+  if (!options.FluidArray.empty())
+  {
+    json.Begin("fluid");
+    json.Value("array", options.FluidArray);
+    json.Value("value", options.FluidValue);
+    json.Value("solids", std::string(options.IgnoreSolids ? "ignore" : "weight"));
+    json.End();
+  }
+  WriteGroup(json, last, "statistics", StatisticNames);
+  WriteSeconds(json, last);
+  json.Value("wall_seconds", wallSeconds.back());
+  json.BeginList("runs");
+  for (std::size_t i = 0; i < runs.size(); ++i)
+  {
+    json.Begin("");
+    WriteSeconds(json, runs[i]);
+    WriteGroup(json, runs[i], "statistics", StatisticNames);
+    json.Value("wall_seconds", wallSeconds[i]);
+    json.End();
+  }
+  json.EndList();
+  json.Value("peak_resident_bytes", PeakResidentBytes());
+  json.End();
+  return json.Get() + "\n";
+}

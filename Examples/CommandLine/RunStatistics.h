@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef RunStatistics_h
+#define RunStatistics_h
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+struct CommandLineOptions;
+class vtkFieldData;
+
+/// What a run's field data says, as a few lines to read; empty if the run had no particles to use.
+std::string DescribeRun(vtkFieldData* run);
+
+/// "seconds     input 0.010, search grid 0.020, ..., total 0.500\n", or empty as above.
+std::string DescribeSeconds(vtkFieldData* run);
+
+/// The statistics of the last of `runs` as JSON, with the seconds of each. wallSeconds has one
+/// entry per run: the time of the filter as a whole, with what VTK adds to the phases.
+std::string StatisticsAsJson(const CommandLineOptions& options,
+  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds);
+
+#endif

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfacePicture.h"
+
+#include "MessageCapture.h"
+
+#include "vtkActor.h"
+#include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkLightKit.h"
+#include "vtkNew.h"
+#include "vtkOutlineSource.h"
+#include "vtkPNGWriter.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkWindowToImageFilter.h"
+
+#include <stdexcept>
+
+#if defined(__unix__)
+#include <dlfcn.h>
+#endif
+
+namespace
+{
+
+/// False only where it is certain that an X server is needed and cannot be reached. X is asked for
+/// in the running program, since only VTK's rendering library knows whether it is linked to it.
+bool HasDisplay(vtkRenderWindow* window)
+{
+#if defined(__unix__)
+  if (window->IsA("vtkXOpenGLRenderWindow"))
+  {
+    using OpenType = void* (*)(const char*);
+    using CloseType = int (*)(void*);
+    const auto open = reinterpret_cast<OpenType>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
+    const auto close = reinterpret_cast<CloseType>(dlsym(RTLD_DEFAULT, "XCloseDisplay"));
+    if (open && close)
+    {
+      void* display = open(nullptr);
+      if (display)
+      {
+        close(display);
+      }
+      return display != nullptr;
+    }
+  }
+#endif
+  (void)window;
+  return true;
+}
+
+void AddSurface(vtkRenderer* renderer, vtkPolyData* surface)
+{
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(surface);
+  vtkDataArray* scalars = surface->GetPointData()->GetScalars();
+  double range[2] = { 0.0, 0.0 };
+  if (scalars && scalars->GetNumberOfTuples() > 0)
+  {
+    scalars->GetRange(range);
+  }
+  // The scalars are the iso value: colours tell several surfaces apart, and one needs none.
+  mapper->SetScalarVisibility(range[0] < range[1]);
+  mapper->SetScalarRange(range);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(0.36, 0.60, 0.85);
+  actor->GetProperty()->SetSpecular(0.25);
+  actor->GetProperty()->SetSpecularPower(30.0);
+  renderer->AddActor(actor);
+}
+
+void AddOutline(vtkRenderer* renderer, vtkPointSet* particles)
+{
+  vtkNew<vtkOutlineSource> outline;
+  outline->SetBounds(particles->GetBounds());
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(outline->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(0.45, 0.45, 0.45);
+  actor->GetProperty()->LightingOff();
+  renderer->AddActor(actor);
+}
+
+}
+
+//------------------------------------------------------------------------------
+void WritePicture(
+  const std::string& file, vtkPolyData* surface, vtkPointSet* particles, MessageCapture* messages)
+{
+  messages->Clear();
+  vtkNew<vtkRenderWindow> window;
+  if (!HasDisplay(window))
+  {
+    throw std::runtime_error(
+      file + " could not be written: rendering needs a display; try xvfb-run -a");
+  }
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(1.0, 1.0, 1.0);
+  AddSurface(renderer, surface);
+  AddOutline(renderer, particles);
+  // A headlight alone leaves what faces sideways nearly black.
+  vtkNew<vtkLightKit> lights;
+  lights->AddLightsToRenderer(renderer);
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SetSize(1280, 800);
+  window->AddRenderer(renderer);
+  vtkCamera* camera = renderer->GetActiveCamera();
+  renderer->ResetCamera();
+  camera->Azimuth(-25.0);
+  camera->Elevation(22.0);
+  renderer->ResetCamera();
+  camera->Zoom(1.3);
+  window->Render();
+
+  vtkNew<vtkWindowToImageFilter> image;
+  image->SetInput(window);
+  image->ReadFrontBufferOff();
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetFileName(file.c_str());
+  writer->SetInputConnection(image->GetOutputPort());
+  writer->Write();
+  if (writer->GetErrorCode() != 0 || !messages->GetErrors().empty())
+  {
+    throw std::runtime_error(file + " could not be written" +
+      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+  }
+}

@@ -1,0 +1,312 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The command line program: particles from a file, surface to a file. See --help.
+#include "CommandLineOptions.h"
+#include "MessageCapture.h"
+#include "ParticleFile.h"
+#include "RunStatistics.h"
+#include "SurfacePicture.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkFieldData.h"
+#include "vtkLogger.h"
+#include "vtkMarchingCorrectors.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkVersion.h"
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <unistd.h>
+#endif
+
+namespace
+{
+
+const char* const ProgramName = "marching-correctors";
+
+bool IsTerminal(FILE* stream)
+{
+#if defined(__unix__) || defined(__APPLE__)
+  return isatty(fileno(stream)) != 0;
+#else
+  (void)stream;
+  return false;
+#endif
+}
+
+void ShowProgress(vtkObject* caller, unsigned long, void*, void*)
+{
+  auto* filter = static_cast<vtkMarchingCorrectors*>(caller);
+  const char* phase = filter->GetProgressText();
+  std::fprintf(stderr, "\r\033[K%3.0f %% %s", 100.0 * filter->GetProgress(), phase ? phase : "");
+  std::fflush(stderr);
+}
+
+/// True, and the value, where the text is a constant and not the name of an array of the input.
+bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
+{
+  return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
+}
+
+void SetParticles(
+  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
+{
+  double value = 0.0;
+  if (options.SmoothingLength == "estimate" && !particles->GetPointData()->HasArray("estimate"))
+  {
+    filter->EstimateSmoothingLengthOn();
+  }
+  else if (IsConstant(options.SmoothingLength, particles, value))
+  {
+    filter->SetSmoothingLength(value);
+  }
+  else
+  {
+    filter->SetSmoothingLengthArrayName(options.SmoothingLength.c_str());
+  }
+  filter->SetVolumeArrayName(options.Volume.c_str());
+  if (IsConstant(options.Mass, particles, value))
+  {
+    filter->SetMass(value);
+  }
+  else
+  {
+    filter->SetMassArrayName(options.Mass.c_str());
+  }
+  if (IsConstant(options.Density, particles, value))
+  {
+    filter->SetDensity(value);
+  }
+  else
+  {
+    filter->SetDensityArrayName(options.Density.c_str());
+  }
+  filter->SetFluidArrayName(options.FluidArray.c_str());
+  filter->SetFluidValue(options.FluidValue);
+  filter->SetIgnoreSolids(options.IgnoreSolids);
+}
+
+void SetContour(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
+{
+  const int count = static_cast<int>(options.IsoValues.size());
+  filter->SetFreeSurface(options.FreeSurface);
+  if (options.FreeSurface)
+  {
+    if (count > 0)
+    {
+      filter->SetNumberOfFreeSurfaceValues(count);
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      filter->SetFreeSurfaceValue(i, options.IsoValues[static_cast<std::size_t>(i)]);
+    }
+    return;
+  }
+  filter->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, options.Scalar.c_str());
+  filter->SetScalarComponent(
+    options.Magnitude ? static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) : options.Component);
+  filter->SetNumberOfContours(count);
+  for (int i = 0; i < count; ++i)
+  {
+    filter->SetValue(i, options.IsoValues[static_cast<std::size_t>(i)]);
+  }
+}
+
+void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
+{
+  filter->SetKernelByName(options.Kernel.c_str());
+  filter->SetShepardNormalization(options.Field == "shepard");
+  filter->SetSeedMode(
+    options.Seeds == "pairs" ? vtkMarchingCorrectors::PAIRS : vtkMarchingCorrectors::COMPLETE);
+  filter->SetPrecision(options.Precision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
+                                                     : vtkAlgorithm::SINGLE_PRECISION);
+  filter->SetHScaleFactor(options.HScale);
+  filter->SetCubeSizeFactor(options.CubeFactor);
+  filter->SetCubeSize(options.CubeSize);
+  filter->SetPreview(options.Preview);
+  filter->SetNodeThreshold(options.NodeThreshold);
+  filter->SetVertexThreshold(options.VertexThreshold);
+  filter->SetComputeWeightSum(options.WeightSum);
+  filter->SetComputeGradients(options.Gradients);
+  filter->SetDevice(options.Device.c_str());
+}
+
+struct Run
+{
+  vtkSmartPointer<vtkPolyData> Surface;
+  double WallSeconds = 0.0;
+};
+
+/// One run from scratch. Throws std::runtime_error with the filter's sentence.
+Run Extract(const CommandLineOptions& options, vtkPointSet* particles, MessageCapture* messages)
+{
+  messages->Clear();
+  vtkNew<vtkMarchingCorrectors> filter;
+  SetParticles(filter, options, particles);
+  SetContour(filter, options);
+  SetMethod(filter, options);
+  filter->SetInputData(particles);
+  const bool progress = !options.Quiet && IsTerminal(stderr);
+  if (progress)
+  {
+    vtkNew<vtkCallbackCommand> observer;
+    observer->SetCallback(ShowProgress);
+    filter->AddObserver(vtkCommand::ProgressEvent, observer);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  filter->Update();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  if (progress)
+  {
+    std::fputs("\r\033[K", stderr);
+  }
+  const std::string error = filter->GetErrorMessage();
+  if (!error.empty() || !messages->GetErrors().empty())
+  {
+    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
+  }
+  Run run;
+  run.Surface = filter->GetOutput();
+  run.WallSeconds = elapsed.count();
+  return run;
+}
+
+void WarnIfEmpty(vtkPolyData* surface, MessageCapture* messages)
+{
+  if (surface->GetNumberOfCells() > 0)
+  {
+    return;
+  }
+  std::string why;
+  if (!messages->GetWarnings().empty())
+  {
+    why = messages->GetWarnings().front();
+  }
+  else if (vtkDataArray* range = surface->GetFieldData()->GetArray("ScalarRange"))
+  {
+    vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
+    std::ostringstream stream;
+    stream << "no part of the field reaches the iso value";
+    if (values && values->GetNumberOfValues() == 1)
+    {
+      stream << " " << values->GetComponent(0, 0) << "; the particles have values from "
+             << range->GetComponent(0, 0) << " to " << range->GetComponent(0, 1);
+    }
+    why = stream.str();
+  }
+  std::cerr << ProgramName << ": warning: the surface is empty" << (why.empty() ? "" : ": ") << why
+            << "\n";
+}
+
+void ListDevices()
+{
+  const std::string devices = vtkMarchingCorrectors::ListDevices();
+  if (devices.empty())
+  {
+    throw std::runtime_error("there is no OpenCL device; a CPU becomes one with PoCL (Debian: "
+                             "pocl-opencl-icd)");
+  }
+  std::cout << devices;
+}
+
+void Execute(const CommandLineOptions& options)
+{
+  vtkNew<MessageCapture> messages;
+  vtkOutputWindow::SetInstance(messages);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  if (options.ListDevices)
+  {
+    ListDevices();
+    return;
+  }
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.Input, options.Output, ignored))
+  {
+    throw UsageError("the output would overwrite the input");
+  }
+  for (const std::string& file : { options.Output, options.StatisticsFile, options.PictureFile })
+  {
+    if (!file.empty())
+    {
+      CheckWritable(file);
+    }
+  }
+  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Input, messages);
+  std::vector<vtkSmartPointer<vtkFieldData>> runs;
+  std::vector<double> wallSeconds;
+  vtkSmartPointer<vtkPolyData> surface;
+  for (int i = 0; i < options.Repeat; ++i)
+  {
+    surface = nullptr; // not two at once: the peak of memory is a statistic
+    Run run = Extract(options, particles, messages);
+    surface = run.Surface;
+    runs.emplace_back(surface->GetFieldData());
+    wallSeconds.push_back(run.WallSeconds);
+    if (!options.Quiet)
+    {
+      std::cout << (i == 0 ? DescribeRun(runs.back()) : "") << DescribeSeconds(runs.back())
+                << std::flush;
+    }
+  }
+  WarnIfEmpty(surface, messages);
+  WriteSurface(options.Output, surface, messages);
+  if (!options.StatisticsFile.empty())
+  {
+    WriteText(options.StatisticsFile, StatisticsAsJson(options, runs, wallSeconds));
+  }
+  if (!options.PictureFile.empty())
+  {
+    WritePicture(options.PictureFile, surface, particles, messages);
+  }
+}
+
+}
+
+int main(int argc, char* argv[])
+{
+  try
+  {
+    const CommandLineOptions options = ParseCommandLine(argc, argv);
+    if (options.Help)
+    {
+      std::cout << CommandLineHelp();
+    }
+    else if (options.Version)
+    {
+      std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
+                << ")\n";
+    }
+    else
+    {
+      Execute(options);
+    }
+  }
+  catch (const UsageError& error)
+  {
+    std::cerr << ProgramName << ": " << error.what() << " (see --help)\n";
+    return 2;
+  }
+  catch (const std::bad_alloc&)
+  {
+    std::cerr << ProgramName << ": host memory ran out\n";
+    return 1;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << ProgramName << ": " << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}

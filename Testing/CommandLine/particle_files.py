@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Particle files written by hand, as ASCII: no VTK between a test and the bytes that it means."""
+import math
+
+SPACING = 0.1
+
+
+def lattice(n=10):
+    """A block of n^3 particles around the origin: positions and the arrays a simulation writes."""
+    offset = (n - 1) / 2
+    points = [
+        ((i - offset) * SPACING, (j - offset) * SPACING, (k - offset) * SPACING)
+        for k in range(n) for j in range(n) for i in range(n)
+    ]
+    count = len(points)
+    arrays = {
+        "SmoothingLength": [1.3 * SPACING] * count,
+        "Mass": [1000 * SPACING ** 3] * count,
+        "Density": [1000.0] * count,
+        "Radius": [math.sqrt(x * x + y * y + z * z) for x, y, z in points],
+        "Velocity": [tuple(p) for p in points],
+        "Kind": [0 if p[0] < 0.2 else 1 for p in points],
+    }
+    return points, arrays
+
+
+def text_of(values):
+    flat = (v for value in values for v in (value if isinstance(value, tuple) else (value,)))
+    return " ".join("nan" if v != v else repr(v) for v in flat)
+
+
+def components(values):
+    return len(values[0]) if values and isinstance(values[0], tuple) else 1
+
+
+def xml_array(name, values, kind="Float64", width=None):
+    width = width or components(values)
+    return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" '
+            f'format="ascii">{text_of(values)}</DataArray>')
+
+
+def string_array(name, texts):
+    codes = " ".join(" ".join(str(ord(c)) for c in text) + " 0" for text in texts)
+    return f'<Array type="String" Name="{name}" format="ascii">{codes}</Array>'
+
+
+def write_vtp(path, points, arrays, extra=""):
+    """`extra` is more XML for the point data."""
+    data = "".join(xml_array(name, values) for name, values in arrays.items())
+    path.write_text(
+        '<?xml version="1.0"?><VTKFile type="PolyData" version="0.1" byte_order="LittleEndian">'
+        f'<PolyData><Piece NumberOfPoints="{len(points)}" NumberOfVerts="0" NumberOfLines="0" '
+        f'NumberOfStrips="0" NumberOfPolys="0"><PointData>{data}{extra}</PointData>'
+        f'<Points>{xml_array("Points", points, width=3)}</Points></Piece></PolyData></VTKFile>')
+
+
+def write_vtu(path, points, arrays):
+    """An unstructured grid of vertices, as many SPH codes write."""
+    count = len(points)
+    cells = (xml_array("connectivity", list(range(count)), "Int64") +
+             xml_array("offsets", list(range(1, count + 1)), "Int64") +
+             xml_array("types", [1] * count, "UInt8"))
+    data = "".join(xml_array(name, values) for name, values in arrays.items())
+    path.write_text(
+        '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" '
+        f'byte_order="LittleEndian"><UnstructuredGrid><Piece NumberOfPoints="{count}" '
+        f'NumberOfCells="{count}"><PointData>{data}</PointData>'
+        f'<Points>{xml_array("Points", points)}</Points><Cells>{cells}</Cells></Piece>'
+        '</UnstructuredGrid></VTKFile>')
+
+
+def write_legacy(path, points, arrays):
+    """Scalars and vectors as a simulation writes them, several of each."""
+    lines = ["# vtk DataFile Version 3.0", "particles", "ASCII", "DATASET POLYDATA",
+             f"POINTS {len(points)} double", text_of(points), f"POINT_DATA {len(points)}"]
+    for name, values in arrays.items():
+        if components(values) == 3:
+            lines += [f"VECTORS {name} double", text_of(values)]
+        else:
+            lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", text_of(values)]
+    path.write_text("\n".join(lines) + "\n")

@@ -1,0 +1,459 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program marching-correctors: test_command_line.py PROGRAM [unittest arguments].
+
+What it computes is tested elsewhere; here it is files, options, sentences and exit statuses.
+"""
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import particle_files as files
+
+PROGRAM = ""
+ISO = ["--scalar", "Radius", "--iso", "0.3"]
+
+
+class CommandLineTest(unittest.TestCase):
+    """Runs the program in a directory of its own, with a small good input beside it."""
+
+    def setUp(self):
+        self.directory = pathlib.Path(tempfile.mkdtemp(prefix="mcor-cli-"))
+        self.addCleanup(shutil.rmtree, self.directory)
+        self.input = self.directory / "particles.vtp"
+        self.output = self.directory / "surface.vtp"
+        self.points, self.arrays = files.lattice()
+        files.write_vtp(self.input, self.points, self.arrays)
+
+    def run_program(self, *arguments, **options):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.directory, text=True,
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=300, **options)
+
+    def extract(self, *options, source=None, **run_options):
+        return self.run_program(source or self.input, self.output, *options, **run_options)
+
+    def succeed(self, *options, source=None):
+        """Runs the program, which must succeed without a word on stderr; returns its statistics."""
+        statistics = self.directory / "statistics.json"
+        result = self.extract(*options, "--stats", statistics, source=source)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("</VTKFile>", self.output.read_text())
+        return json.loads(statistics.read_text())
+
+    def refuse(self, result, status, sentence):
+        """One line on stderr that matches, nothing else, and no output file of any kind."""
+        self.assertRegex(result.stderr, sentence)
+        self.assertEqual(result.returncode, status, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertTrue(result.stderr.startswith("marching-correctors: "), result.stderr)
+        self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
+        left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
+        self.assertEqual(left, [])
+
+
+class Usage(CommandLineTest):
+    """Wrong usage: exit status 2."""
+
+    def test_help_names_every_option(self):
+        result = self.run_program("--help")
+        self.assertEqual(result.returncode, 0)
+        for option in """--scalar --component --iso --free-surface --smoothing-length --volume
+                --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
+                --field --seeds --preview --node-threshold --vertex-threshold --weight-sum
+                --gradients --device --list-devices --stats --screenshot --repeat --quiet --help
+                --version --precision""".split():
+            self.assertRegex(result.stdout, rf"(?m)^  {option} ")
+
+    def test_version(self):
+        result = self.run_program("--version")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stdout, r"^marching-correctors \d+\.\d+\.\d+ \(VTK \d+\.\d+\.\d+\)\n$")
+
+    def test_list_devices(self):
+        result = self.run_program("--list-devices")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"^0: .+ \(.+\)\n")
+
+    def test_wrong_usage(self):
+        good = [self.input, self.output]
+        for arguments, sentence in [
+            ([], "needs INPUT and OUTPUT"),
+            ([self.input], "needs INPUT and OUTPUT"),
+            ([*good, "third", *ISO], "does not know what to do with 'third'"),
+            ([self.input, "surface.stl", *ISO], "output is a .vtp file, not 'surface.stl'"),
+            ([self.input, self.input, *ISO], "would overwrite the input"),
+            ([*good], "needs --scalar NAME and --iso V, or --free-surface"),
+            ([*good, "--scalar", "Radius"], "needs an iso value"),
+            ([*good, "--free-surface", "--scalar", "Radius"], "leave out --scalar"),
+            ([*good, *ISO, "--sharp"], "unknown option --sharp"),
+            ([*good, *ISO, "--preview=1"], "--preview takes no value"),
+            ([*good, "--free-surface", "--kernel"], "--kernel needs NAME"),
+            ([*good, "--free-surface", "--iso="], "--iso needs V"),
+            ([*good, "--scalar", "--iso", "0.3"], "--scalar needs NAME"),
+            ([*good, *ISO, "--kernel", "gauss"], "--kernel is one of cubic, .*, not 'gauss'"),
+            ([*good, *ISO, "--field", "mean"], "--field is one of shepard, sum, not 'mean'"),
+            ([*good, *ISO, "--seeds", "all"], "--seeds is one of pairs, complete, not 'all'"),
+            ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, not 'x'"),
+            ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
+            ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
+            ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
+            ([*good, "--scalar", "Radius", "--iso", "nan"], "--iso needs a finite number"),
+            ([*good, *ISO, "--component", "-1"], "--component needs a whole number"),
+            ([*good, *ISO, "--repeat", "0"], "--repeat needs a whole number from 1, not '0'"),
+            ([*good, *ISO, "--h-scale", "0"], "--h-scale must be greater than 0"),
+            ([*good, *ISO, "--cube-factor", "-1"], "--cube-factor must be greater than 0"),
+            ([*good, *ISO, "--cube-size", "inf"], "--cube-size needs a finite number"),
+            ([*good, *ISO, "--node-threshold", "-1"], "--node-threshold must be 0 or greater"),
+            ([*good, *ISO, "--vertex-threshold", "x"], "--vertex-threshold needs a finite number"),
+            ([*good, *ISO, "--smoothing-length", "-2"], "--smoothing-length must be greater than 0"),
+            ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
+            ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
+            ([*good, *ISO, "--fluid", "Kind"], "--fluid needs NAME=VALUE"),
+            ([*good, *ISO, "--fluid", "Kind=x"], "--fluid needs a finite number, not 'x'"),
+            ([*good, *ISO, "--screenshot", "a.jpg"], "--screenshot writes a .png file"),
+        ]:
+            with self.subTest(sentence):
+                self.refuse(self.run_program(*arguments), 2, sentence)
+
+
+class BadData(CommandLineTest):
+    """Bad data, files and devices: exit status 1 and a sentence of their own."""
+
+    def refuse_with(self, sentence, *options, **extract_options):
+        self.refuse(self.extract(*(options or ISO), **extract_options), 1, sentence)
+
+    def refuse_changed(self, sentence, changes, *options):
+        """With some arrays replaced, or left out where the value is None."""
+        arrays = {n: v for n, v in {**self.arrays, **changes}.items() if v is not None}
+        files.write_vtp(self.input, self.points, arrays)
+        self.refuse_with(sentence, *options)
+
+    def spoil(self, name, index, value):
+        values = list(self.arrays[name])
+        values[index] = value
+        return {name: values}
+
+    def test_no_points(self):
+        files.write_vtp(self.input, [], {})
+        self.refuse_with("particles.vtp holds no points")
+
+    def test_missing_arrays(self):
+        self.refuse_with("no point array 'Temperature' for the scalar.*Radius",
+                       "--scalar", "Temperature", "--iso", "1")
+        for option, role in [("--smoothing-length", "smoothing length"), ("--volume", "volume"),
+                             ("--mass", "mass"), ("--density", "density")]:
+            with self.subTest(option):
+                self.refuse_with(f"no point array 'Nothing' for the {role}", *ISO, option, "Nothing")
+        self.refuse_with("no point array 'Nothing' for the fluid", *ISO, "--fluid", "Nothing=0")
+
+    def test_no_smoothing_length(self):
+        self.refuse_changed("no smoothing length", {"SmoothingLength": None})
+
+    def test_mistyped_arrays(self):
+        names = files.string_array("Names", ["a"] * len(self.points))
+        files.write_vtp(self.input, self.points, self.arrays, names)
+        self.refuse_with("'Names' does not hold numbers", "--scalar", "Names", "--iso", "1")
+        self.refuse_with("'Names' does not hold numbers", *ISO, "--mass", "Names")
+        self.refuse_with("'Velocity' has 3 components", *ISO, "--smoothing-length", "Velocity")
+        self.refuse_with("'Velocity' has no component 3", "--scalar", "Velocity", "--component", "3",
+                       "--iso", "0.1")
+
+    def test_wrongly_sized_array(self):
+        self.refuse_changed("particles.vtp cannot be read", {"Radius": self.arrays["Radius"][:-1]})
+
+    def test_smoothing_length_not_positive(self):
+        for value in (0.0, -0.1):
+            with self.subTest(value):
+                self.refuse_changed("(?i)smoothing length.* 17 ", self.spoil("SmoothingLength", 17, value))
+
+    def test_volume_not_positive(self):
+        for name in ("Mass", "Density"):
+            with self.subTest(name):
+                self.refuse_changed(f"(?i){name}.* 5 ", self.spoil(name, 5, 0.0))
+
+    def test_values_not_finite(self):
+        for name in ("SmoothingLength", "Mass", "Density", "Radius"):
+            for value in (float("nan"), float("inf")):
+                with self.subTest(name, value=value):
+                    self.refuse_changed(f"(?i) 23 .*'{name}'", self.spoil(name, 23, value))
+
+    def test_positions_not_finite(self):
+        self.points[11] = (0.0, float("nan"), 0.0)
+        self.refuse_changed("(?i)position.* 11 ", {})
+
+    def test_lattice_overflow(self):
+        self.refuse_with("(?i)cube size", *ISO, "--cube-size", "1e-300")
+        self.refuse_with("(?i)cube size", *ISO, "--cube-size", "1e-15")
+
+    def test_too_little_memory(self):
+        self.refuse_with("(?i)memory", *ISO, "--cube-size", "1e-6")
+
+    def test_device(self):
+        self.refuse_with("(?i)device.*nonesuch", *ISO, "--device", "nonesuch")
+        self.refuse_with("(?i)device.*99", *ISO, "--device", "99")
+
+    def test_no_platform(self):
+        # The ICD loader of Debian then finds no driver at all.
+        environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere")}
+        self.refuse_with("(?i)no OpenCL", env=environment)
+        self.refuse(self.run_program("--list-devices", env=environment), 1, "no OpenCL device")
+
+    def test_unreadable_files(self):
+        self.refuse_with("nothing.vtp cannot be read: No such file",
+                       source=self.directory / "nothing.vtp")
+        self.refuse_with("cannot be read: it is a directory", source=self.directory)
+        table = self.directory / "table.csv"
+        table.write_text("x,y,z\n")
+        self.refuse_with("table.csv is not a .vtp, .vtu or .vtk file", source=table)
+
+    def test_no_vtk_files(self):
+        for name in ("text.vtp", "text.vtu", "text.vtk"):
+            path = self.directory / name
+            for text in ("", "hello\n", "<VTKFile></VTKFile>\n"):
+                with self.subTest(name, text=text):
+                    path.write_text(text)
+                    self.refuse_with(f"{name} (cannot be read|is not|holds)", source=path)
+
+    def test_truncated_files(self):
+        writers = {"cut.vtp": files.write_vtp, "cut.vtu": files.write_vtu,
+                   "cut.vtk": files.write_legacy}
+        for name, write in writers.items():
+            path = self.directory / name
+            write(path, self.points, self.arrays)
+            whole = path.read_bytes()
+            for part in (0.2, 0.5, 0.9):
+                with self.subTest(name, part=part):
+                    path.write_bytes(whole[:int(part * len(whole))])
+                    self.refuse_with(f"{name} (cannot be read|is not)", source=path)
+
+    def test_not_particles(self):
+        image = self.directory / "image.vtk"
+        image.write_text("# vtk DataFile Version 3.0\nimage\nASCII\nDATASET STRUCTURED_POINTS\n"
+                         "DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n")
+        self.refuse_with("image.vtk holds a vtk.*, not particles", source=image)
+
+    def test_unwritable_files(self):
+        nowhere = self.directory / "nowhere"
+        self.refuse(self.run_program(self.input, nowhere / "surface.vtp", *ISO), 1,
+                  "surface.vtp could not be written: No such file or directory")
+        for option, name in (("--stats", "s.json"), ("--screenshot", "s.png")):
+            self.refuse_with(f"{name} could not be written: No such", *ISO, option, nowhere / name)
+        directory = self.directory / "directory.vtp"
+        directory.mkdir()
+        self.refuse(self.run_program(self.input, directory, *ISO), 1, "it is a directory")
+
+    def test_full_disk(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+        self.refuse_with("surface.vtp could not be written", preexec_fn=limit)
+
+
+class Options(CommandLineTest):
+    """Every option does what it says, as far as statistics and output show it."""
+
+    def test_summary(self):
+        result = self.extract(*ISO)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles")
+        self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
+
+    def test_quiet(self):
+        result = self.extract(*ISO, "--quiet")
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+        self.assertTrue(self.output.exists())
+
+    def test_statistics(self):
+        found = self.succeed(*ISO)
+        self.assertGreater(found["statistics"]["triangles"], 100)
+        self.assertEqual(found["statistics"]["fluid_particles"], len(self.points))
+        self.assertEqual(found["arrays"]["smoothing_length_array"], "SmoothingLength")
+        self.assertEqual(found["arrays"]["mass_array"], "Mass")
+        self.assertEqual(found["parameters"]["iso_values"], [0.3])
+        self.assertEqual(found["parameters"]["kernel"], "cubic")
+        self.assertTrue(found["device"])
+        seconds = dict(found["seconds"])
+        total = seconds.pop("total")
+        self.assertLessEqual({"search_grid", "seeds", "extraction", "correction", "trimming",
+                              "output"}, set(seconds))
+        self.assertAlmostEqual(total, sum(seconds.values()), places=6)
+
+    def test_empty_surface(self):
+        result = self.extract("--scalar", "Radius", "--iso", "99")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, "^marching-correctors: warning: the surface is empty.*99")
+        self.assertTrue(self.output.exists())
+
+    def test_no_fluid(self):
+        result = self.extract(*ISO, "--fluid", "Kind=7", "--stats", "statistics.json")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, "warning: the surface is empty.*Kind = 7")
+        json.loads((self.directory / "statistics.json").read_text())
+
+    def test_input_formats(self):
+        expected = self.succeed(*ISO)["statistics"]
+        for name, write in (("p.vtu", files.write_vtu), ("p.vtk", files.write_legacy)):
+            with self.subTest(name):
+                write(self.directory / name, self.points, self.arrays)
+                found = self.succeed(*ISO, source=self.directory / name)["statistics"]
+                for key in ("points", "triangles", "cells_used", "smoothing_length_range"):
+                    self.assertEqual(found[key], expected[key], key)
+
+    def test_free_surface(self):
+        low = self.succeed("--free-surface", "--iso", "0.3")
+        half = self.succeed("--free-surface")
+        self.assertEqual(half["parameters"]["iso_values"], [0.5])
+        self.assertEqual(half["parameters"]["field"], "weight sum")
+        self.assertGreater(low["statistics"]["cells_used"], half["statistics"]["cells_used"])
+
+    def test_several_iso_values(self):
+        first = self.succeed(*ISO)["statistics"]["triangles"]
+        second = self.succeed("--scalar", "Radius", "--iso", "0.2")["statistics"]["triangles"]
+        both = self.succeed("--scalar", "Radius", "--iso", "0.3,0.2")
+        self.assertEqual(both["statistics"]["triangles"], first + second)
+        self.assertEqual(both["parameters"]["iso_values"], [0.3, 0.2])
+
+    def test_components(self):
+        vector = ["--scalar", "Velocity", "--iso", "0.21"]
+        magnitude = self.succeed(*vector)["statistics"]
+        self.assertEqual(magnitude, self.succeed(*vector, "--component", "magnitude")["statistics"])
+        plane = self.succeed(*vector, "--component", "0")["statistics"]
+        self.assertLess(plane["scalar_range"][0], 0)
+        self.assertNotEqual(plane["triangles"], magnitude["triangles"])
+
+    def test_smoothing_length(self):
+        array = self.succeed(*ISO)["statistics"]
+        value = self.succeed(*ISO, "--smoothing-length", "0.13")
+        self.assertEqual(value["arrays"]["smoothing_length_array"], "")
+        self.assertEqual(value["statistics"]["triangles"], array["triangles"])
+        estimate = self.succeed(*ISO, "--smoothing-length", "estimate")["statistics"]
+        self.assertAlmostEqual(estimate["smoothing_length_range"][0], 0.13, delta=0.03)
+        # A number that is the name of an array means the array.
+        self.arrays["7"] = [0.13] * len(self.points)
+        files.write_vtp(self.input, self.points, self.arrays)
+        named = self.succeed(*ISO, "--smoothing-length", "7")
+        self.assertEqual(named["arrays"]["smoothing_length_array"], "7")
+
+    def test_volumes(self):
+        constant = self.succeed(*ISO, "--mass", "1", "--density", "1000")
+        self.assertEqual(constant["arrays"]["mass_array"], "")
+        expected = self.succeed(*ISO)["statistics"]["triangles"]
+        self.assertEqual(constant["statistics"]["triangles"], expected)
+        self.arrays["Space"] = [0.001] * len(self.points)
+        files.write_vtp(self.input, self.points, self.arrays)
+        volume = self.succeed(*ISO, "--volume", "Space")
+        self.assertEqual(volume["arrays"]["volume_array"], "Space")
+        self.assertEqual(volume["statistics"]["triangles"], expected)
+        named = self.succeed(*ISO, "--mass", "Mass", "--density", "Density")
+        self.assertEqual(named["arrays"]["density_array"], "Density")
+
+    def test_fluid_and_solids(self):
+        weight = self.succeed(*ISO, "--fluid", "Kind=0")
+        self.assertEqual(weight["statistics"]["fluid_particles"], 700)
+        self.assertEqual(weight["statistics"]["solid_particles"], 300)
+        self.assertEqual(weight["fluid"], {"array": "Kind", "value": 0, "solids": "weight"})
+        ignored = self.succeed(*ISO, "--fluid", "Kind=0", "--solids", "ignore")
+        self.assertLess(ignored["statistics"]["triangles"], weight["statistics"]["triangles"])
+
+    def test_kernels(self):
+        counts = set()
+        for kernel in ("cubic", "quadratic", "mprime4", "quintic", "wendland"):
+            found = self.succeed(*ISO, "--kernel", kernel)
+            self.assertEqual(found["parameters"]["kernel"], kernel)
+            counts.add(found["statistics"]["correction_mean"])
+        self.assertEqual(len(counts), 5)
+
+    def test_method_options(self):
+        for arguments, name, value in [
+            (["--h-scale", "0.75"], "h_scale_factor", 0.75),
+            (["--cube-factor", "1"], "cube_size_factor", 1),
+            (["--cube-size", "0.05"], "cube_size", 0.05),
+            (["--field", "sum"], "field", "sum"),
+            (["--seeds", "pairs"], "seed_mode", "pairs"),
+            (["--preview"], "preview", 1),
+            (["--node-threshold", "0.2"], "node_threshold", 0.2),
+            (["--vertex-threshold", "0.6"], "vertex_threshold", 0.6),
+        ]:
+            with self.subTest(name):
+                found = self.succeed(*ISO, *arguments)
+                self.assertEqual(found["parameters"][name], value)
+                self.assertGreater(found["statistics"]["triangles"], 0)
+
+    def test_double_precision(self):
+        single = self.succeed(*ISO)
+        double = self.succeed(*ISO, "--precision", "double")
+        self.assertEqual(double["parameters"]["precision"], "double")
+        self.assertEqual(single["parameters"]["precision"], "single")
+
+    def test_output_arrays(self):
+        self.succeed(*ISO)
+        plain = self.output.read_text()
+        self.succeed(*ISO, "--weight-sum", "--gradients")
+        more = self.output.read_text()
+        for name in ("WeightSum", "Gradients"):
+            self.assertNotIn(f'Name="{name}"', plain)
+            self.assertIn(f'Name="{name}"', more)
+        for name in ("Normals", "Velocity", "Kind", "Radius"):
+            self.assertIn(f'Name="{name}"', plain)
+
+    def test_repeat(self):
+        found = self.succeed(*ISO, "--repeat", "3")
+        self.assertEqual(len(found["runs"]), 3)
+        for run in found["runs"]:
+            self.assertGreater(run["seconds"]["total"], 0)
+            self.assertEqual(run["statistics"]["triangles"], found["statistics"]["triangles"])
+
+    def test_device(self):
+        first = self.run_program("--list-devices").stdout.splitlines()[0]
+        found = self.succeed(*ISO, "--device", "0")
+        self.assertIn(found["device"], first)
+        self.assertEqual(self.succeed(*ISO, "--device", found["device"])["device"], found["device"])
+
+    def test_old_output_survives_failure(self):
+        self.output.write_text("old")
+        result = self.extract("--scalar", "Nothing", "--iso", "1")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(self.output.read_text(), "old")
+
+
+class Picture(CommandLineTest):
+    """--screenshot, with and without a display."""
+
+    def test_picture(self):
+        picture = self.directory / "picture.png"
+        display = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a"]
+        result = subprocess.run([*display, PROGRAM, self.input, self.output, *ISO, "--screenshot",
+                                 picture], capture_output=True, text=True, timeout=300)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        data = picture.read_bytes()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        # A picture of nothing but the background compresses to less.
+        self.assertGreater(len(data), 20000)
+
+    def test_no_display(self):
+        environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+        for display in (None, ":4711"):
+            if display:
+                environment["DISPLAY"] = display
+            self.output.unlink(missing_ok=True)
+            result = self.extract(*ISO, "--screenshot", "p.png", env=environment)
+            self.assertTrue(self.output.exists())
+            if result.returncode == 0:
+                # A VTK that renders without X, through EGL or in memory.
+                self.assertTrue((self.directory / "p.png").exists())
+                continue
+            self.assertEqual(result.returncode, 1)
+            self.assertEqual(result.stderr, "marching-correctors: p.png could not be written: "
+                             "rendering needs a display; try xvfb-run -a\n")
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main(verbosity=2)

@@ -1,10 +1,11 @@
-# Warnings for our own sources; generated wrapping code is not held to them.
+# Warnings for our own sources; generated code is not held to them.
 option(MCOR_WERROR "Treat compiler warnings as errors" OFF)
-mark_as_advanced(MCOR_WERROR)
+
+set(mcor_warnings)
+if (NOT MSVC)
+  set(mcor_warnings -Wall -Wextra -Wshadow -Wconversion $<$<BOOL:${MCOR_WERROR}>:-Werror>)
+endif ()
 
 function (mcor_set_warnings target)
-  if (NOT MSVC)
-    target_compile_options("${target}" PRIVATE
-      -Wall -Wextra -Wshadow -Wconversion $<$<BOOL:${MCOR_WERROR}>:-Werror>)
-  endif ()
+  target_compile_options("${target}" PRIVATE ${mcor_warnings})
 endfunction ()

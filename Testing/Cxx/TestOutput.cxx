@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What the output carries: arrays, their names and types, precision of the points, field data; and
+// the filter's own state.
+#include "TestParticles.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <sstream>
+
+namespace
+{
+int failures = 0;
+
+// The particle nearest to a point, by brute force.
+vtkIdType Nearest(vtkPolyData* particles, const double x[3])
+{
+  vtkIdType best = -1;
+  double bestDistance = 1e99;
+  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    particles->GetPoint(i, p);
+    const double dx = x[0] - p[0], dy = x[1] - p[1], dz = x[2] - p[2];
+    const double distance = dx * dx + dy * dy + dz * dz;
+    if (distance < bestDistance)
+    {
+      bestDistance = distance;
+      best = i;
+    }
+  }
+  return best;
+}
+
+vtkSmartPointer<vtkPolyData> MakeParticles()
+{
+  auto cube = test::MakeCube();
+  auto vectors = test::AddArray<vtkFloatArray>(
+    cube, "Position", 3, [&](vtkIdType i, int c) { return cube->GetPoint(i)[c]; });
+  vectors->SetComponentName(1, "Height");
+  test::AddArray<vtkIdTypeArray>(
+    cube, "Id", 1, [](vtkIdType i, int) { return static_cast<double>(i); });
+  test::AddArray<vtkUnsignedCharArray>(
+    cube, vtkDataSetAttributes::GhostArrayName(), 1, [](vtkIdType, int) { return 1.0; });
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  for (vtkIdType i = 0; i < cube->GetNumberOfPoints(); ++i)
+  {
+    names->InsertNextValue("particle " + std::to_string(i));
+  }
+  cube->GetPointData()->AddArray(names);
+  vtkNew<vtkDoubleArray> time;
+  time->SetName("TimeValue");
+  time->InsertNextValue(0.9);
+  cube->GetFieldData()->AddArray(time);
+  return cube;
+}
+
+void TestAttributes()
+{
+  auto cube = MakeParticles();
+  auto filter = test::MakeSphereFilter(cube);
+  filter->Update();
+  vtkPolyData* surface = filter->GetOutput();
+  vtkPointData* data = surface->GetPointData();
+  CHECK(surface->GetNumberOfPoints() > 0);
+  CHECK(!data->HasArray(vtkDataSetAttributes::GhostArrayName()));
+
+  vtkDataArray* position = data->GetArray("Position");
+  CHECK(position && position->GetDataType() == VTK_FLOAT);
+  CHECK(position && position->GetNumberOfComponents() == 3);
+  CHECK(position && position->GetComponentName(1) &&
+    !std::strcmp(position->GetComponentName(1), "Height"));
+  CHECK(data->GetArray("Volume") && data->GetArray("Volume")->GetDataType() == VTK_DOUBLE);
+  vtkDataArray* id = data->GetArray("Id");
+  auto* name = vtkStringArray::SafeDownCast(data->GetAbstractArray("Name"));
+  CHECK(id && id->GetDataType() == VTK_ID_TYPE);
+  CHECK(name != nullptr);
+  for (vtkIdType i = 0; position && id && name && i < surface->GetNumberOfPoints(); i += 53)
+  {
+    double x[3];
+    surface->GetPoint(i, x);
+    const vtkIdType nearest = Nearest(cube, x);
+    CHECK(static_cast<vtkIdType>(id->GetComponent(i, 0)) == nearest);
+    CHECK(name->GetValue(i) == "particle " + std::to_string(nearest));
+    for (int c = 0; c < 3; ++c)
+    {
+      vtkNew<vtkDoubleArray> component;
+      cube->GetPointData()->GetArray("Position")->GetData(
+        0, cube->GetNumberOfPoints() - 1, c, c, component);
+      const double expected =
+        test::EvaluateField(cube, component, test::SmoothingLength, x).Shepard;
+      CHECK(std::fabs(position->GetComponent(i, c) - expected) < 1e-5);
+    }
+  }
+  filter->InterpolateAttributesOff();
+  filter->Update();
+  CHECK(!filter->GetOutput()->GetPointData()->HasArray("Position"));
+  CHECK(!filter->GetOutput()->GetPointData()->HasArray("Id"));
+}
+
+void TestComputedArrays()
+{
+  auto filter = test::MakeSphereFilter(MakeParticles());
+  filter->ComputeGradientsOn();
+  filter->ComputeWeightSumOn();
+  filter->ComputeCorrectionLengthOn();
+  filter->ComputeResidualOn();
+  filter->ComputeBoundaryFlagOn();
+  filter->Update();
+  vtkPointData* data = filter->GetOutput()->GetPointData();
+  for (const char* name :
+    { "Normals", "Gradients", "WeightSum", "CorrectionLength", "Residual", "BoundaryFlag" })
+  {
+    CHECK(data->GetArray(name) &&
+      data->GetArray(name)->GetNumberOfTuples() == filter->GetOutput()->GetNumberOfPoints());
+  }
+  CHECK(data->GetScalars() && !std::strcmp(data->GetScalars()->GetName(), "Radius"));
+  CHECK(data->GetScalars() && data->GetScalars()->GetDataType() == VTK_DOUBLE);
+  CHECK(data->GetScalars() && data->GetScalars()->GetRange()[0] == 0.6);
+
+  filter->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Position");
+  filter->Update();
+  data = filter->GetOutput()->GetPointData();
+  CHECK(data->HasArray("Position_Magnitude") && data->HasArray("Position"));
+  filter->SetScalarComponent(1);
+  filter->SetValue(0, 0.05);
+  filter->Update();
+  CHECK(filter->GetOutput()->GetPointData()->HasArray("Position_Height"));
+
+  filter->ComputeNormalsOff();
+  filter->ComputeScalarsOff();
+  filter->Update();
+  data = filter->GetOutput()->GetPointData();
+  CHECK(!data->GetNormals() && !data->HasArray("Position_Height"));
+}
+
+void TestPrecision()
+{
+  auto filter = test::MakeSphereFilter(test::MakeCube(VTK_FLOAT));
+  filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  filter->Update();
+  CHECK(filter->GetOutput()->GetPoints()->GetDataType() == VTK_DOUBLE);
+  filter->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION);
+  filter->Update();
+  CHECK(filter->GetOutput()->GetPoints()->GetDataType() == VTK_FLOAT);
+}
+
+double Number(vtkPolyData* data, const char* name)
+{
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  CHECK(array && array->GetNumberOfTuples() == 1);
+  return array ? array->GetComponent(0, 0) : 0.0;
+}
+
+std::string Text(vtkPolyData* data, const char* name)
+{
+  auto* array = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(name));
+  CHECK(array && array->GetNumberOfValues() == 1);
+  return array ? std::string(array->GetValue(0)) : "";
+}
+
+void TestFieldData()
+{
+  auto filter = test::MakeSphereFilter(MakeParticles());
+  filter->Update();
+  vtkPolyData* surface = filter->GetOutput();
+  CHECK(Number(surface, "TimeValue") == 0.9);
+  CHECK(Number(surface, "Triangles") == static_cast<double>(surface->GetNumberOfCells()));
+  CHECK(Number(surface, "Points") == static_cast<double>(surface->GetNumberOfPoints()));
+  CHECK(Number(surface, "FluidParticles") == 9261.0);
+  CHECK(Number(surface, "VirtualCells") > Number(surface, "CellsUsed"));
+  CHECK(Number(surface, "SeedCells") >= Number(surface, "SeedCellsNotIntersected"));
+  CHECK(Number(surface, "CellsUsed") > 0.0);
+  CHECK(Number(surface, "CorrectionMax") >= Number(surface, "CorrectionMean"));
+  CHECK(Number(surface, "CorrectionMean") > 0.0);
+  CHECK(Number(surface, "CorrectionStandardDeviation") > 0.0);
+  CHECK(std::fabs(Number(surface, "CubeSize") - 0.5 * test::SmoothingLength) < 1e-12);
+  CHECK(Number(surface, "IsoValues") == 0.6);
+  CHECK(Text(surface, "Kernel") == "cubic");
+  CHECK(Text(surface, "Field") == "shepard");
+  CHECK(Text(surface, "SeedMode") == "complete");
+  CHECK(Text(surface, "Scalar") == "Radius");
+  CHECK(Text(surface, "SmoothingLengthArray") == "SmoothingLength");
+  CHECK(Text(surface, "VolumeArray") == "Volume");
+  CHECK(Text(surface, "MassArray").empty());
+  CHECK(!Text(surface, "Device").empty());
+  vtkDataArray* seconds = surface->GetFieldData()->GetArray("Seconds");
+  CHECK(seconds && seconds->GetComponentName(1) &&
+    !std::strcmp(seconds->GetComponentName(1), "search grid"));
+  const int last = seconds ? seconds->GetNumberOfComponents() - 1 : 0;
+  CHECK(seconds && !std::strcmp(seconds->GetComponentName(last), "total"));
+  CHECK(seconds && seconds->GetComponent(0, last) > 0.0);
+}
+
+void TestState()
+{
+  vtkNew<vtkMarchingCorrectors> filter;
+  CHECK(filter->GetNumberOfContours() == 0);
+  CHECK(filter->SetKernelByName("wendland"));
+  CHECK(filter->GetKernel() == vtkMarchingCorrectors::WENDLAND_C2);
+  CHECK(!filter->SetKernelByName("no such kernel") && !filter->SetKernelByName(nullptr));
+  CHECK(!std::strcmp(filter->GetKernelName(), "wendland"));
+  const vtkMTimeType time = filter->GetMTime();
+  filter->SetValue(0, 1.0);
+  CHECK(filter->GetMTime() > time);
+  const vtkMTimeType later = filter->GetMTime();
+  filter->SetFreeSurfaceValue(0.4);
+  CHECK(filter->GetMTime() > later);
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* word : { "Kernel: wendland", "Vertex Threshold: 0.5", "Iteration Limit: 30" })
+  {
+    CHECK(text.str().find(word) != std::string::npos);
+  }
+}
+}
+
+int TestOutput(int, char*[])
+{
+  TestAttributes();
+  TestComputedArrays();
+  TestPrecision();
+  TestFieldData();
+  TestState();
+  return failures;
+}

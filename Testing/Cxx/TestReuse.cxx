@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What is kept on the device between runs never changes a result, and an aborted run leaves an empty
+// output and a filter that works.
+#include "TestParticles.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+
+#include <vector>
+
+namespace
+{
+int failures = 0;
+using Filter = vtkMarchingCorrectors;
+
+struct Step
+{
+  const char* Name;
+  std::function<void(Filter*, vtkPolyData*)> Change;
+};
+
+void MoveParticle(vtkPolyData* cube)
+{
+  vtkIdType i = cube->GetNumberOfPoints() / 3;
+  double x[3];
+  cube->GetPoint(i, x);
+  cube->GetPoints()->SetPoint(i, x[0] + 0.03, x[1], x[2]);
+}
+
+// A filter that lives through all steps against a new one for each.
+std::vector<Step> Steps()
+{
+  return {
+    { "first run", [](Filter*, vtkPolyData*) {} },
+    { "other iso value", [](Filter* f, vtkPolyData*) { f->SetValue(0, 0.5); } },
+    { "two iso values", [](Filter* f, vtkPolyData*) { f->SetValue(1, 0.7); } },
+    { "other scalar",
+      [](Filter* f, vtkPolyData*) {
+        f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Other");
+      } },
+    { "other cube size", [](Filter* f, vtkPolyData*) { f->SetCubeSizeFactor(0.7); } },
+    { "other scale", [](Filter* f, vtkPolyData*) { f->SetHScaleFactor(0.8); } },
+    { "other kernel", [](Filter* f, vtkPolyData*) { f->SetKernelToWendlandC2(); } },
+    { "other thresholds", [](Filter* f, vtkPolyData*) { f->SetVertexThreshold(0.6); } },
+    { "sum", [](Filter* f, vtkPolyData*) { f->ShepardNormalizationOff(); } },
+    { "pairs", [](Filter* f, vtkPolyData*) { f->SetSeedModeToPairs(); } },
+    { "free surface", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOn(); } },
+    { "scalar again", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOff(); } },
+    { "particle moved, data set told",
+      [](Filter*, vtkPolyData* cube) {
+        MoveParticle(cube);
+        cube->Modified();
+      } },
+    { "particle moved, points told",
+      [](Filter*, vtkPolyData* cube) {
+        MoveParticle(cube);
+        cube->GetPoints()->Modified();
+      } },
+    { "scalar changed in place",
+      [](Filter*, vtkPolyData* cube) {
+        vtkDataArray* other = cube->GetPointData()->GetArray("Other");
+        for (vtkIdType i = 0; i < other->GetNumberOfTuples(); ++i)
+        {
+          other->SetComponent(i, 0, 1.1 * other->GetComponent(i, 0));
+        }
+        other->Modified();
+      } },
+    { "constant smoothing length", [](Filter* f, vtkPolyData*) { f->SetSmoothingLength(0.15); } },
+    { "solids", [](Filter* f, vtkPolyData*) { f->SetFluidArrayName("Type"); } },
+    { "other solids", [](Filter* f, vtkPolyData*) { f->SetFluidValue(1.0); } },
+    { "solids ignored", [](Filter* f, vtkPolyData*) { f->IgnoreSolidsOn(); } },
+    { "double precision",
+      [](Filter* f, vtkPolyData*) { f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION); } },
+    { "memory released", [](Filter* f, vtkPolyData*) { f->ReleaseDeviceMemory(); } },
+    { "nothing new", [](Filter* f, vtkPolyData*) { f->Modified(); } },
+  };
+}
+
+vtkSmartPointer<vtkPolyData> MakeParticles()
+{
+  auto cube = test::MakeCube();
+  vtkDataArray* radius = cube->GetPointData()->GetArray("Radius");
+  test::AddArray<vtkFloatArray>(cube, "Other", 1, [&](vtkIdType i, int) {
+    return radius->GetComponent(i, 0) + 0.1 * cube->GetPoint(i)[0];
+  });
+  test::AddArray<vtkFloatArray>(
+    cube, "Type", 1, [&](vtkIdType i, int) { return cube->GetPoint(i)[1] > 0.3 ? 1.0 : 0.0; });
+  return cube;
+}
+
+void TestSteps()
+{
+  auto cube = MakeParticles();
+  auto lasting = test::MakeSphereFilter(cube);
+  const std::vector<Step> steps = Steps();
+  for (size_t last = 0; last < steps.size(); ++last)
+  {
+    steps[last].Change(lasting, cube);
+    lasting->Update();
+    auto fresh = test::MakeSphereFilter(cube);
+    vtkNew<vtkPolyData> ignored; // the particles have been changed already
+    ignored->DeepCopy(cube);
+    for (size_t i = 0; i <= last; ++i)
+    {
+      steps[i].Change(fresh, ignored);
+    }
+    fresh->Update();
+    const bool same = test::SameSurface(lasting->GetOutput(), fresh->GetOutput());
+    std::cout << steps[last].Name << ": " << fresh->GetOutput()->GetNumberOfCells()
+              << " triangles" << (same ? "" : ", differs") << "\n";
+    CHECK(same);
+    CHECK(std::strcmp(lasting->GetErrorMessage(), fresh->GetErrorMessage()) == 0);
+  }
+}
+
+void Abort(vtkObject* caller, unsigned long, void* calls, void*)
+{
+  ++*static_cast<int*>(calls);
+  vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+}
+
+void TestAbort()
+{
+  auto filter = test::MakeSphereFilter(test::MakeCube());
+  int calls = 0;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback(Abort);
+  observer->SetClientData(&calls);
+  const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, observer);
+  filter->Update();
+  CHECK(calls > 0);
+  CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+  CHECK(!*filter->GetErrorMessage());
+
+  filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0);
+  filter->Modified();
+  filter->Update();
+  auto fresh = test::MakeSphereFilter(test::MakeCube());
+  fresh->Update();
+  CHECK(fresh->GetOutput()->GetNumberOfPoints() > 0);
+  CHECK(test::SameSurface(filter->GetOutput(), fresh->GetOutput()));
+}
+
+void TestDeviceChange()
+{
+  auto filter = test::MakeSphereFilter(test::MakeCube());
+  filter->Update();
+  vtkNew<vtkPolyData> first;
+  first->DeepCopy(filter->GetOutput());
+  CHECK(!Filter::ListDevices().empty());
+  filter->SetDevice("0");
+  filter->Update();
+  CHECK(!*filter->GetErrorMessage());
+  CHECK(test::SameSurface(first, filter->GetOutput()));
+}
+}
+
+int TestReuse(int, char*[])
+{
+  TestSteps();
+  TestAbort();
+  TestDeviceChange();
+  return failures;
+}

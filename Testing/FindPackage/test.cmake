@@ -1,0 +1,19 @@
+# Installs the project, then configures, builds and runs the third project against the install tree.
+# Variables: BUILD (build tree), SOURCE (this folder), WORK (scratch), WITH_VTK, and DEFINITIONS, the
+# cache entries with which the SDK was found.
+function (run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
+  if (status)
+    message(FATAL_ERROR "failed (${status}): ${ARGN}")
+  endif ()
+endfunction ()
+
+file(REMOVE_RECURSE "${WORK}")
+run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/install")
+run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/build" "-DCMAKE_PREFIX_PATH=${WORK}/install"
+  -DCMAKE_BUILD_TYPE=Release ${DEFINITIONS})
+run("${CMAKE_COMMAND}" --build "${WORK}/build")
+run("${WORK}/build/uses_core")
+if (WITH_VTK)
+  run("${WORK}/build/uses_filter")
+endif ()

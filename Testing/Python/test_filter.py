@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The wrapped filter: weird input first, then what Python users do."""
+import math
+import unittest
+
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints, vtkObject
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+
+from marchingcorrectors import vtkMarchingCorrectors
+
+POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
+
+
+def make_particles(count=11, spacing=0.1):
+    """A lattice of count^3 particles around the origin; Radius is the distance from it."""
+    points = vtkPoints()
+    radius = vtkDoubleArray()
+    radius.SetName("Radius")
+    length = vtkDoubleArray()
+    length.SetName("hsml")
+    half = (count - 1) / 2
+    for i in range(count ** 3):
+        x = [(n - half) * spacing for n in (i % count, i // count % count, i // count ** 2)]
+        points.InsertNextPoint(x)
+        radius.InsertNextValue(math.sqrt(sum(c * c for c in x)))
+        length.InsertNextValue(1.3 * spacing)
+    particles = vtkPolyData()
+    particles.SetPoints(points)
+    particles.GetPointData().AddArray(radius)
+    particles.GetPointData().AddArray(length)
+    return particles
+
+
+def make_filter(particles, scalar="Radius", iso=0.3):
+    result = vtkMarchingCorrectors()
+    result.SetInputData(particles)
+    result.SetInputArrayToProcess(0, 0, 0, POINTS, scalar)
+    result.SetValue(0, iso)
+    return result
+
+
+class TestFilter(unittest.TestCase):
+    def test_something_weird(self):
+        extract = make_filter(vtkPolyData())
+        extract.Update()
+        self.assertEqual(extract.GetOutput().GetNumberOfPoints(), 0)
+        self.assertEqual(extract.GetErrorMessage(), "")
+
+    def test_error_is_a_sentence(self):
+        vtkObject.GlobalWarningDisplayOff()
+        extract = make_filter(make_particles(), "Nonsense")
+        extract.Update()
+        vtkObject.GlobalWarningDisplayOn()
+        self.assertEqual(extract.GetOutput().GetNumberOfPoints(), 0)
+        self.assertIn("'Nonsense'", extract.GetErrorMessage())
+        self.assertIn("Radius", extract.GetErrorMessage())
+
+    def test_isosurface(self):
+        extract = make_filter(make_particles())
+        extract.Update()
+        surface = extract.GetOutput()
+        self.assertEqual(extract.GetUsedSmoothingLengthArrayName(), "hsml")
+        self.assertGreater(surface.GetNumberOfPoints(), 100)
+        for i in range(surface.GetNumberOfPoints()):
+            self.assertAlmostEqual(math.dist(surface.GetPoint(i), (0, 0, 0)), 0.28, delta=0.03)
+        self.assertEqual(surface.GetPointData().GetScalars().GetName(), "Radius")
+        self.assertIsNotNone(surface.GetPointData().GetNormals())
+
+    def test_free_surface_of_bare_points(self):
+        particles = vtkPolyData()
+        particles.SetPoints(make_particles().GetPoints())
+        extract = vtkMarchingCorrectors()
+        extract.SetInputData(particles)
+        extract.EstimateSmoothingLengthOn()
+        extract.FreeSurfaceOn()
+        extract.Update()
+        surface = extract.GetOutput()
+        self.assertGreater(surface.GetNumberOfCells(), 100)
+        h = surface.GetFieldData().GetArray("SmoothingLengthRange").GetValue(0)
+        self.assertAlmostEqual(h, 0.13, delta=0.03)
+
+    def test_in_place_change_is_seen(self):
+        particles = make_particles()
+        extract = make_filter(particles)
+        extract.Update()
+        before = extract.GetOutput().GetBounds()[1]
+        radius = particles.GetPointData().GetArray("Radius")
+        for i in range(radius.GetNumberOfValues()):
+            radius.SetValue(i, 0.75 * radius.GetValue(i))
+        particles.Modified()
+        extract.Update()
+        self.assertGreater(extract.GetOutput().GetBounds()[1], before + 0.05)
+
+    def test_enumerations(self):
+        extract = vtkMarchingCorrectors()
+        self.assertEqual(extract.GetKernel(), vtkMarchingCorrectors.CUBIC_SPLINE)
+        self.assertTrue(extract.SetKernelByName("quintic"))
+        self.assertEqual(extract.GetKernel(), vtkMarchingCorrectors.QUINTIC_SPLINE)
+        extract.SetSeedModeToPairs()
+        self.assertEqual(extract.GetSeedMode(), vtkMarchingCorrectors.PAIRS)
+        self.assertIn(":", vtkMarchingCorrectors.ListDevices())
+        self.assertIn("Cube Size Factor: 0.5", str(extract))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plugin in pvpython and pvbatch, or with --server PROGRAM in a pvserver. Renders nothing."""
+import os
+import subprocess
+import sys
+
+from paraview import servermanager
+from paraview.simple import (Connect, Disconnect, LoadPlugin, PointSource, XMLPolyDataReader)
+
+PLUGIN = os.environ["MCOR_TEST_PLUGIN"]
+DATA = os.environ["MCOR_TEST_DATA"]
+
+
+def connect_to_new_server(program):
+    """Starts a server on a free port. The server waits for one client, and ends with it."""
+    port = 20000 + os.getpid() % 20000
+    server = subprocess.Popen([program, "--server-port=%d" % port], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, universal_newlines=True)
+    for line in server.stdout:
+        if "Accepting connection" in line:
+            break
+    Connect("localhost", port)
+    return server
+
+
+def names_offered(proxy, name):
+    domain = proxy.SMProxy.GetProperty(name).FindDomain("vtkSMArrayListDomain")
+    return [domain.GetString(i) for i in range(domain.GetNumberOfStrings())]
+
+
+def check_panel(extract):
+    vectors = {"Velocity", "Vorticity"}
+    scalars = {"Density", "Lambda2", "Mass", "ParticleType", "Pressure", "SmoothingLength",
+               "SmoothingLengthAdaptive", "VorticityMagnitude"}
+    assert set(names_offered(extract, "SelectInputScalars")) == scalars | vectors
+    assert set(names_offered(extract, "SmoothingLengthArray")) == scalars | {"(automatic)"}
+    assert set(names_offered(extract, "FluidArray")) == scalars | {"(none)"}
+    assert set(names_offered(extract, "DotProductWith")) == vectors | {"(none)"}
+    iterator = extract.SMProxy.NewPropertyIterator()
+    iterator.Begin()
+    while not iterator.IsAtEnd():
+        documentation = iterator.GetProperty().GetDocumentation()
+        text = documentation.GetDescription() if documentation else ""
+        assert text and (iterator.GetKey() == "Input" or "Default:" in text), iterator.GetKey()
+        iterator.Next()
+
+
+def check_surfaces(extract):
+    # Choosing a scalar is enough: the iso value comes from its range.
+    extract.ContourBy = ["POINTS", "Pressure"]
+    extract.ContourBy = ["POINTS", "VorticityMagnitude"]
+    assert len(extract.Isosurfaces) == 1 and extract.Isosurfaces[0] > 0.0
+    extract.UpdatePipeline()
+    assert extract.GetDataInformation().GetNumberOfCells() > 0
+
+    extract.FluidArray = "ParticleType"
+    extract.ContourBy = ["POINTS", "Velocity"]
+    extract.Isosurfaces = [1.0]
+    extract.UpdatePipeline()
+    information = extract.GetDataInformation()
+    speed = information.GetNumberOfCells()
+    assert 8000 < speed < 20000, speed
+    names = {extract.PointData[i].Name for i in range(len(extract.PointData))}
+    assert {"Normals", "Velocity_Magnitude", "Pressure", "Velocity"} <= names, names
+
+    extract.Isosurfaces = [1.0, 2.0]
+    extract.UpdatePipeline()
+    assert extract.GetDataInformation().GetNumberOfCells() > speed
+
+    extract.FreeSurface = 1
+    extract.UpdatePipeline()
+    assert extract.GetDataInformation().GetNumberOfCells() > 100000
+
+
+def check_refusal(extract):
+    """An error leaves an empty output and a program that goes on."""
+    extract.Device = "no such device"
+    extract.UpdatePipeline()
+    assert extract.GetDataInformation().GetNumberOfCells() == 0
+    extract.Device = ""
+    extract.UpdatePipeline()
+    assert extract.GetDataInformation().GetNumberOfCells() > 0
+
+
+def main():
+    server = None
+    if "--server" in sys.argv:
+        server = connect_to_new_server(sys.argv[sys.argv.index("--server") + 1])
+    LoadPlugin(PLUGIN, remote=server is not None, ns=globals())
+    reader = XMLPolyDataReader(FileName=[os.path.join(DATA, "dam_break_45k.vtp")])
+    reader.UpdatePipeline()
+    extract = MarchingCorrectors(Input=reader)  # noqa: F821, LoadPlugin made it
+    check_panel(extract)
+    check_surfaces(extract)
+    check_refusal(extract)
+
+    # Points without any array have a free surface, too.
+    cloud = PointSource(NumberOfPoints=2000, Radius=1.0)
+    bare = MarchingCorrectors(Input=cloud)  # noqa: F821
+    bare.FreeSurface = 1
+    bare.EstimateSmoothingLength = 1
+    bare.UpdatePipeline()
+    assert bare.GetDataInformation().GetNumberOfCells() > 0
+
+    if server:
+        Disconnect()
+        server.wait(60)
+    print("plugin works in", servermanager.vtkSMProxyManager.GetParaViewSourceVersion())
+
+
+main()

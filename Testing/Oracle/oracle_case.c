@@ -193,6 +193,34 @@ static void case_check_accuracy(case_run* run)
   }
 }
 
+/* Area and volume of the oracle's own polygons. Loops of more than three sides may be cut in other
+ * ways and ambiguous faces joined differently, hence the tolerance. */
+static void case_check_measure(case_run* run)
+{
+  const oracle_reference* r = run->reference;
+  oracle_mesh mesh;
+  mesh_report own;
+  if (run->at->rough || r->surface.edge_count > 6000 || r->surface.edge_count == 0)
+  {
+    return;
+  }
+  if (!oracle_create_mesh(&mesh, &r->surface, &r->lattice, &r->field, r->limits.iso))
+  {
+    case_expect(run, 0, "out of memory");
+    return;
+  }
+  if (mesh_check(mesh.points, mesh.point_count, mesh.triangles, mesh.triangle_count, &own))
+  {
+    case_expect(run, fabs(run->mesh.area / own.area - 1.0) < 0.02, "area %.6g, not %.6g",
+      run->mesh.area, own.area);
+    case_expect(run, run->mesh.boundary_edges > 0 ||
+        fabs(run->mesh.volume - own.volume) < 0.02 * own.area * r->lattice.cube,
+      "volume %.6g, not %.6g", run->mesh.volume, own.volume);
+    mesh_free_report(&own);
+  }
+  oracle_free_mesh(&mesh);
+}
+
 /* Extracts, checks, prints; the surface and its report stay in *run. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
@@ -224,6 +252,12 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   case_check_mesh(run, trimmed);
   case_check_edges(run, pairs);
   case_check_accuracy(run);
+  if (!trimmed && !pairs)
+  {
+    case_check_measure(run);
+    case_expect(run, !run->at->has_euler || run->mesh.euler == run->at->euler,
+      "Euler number %lld, not %d", (long long)run->mesh.euler, run->at->euler);
+  }
   return run->good;
 }
 

@@ -25,6 +25,7 @@ typedef struct variant
   int in_double;
   double iso; /* used if has_iso */
   int has_iso, rough, skip_pairs;
+  int has_euler, euler;
 } variant;
 
 static void fill_case(oracle_case* at, const variant* v, const particle_set* set, const double* iso)
@@ -39,6 +40,8 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
   at->options.h_scale = v->h_scale > 0.0 ? v->h_scale : 1.0;
   at->options.precision = v->in_double ? MCOR_FLOAT64 : MCOR_FLOAT32;
   at->rough = v->rough;
+  at->has_euler = v->has_euler;
+  at->euler = v->euler;
   at->skip_pairs = v->skip_pairs || v->field == MCOR_WEIGHT_SUM; /* w has no pairs to straddle */
   snprintf(at->name, sizeof(at->name), "%s/%s/%s/c%g/h%g%s%s", v->set,
     mcor_sph_kernel_name(v->kernel), field_names[v->field],
@@ -95,10 +98,10 @@ static void run_matrix(oracle_suite* suite)
 /* ---- every set ---------------------------------------------------------------------------------------- */
 
 static const variant set_variants[] = {
-  { .set = "sphere" },
+  { .set = "sphere", .has_euler = 1, .euler = 2 },
   { .set = "sphere", .field = MCOR_SUM },
   { .set = "sphere", .in_double = 1 },
-  { .set = "torus" },
+  { .set = "torus", .has_euler = 1, .euler = 0 },
   { .set = "torus", .cube_factor = 1.0 },
   { .set = "gyroid", .in_double = 1 },
   { .set = "gyroid", .field = MCOR_SUM, .in_double = 1 },
@@ -141,7 +144,7 @@ static const variant set_variants[] = {
   { .set = "variable_16", .field = MCOR_WEIGHT_SUM, .cube_factor = 1.0 },
   { .set = "variable_128", .cube_size = 0.03 },
   { .set = "variable_128", .field = MCOR_WEIGHT_SUM, .cube_size = 0.03 },
-  { .set = "single", .field = MCOR_WEIGHT_SUM },
+  { .set = "single", .field = MCOR_WEIGHT_SUM, .has_euler = 1, .euler = 2 },
   { .set = "single", .field = MCOR_SUM },
   { .set = "coincident" },
   { .set = "coincident", .field = MCOR_SUM },

@@ -7,6 +7,7 @@ What it computes is tested elsewhere; here it is files, options, sentences and e
 import json
 import os
 import pathlib
+import random
 import resource
 import shutil
 import signal
@@ -428,7 +429,8 @@ class Picture(CommandLineTest):
 
     def test_picture(self):
         picture = self.directory / "picture.png"
-        display = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a"]
+        number = str(random.randrange(1000, 30000))
+        display = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a", "-n", number]
         result = subprocess.run([*display, PROGRAM, self.input, self.output, *ISO, "--screenshot",
                                  picture], capture_output=True, text=True, timeout=300)
         self.assertEqual((result.returncode, result.stderr), (0, ""))

@@ -1,0 +1,262 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_h
+#define mcor_h
+
+/* Marching Correctors: isosurfaces of SPH data, exact with respect to the SPH representation.
+ *
+ *   B. Schindler, R. Fuchs, J. Waser, R. Peikert: Marching Correctors - Fast and Precise Polygonal
+ *   Isosurfaces of SPH Data. 6th International SPHERIC Workshop, Hamburg, 2011.
+ *
+ * A C11 library on OpenCL 1.2; it needs no VTK. One call does the whole job:
+ *
+ *   mcor_context *context;
+ *   mcor_create_context(NULL, &context);
+ *   mcor_extract(context, &input, &options, &surface);   (errors: mcor_last_error(context))
+ *   ... use surface ...
+ *   mcor_free_surface(&surface);
+ *   mcor_free_context(context);
+ *
+ * Every function that can fail returns a mcor_status, MCOR_OK being 0; outputs are then empty and
+ * safe to free. The library never prints, never exits and keeps no global state. A context may be
+ * used by one thread at a time; different contexts by different threads.
+ *
+ * Lengths are in the unit of the particle positions ("length unit L").
+ */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+#define MCOR_VERSION "0.1.0"
+
+  typedef enum mcor_status
+  {
+    MCOR_OK = 0,
+    MCOR_INVALID_ARGUMENT, /* a parameter is outside its legal range, or a needed array is missing */
+    MCOR_INVALID_DATA,     /* an array holds NaN, an infinite value, or an illegal value */
+    MCOR_OUT_OF_CAPACITY,  /* lattice, device memory or host memory would not suffice */
+    MCOR_DEVICE_ERROR,     /* no OpenCL platform or device, build failure, a device that vanished */
+    MCOR_CANCELLED         /* the progress callback asked to stop */
+  } mcor_status;
+
+  /* Element type of an array. */
+  typedef enum mcor_type
+  {
+    MCOR_FLOAT32 = 0,
+    MCOR_FLOAT64 = 1
+  } mcor_type;
+
+  /* SPH smoothing kernels W; q = r / smoothing length. Formulas: mcor_sph_kernel.h. */
+  typedef enum mcor_sph_kernel
+  {
+    MCOR_CUBIC_SPLINE = 0,   /* M4, support radius 2; the default */
+    MCOR_QUADRATIC = 1,      /* support radius 2 */
+    MCOR_M_PRIME_4 = 2,      /* tensor product of 1-D M'4, support 2 along each axis (a cube) */
+    MCOR_QUINTIC_SPLINE = 3, /* M6, support radius 3 */
+    MCOR_WENDLAND_C2 = 4,    /* support radius 2 */
+    MCOR_SPH_KERNEL_COUNT
+  } mcor_sph_kernel;
+
+  /* What is contoured. V: particle volume, A: scalar, W: kernel. */
+  typedef enum mcor_field
+  {
+    MCOR_SHEPARD = 0,   /* sum V A W / sum V W; the default */
+    MCOR_SUM = 1,       /* sum V A W, the paper's field */
+    MCOR_WEIGHT_SUM = 2 /* sum V W: the free surface; needs no scalar, applies no threshold */
+  } mcor_field;
+
+  typedef enum mcor_seed_mode
+  {
+    MCOR_COMPLETE = 0, /* every cell that a bound cannot exclude is examined; nothing is missed */
+    MCOR_PAIRS = 1     /* the paper's: cells between particle pairs that straddle the iso value */
+  } mcor_seed_mode;
+
+  /* A per-particle quantity, or one constant for all particles. */
+  typedef struct mcor_array
+  {
+    const void* data; /* [count][components], finite; borrowed until return; NULL: constant */
+    mcor_type type;
+    int components; /* 1 unless said otherwise; 0 is read as 1 */
+    double constant; /* the value of all particles where data is NULL */
+    const char* name; /* for messages; may be NULL */
+  } mcor_array;
+
+#define MCOR_MAGNITUDE (-1)
+
+  typedef struct mcor_input
+  {
+    int64_t count;        /* number of particles; 0 gives an empty surface */
+    mcor_array positions; /* [count][3], length unit L, data must not be NULL */
+
+    /* Smoothing length, unit L, > 0. It is the kernel's support radius instead where
+     * smoothing_length_is_support_radius is set. With estimate_smoothing_length, the array is not
+     * read: the value is 1.3 times the median particle spacing, one constant. */
+    mcor_array smoothing_length;
+    int smoothing_length_is_support_radius;
+    int estimate_smoothing_length;
+
+    /* Particle volume, unit L^3, > 0: `volume` if has_volume; else mass / density if has_mass and
+     * has_density; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
+     * 1 / sum_k W(x_j - x_k, h_j). */
+    mcor_array volume, mass, density;
+    int has_volume, has_mass, has_density;
+
+    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. With 2 or more components,
+     * scalar_component selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not
+     * NULL, A is the dot product of the two vectors. */
+    mcor_array scalar;
+    int scalar_component;
+    mcor_array scalar_dot;
+
+    /* [count], borrowed; nonzero: a solid (wall) particle. NULL: all particles are fluid. Solid
+     * particles never take part in the field. They count in the weight used for trimming unless
+     * ignore_solids is set. */
+    const uint8_t* solid;
+    int ignore_solids;
+
+    /* Other per-particle arrays to interpolate to the surface (Shepard mean). */
+    const mcor_array* attributes; /* [attribute_count] */
+    int attribute_count;
+
+    /* Reuse: equal nonzero numbers in two successive calls promise that positions, smoothing
+     * lengths, volumes and solids (particles_version), or the scalar (scalar_version) are the same.
+     * Reuse saves time and never changes the result. 0: never reuse. */
+    uint64_t particles_version;
+    uint64_t scalar_version;
+  } mcor_input;
+
+  typedef struct mcor_options
+  {
+    mcor_sph_kernel sph_kernel;
+    mcor_field field;
+    mcor_seed_mode seeds;
+    double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
+    double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
+    double cube_size;        /* unit L; > 0 overrides the factor */
+    const double* iso_values; /* [iso_count], finite */
+    int iso_count;
+    double node_threshold;   /* cells with a node of lower weight are discarded; default 0.1 */
+    double vertex_threshold; /* triangles are trimmed where the weight is lower; default 0.5 */
+    int preview;             /* nonzero: vertices by linear interpolation, no correction */
+    double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */
+    int iteration_limit;     /* of the correction, per vertex; default 30 */
+    mcor_type precision;     /* of the field evaluation on the device; MCOR_FLOAT32 by default */
+
+    /* What the surface carries besides points and triangles. */
+    int normals; /* default on */
+    int gradients, weight_sum, correction_length, residual, boundary_flag, iso_value, nearest_particle;
+    int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
+
+    /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
+    int (*progress)(void* user, double fraction, const char* phase);
+    void* progress_user;
+  } mcor_options;
+
+  /* Phases, in the order in which they run. */
+  typedef enum mcor_phase
+  {
+    MCOR_PHASE_INPUT = 0,   /* checks, unit conversion, transfer to the device */
+    MCOR_PHASE_SEARCH_GRID, /* search grid and volumes */
+    MCOR_PHASE_SEEDS,       /* seed selection and node evaluation that it needs */
+    MCOR_PHASE_EXTRACTION,  /* node evaluation, marching cubes */
+    MCOR_PHASE_CORRECTION,  /* Newton iteration, normals, attributes */
+    MCOR_PHASE_TRIMMING,
+    MCOR_PHASE_OUTPUT, /* compaction and transfer to the host */
+    MCOR_PHASE_COUNT
+  } mcor_phase;
+
+  typedef struct mcor_statistics
+  {
+    double seconds[MCOR_PHASE_COUNT];
+    double build_seconds; /* building or loading the device program; 0 when already there */
+    int64_t fluid_particles, solid_particles;
+    double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
+    double cube_size;                                  /* unit L */
+    double scalar_min, scalar_max;                     /* over fluid particles */
+    int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
+    int64_t lattice_cells[3];
+    int64_t virtual_cells;                    /* product of lattice_cells (saturates) */
+    int64_t seed_cells, seed_cells_not_intersected; /* summed over iso values, as are the next */
+    int64_t bricks, nodes_evaluated;
+    int64_t cells_used;      /* intersected cells of the surface, before trimming */
+    int64_t triangles_before_trimming;
+    int64_t march_rounds;
+    /* Correction, Table V: distance between linear and corrected vertex, unit L. */
+    double correction_mean, correction_max, correction_deviation;
+    int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
+    double iterations_mean;
+    int iterations_max;
+    double residual_max; /* max |f - iso| as evaluated on the device, in the scalar's unit */
+    int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut */
+    int64_t device_bytes_peak;
+    char device[128], platform[128];
+  } mcor_statistics;
+
+  /* A triangle mesh. Vertices are shared; a triangle's normal (right-hand rule) points to lower
+   * values of the field, as vtkContourFilter orients it. Owned; free with mcor_free_surface. */
+  typedef struct mcor_surface
+  {
+    int64_t point_count, triangle_count;
+    double* points;     /* [point_count][3], unit L */
+    int32_t* triangles; /* [triangle_count][3], point indices */
+    /* Optional arrays, NULL where not asked for. */
+    float* normals;   /* [point_count][3], unit length, towards lower values */
+    double* gradients; /* [point_count][3], gradient of the field, scalar unit / L */
+    float* weight_sum; /* [point_count], the trimming weight */
+    float* correction_length; /* [point_count], unit L */
+    float* residual;          /* [point_count], f - iso, scalar unit */
+    uint8_t* boundary_flag; /* [point_count], 0 inside; 1 on the trim boundary, weight = vertex
+                             * threshold; 2 same, but left at the linear cut; 4 on a lattice edge
+                             * next to a cell that the node threshold discarded */
+    double* iso_value;      /* [point_count] */
+    int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
+    double** attributes; /* [attribute_count] -> [point_count][components] */
+    int attribute_count;
+    mcor_statistics statistics;
+  } mcor_surface;
+
+  typedef struct mcor_context mcor_context;
+
+  /* Device: NULL or "" the default (PoCL's, else the first one), a number as listed by
+   * mcor_list_devices, or part of a device's or platform's name. On failure *context still holds a
+   * context whose mcor_last_error says why (NULL only if host memory ran out). */
+  mcor_status mcor_create_context(const char* device, mcor_context** context);
+  void mcor_free_context(mcor_context* context);
+
+  /* One line per device, "number: device (platform)\n"; *text is to be freed with free(). An empty
+   * text means that there is no OpenCL device. */
+  mcor_status mcor_list_devices(char** text);
+
+  /* The sentence that belongs to the last failure of this context, "" if there was none. Valid until
+   * the next call on the context. */
+  const char* mcor_last_error(const mcor_context* context);
+  const char* mcor_status_name(mcor_status status);
+  const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
+
+  /* Kernel by its command-line name ("cubic", "quadratic", "mprime4", "quintic", "wendland") and
+   * back; -1 or NULL where there is none. */
+  int mcor_find_sph_kernel(const char* name);
+  const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
+  double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
+
+  /* Sets every option to its default; iso_values stays empty. */
+  void mcor_set_default_options(mcor_options* options);
+
+  /* Extracts the surface. *surface is overwritten: initialise it with {0} or free it before. */
+  mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, mcor_surface* surface);
+  void mcor_free_surface(mcor_surface* surface);
+
+  /* Drops all that the context keeps for reuse between calls of mcor_extract. */
+  void mcor_release_memory(mcor_context* context);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

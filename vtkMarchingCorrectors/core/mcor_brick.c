@@ -1,0 +1,59 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The sparse virtual grid [III-B]: gives slots to the bricks that are needed. */
+
+#include "mcor_internal.h"
+
+static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* data, int count)
+{
+  const size_t n = (size_t)count;
+  const size_t values = n * 64 * context->cl.real_size;
+  data->count = count;
+  MCOR_TRY(mcor_reserve(context, &data->bricks, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_zero(context, &data->known, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_zero(context, &data->cells, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &data->value, values));
+  return mcor_reserve(context, &data->weight, values);
+}
+
+/* Makes all marked bricks and their upper neighbours exist, besides those that do already, and keeps
+ * what is known of the latter. */
+mcor_status mcor_place_bricks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int words = bricks->block_count * MCOR_BLOCK_WORDS;
+  mcor_buffer* bits = &context->scratch[0];
+  int count;
+  MCOR_TRY(mcor_reserve(context, bits, (size_t)words * sizeof(cl_uint)));
+  MCOR_TRY(mcor_reserve(context, &bricks->base, ((size_t)words + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_bits", MCOR_LIGHT, words, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(bits),
+    MCOR_BUFFER(&bricks->base)));
+  MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
+  const mcor_buffer old_bits = bricks->bits;
+  bricks->bits = *bits;
+  *bits = old_bits;
+  if (count == bricks->now.count)
+  {
+    return MCOR_OK; /* the set only ever grows */
+  }
+  const mcor_brick_data last = bricks->now;
+  bricks->now = bricks->last;
+  bricks->last = last;
+  MCOR_TRY(mcor_reserve_bricks(context, &bricks->now, count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_LIGHT, words, MCOR_BRICK_ARGS(context),
+    MCOR_BUFFER(&bricks->now.bricks)));
+  if (last.count > 0)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_move", MCOR_LIGHT, last.count,
+      MCOR_BRICK_ARGS(context), MCOR_INT(last.count), MCOR_BUFFER(&last.bricks),
+      MCOR_BUFFER(&last.known), MCOR_BUFFER(&last.cells), MCOR_BUFFER(&last.value),
+      MCOR_BUFFER(&last.weight), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.cells),
+      MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
+  }
+  MCOR_TRY(mcor_reserve(
+    context, &bricks->neighbours, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_LIGHT, count, MCOR_BRICK_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
+}

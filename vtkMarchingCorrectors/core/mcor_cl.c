@@ -1,0 +1,459 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+#include "mcor_internal.h"
+#include "mcor_sph_kernel.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_PLATFORM_LIMIT 16
+#define MCOR_DEVICE_LIMIT 64
+
+/* The platform whose CPU device is the default. */
+#define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
+
+typedef struct mcor_device_list
+{
+  int count;
+  cl_platform_id platforms[MCOR_DEVICE_LIMIT];
+  cl_device_id devices[MCOR_DEVICE_LIMIT];
+} mcor_device_list;
+
+static const char* mcor_cl_error_name(cl_int error)
+{
+  static const struct
+  {
+    cl_int code;
+    const char* name;
+  } names[] = { { CL_DEVICE_NOT_FOUND, "CL_DEVICE_NOT_FOUND" },
+    { CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE" },
+    { CL_COMPILER_NOT_AVAILABLE, "CL_COMPILER_NOT_AVAILABLE" },
+    { CL_MEM_OBJECT_ALLOCATION_FAILURE, "CL_MEM_OBJECT_ALLOCATION_FAILURE" },
+    { CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES" },
+    { CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY" },
+    { CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE" },
+    { CL_INVALID_VALUE, "CL_INVALID_VALUE" },
+    { CL_INVALID_DEVICE, "CL_INVALID_DEVICE" },
+    { CL_INVALID_CONTEXT, "CL_INVALID_CONTEXT" },
+    { CL_INVALID_COMMAND_QUEUE, "CL_INVALID_COMMAND_QUEUE" },
+    { CL_INVALID_MEM_OBJECT, "CL_INVALID_MEM_OBJECT" },
+    { CL_INVALID_KERNEL_NAME, "CL_INVALID_KERNEL_NAME" },
+    { CL_INVALID_ARG_INDEX, "CL_INVALID_ARG_INDEX" },
+    { CL_INVALID_ARG_SIZE, "CL_INVALID_ARG_SIZE" },
+    { CL_INVALID_KERNEL_ARGS, "CL_INVALID_KERNEL_ARGS" },
+    { CL_INVALID_WORK_GROUP_SIZE, "CL_INVALID_WORK_GROUP_SIZE" },
+    { CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE" },
+    { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
+  {
+    if (names[i].code == error)
+    {
+      return names[i].name;
+    }
+  }
+  return "an OpenCL error";
+}
+
+#define MCOR_CL_TRY(context, call, what)                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    const cl_int mcor_cl_error_ = (call);                                                          \
+    MCOR_RETURN_IF(mcor_cl_error_ != CL_SUCCESS, context, MCOR_DEVICE_ERROR,                       \
+      "OpenCL device %s: %s failed with %s (%d).", (context)->cl.device_name, what,                \
+      mcor_cl_error_name(mcor_cl_error_), (int)mcor_cl_error_);                                    \
+  } while (0)
+
+static void mcor_find_devices(mcor_device_list* list)
+{
+  cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
+  cl_uint platform_count = 0;
+  list->count = 0;
+  if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
+  {
+    return;
+  }
+  for (cl_uint p = 0; p < platform_count && p < MCOR_PLATFORM_LIMIT; ++p)
+  {
+    const int room = MCOR_DEVICE_LIMIT - list->count;
+    cl_uint found = 0;
+    if (room <= 0 ||
+      clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, (cl_uint)room,
+        list->devices + list->count, &found) != CL_SUCCESS)
+    {
+      continue;
+    }
+    for (cl_uint d = 0; d < found && d < (cl_uint)room; ++d)
+    {
+      list->platforms[list->count++] = platforms[p];
+    }
+  }
+}
+
+static void mcor_device_names(
+  cl_platform_id platform, cl_device_id device, char* device_name, char* platform_name, size_t size)
+{
+  device_name[0] = platform_name[0] = '\0';
+  clGetDeviceInfo(device, CL_DEVICE_NAME, size, device_name, NULL);
+  clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, platform_name, NULL);
+}
+
+mcor_status mcor_list_devices(char** text)
+{
+  if (!text)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  const size_t line = 300;
+  *text = calloc((size_t)list.count * line + 1, 1);
+  if (!*text)
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  size_t length = 0;
+  for (int i = 0; i < list.count; ++i)
+  {
+    char device[128], platform[128];
+    mcor_device_names(list.platforms[i], list.devices[i], device, platform, sizeof device);
+    length += (size_t)snprintf(*text + length, line, "%d: %s (%s)\n", i, device, platform);
+  }
+  return MCOR_OK;
+}
+
+/* Index into the list of the device that the user named, or -1. */
+static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
+{
+  char* end = NULL;
+  const bool is_default = !wanted || !*wanted;
+  const long number = is_default ? -1 : strtol(wanted, &end, 10);
+  if (!is_default && *end == '\0')
+  {
+    return number >= 0 && number < list->count ? (int)number : -1;
+  }
+  for (int i = 0; i < list->count; ++i)
+  {
+    char device[128], platform[128];
+    mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
+    if (is_default ? strcmp(platform, MCOR_DEFAULT_PLATFORM) == 0
+                   : strstr(device, wanted) != NULL || strstr(platform, wanted) != NULL)
+    {
+      return i;
+    }
+  }
+  return is_default && list->count > 0 ? 0 : -1;
+}
+
+static void mcor_query_device(mcor_cl* cl)
+{
+  cl_device_type type = 0;
+  cl_uint units = 1;
+  cl_device_fp_config fp64 = 0;
+  clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof cl->device_memory,
+    &cl->device_memory, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer,
+    &cl->largest_buffer, NULL);
+  cl->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+  cl->has_fp64 = fp64 != 0;
+  cl->chunks = cl->is_cpu ? (int)units * 8 : 4096;
+}
+
+mcor_status mcor_open_device(mcor_context* context, const char* device)
+{
+  mcor_cl* cl = &context->cl;
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  MCOR_RETURN_IF(list.count == 0, context, MCOR_DEVICE_ERROR,
+    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
+    "runs on the CPU.");
+  const int chosen = mcor_choose_device(&list, device);
+  MCOR_RETURN_IF(chosen < 0, context, MCOR_DEVICE_ERROR,
+    "There is no OpenCL device \"%s\"; give a number below %d or part of a device's name.", device,
+    list.count);
+  cl->platform = list.platforms[chosen];
+  cl->device = list.devices[chosen];
+  mcor_device_names(
+    cl->platform, cl->device, cl->device_name, cl->platform_name, sizeof cl->device_name);
+  mcor_query_device(cl);
+  cl_int error;
+  cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
+  MCOR_CL_TRY(context, error, "clCreateContext");
+  cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);
+  MCOR_CL_TRY(context, error, "clCreateCommandQueue");
+  return MCOR_OK;
+}
+
+static void mcor_drop_program(mcor_cl* cl)
+{
+  for (int i = 0; i < cl->kernel_count; ++i)
+  {
+    clReleaseKernel(cl->kernels[i].kernel);
+  }
+  cl->kernel_count = 0;
+  if (cl->program)
+  {
+    clReleaseProgram(cl->program);
+    cl->program = NULL;
+  }
+}
+
+void mcor_close_device(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  mcor_drop_program(cl);
+  if (cl->queue)
+  {
+    clReleaseCommandQueue(cl->queue);
+  }
+  if (cl->context)
+  {
+    clReleaseContext(cl->context);
+  }
+}
+
+/* Work-items' vector width: what the device's registers hold of the type. */
+static int mcor_lanes(const mcor_cl* cl, mcor_type precision)
+{
+  const char* forced = getenv("MCOR_LANES"); /* to test the GPU's form of the kernels on a CPU */
+  if (forced && *forced)
+  {
+    const int lanes = atoi(forced);
+    return lanes == 8 || lanes == 16 ? lanes : 1;
+  }
+  if (!cl->is_cpu)
+  {
+    return 1;
+  }
+  cl_uint width = 1;
+  clGetDeviceInfo(cl->device,
+    precision == MCOR_FLOAT64 ? CL_DEVICE_NATIVE_VECTOR_WIDTH_DOUBLE
+                              : CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT,
+    sizeof width, &width, NULL);
+  return width >= 16 ? 16 : 8;
+}
+
+static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char* text, size_t size)
+{
+#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, #norm, support, tensor },
+  static const struct
+  {
+    const char *name, *norm;
+    int support, tensor;
+  } kernels[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
+#undef MCOR_ENTRY
+  const int k = (int)build->sph_kernel;
+  const bool is_double = build->precision == MCOR_FLOAT64;
+  snprintf(text, size,
+    "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_DOUBLE=%d "
+    "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%d.0%s "
+    "-DMCOR_TENSOR=%d -DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
+    cl->lanes, is_double, kernels[k].name, kernels[k].name, kernels[k].norm, is_double ? "" : "f",
+    kernels[k].support, is_double ? "" : "f", kernels[k].tensor, (int)build->field, build->solids);
+}
+
+mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  const int lanes = mcor_lanes(cl, build->precision);
+  cl->build_seconds = 0;
+  if (cl->program && cl->lanes == lanes && memcmp(&cl->build, build, sizeof *build) == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
+    "OpenCL device %s has no double precision; choose another device or single precision.",
+    cl->device_name);
+  const double begin = mcor_seconds();
+  mcor_drop_program(cl);
+  cl->lanes = lanes;
+  cl->build = *build;
+  cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
+  cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
+  const char* sources[] = { mcor_source_mcor_prelude_cl, mcor_source_mcor_sph_kernel_h,
+    mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl,
+    mcor_source_mcor_brick_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_march_cl,
+    mcor_source_mcor_pair_cl, mcor_source_mcor_correct_cl, mcor_source_mcor_trim_cl, mcor_source_mcor_output_cl };
+  char options[512];
+  mcor_build_options(cl, build, options, sizeof options);
+  cl_int error;
+  cl->program = clCreateProgramWithSource(
+    cl->context, sizeof sources / sizeof sources[0], sources, NULL, &error);
+  MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
+  error = clBuildProgram(cl->program, 1, &cl->device, options, NULL, NULL);
+  if (error != CL_SUCCESS)
+  {
+    char log[3000] = "";
+    clGetProgramBuildInfo(
+      cl->program, cl->device, CL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
+    mcor_drop_program(cl);
+    return mcor_fail(context, MCOR_DEVICE_ERROR,
+      "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
+      mcor_cl_error_name(error), options, log);
+  }
+  cl->build_seconds = mcor_seconds() - begin;
+  return MCOR_OK;
+}
+
+void mcor_release(mcor_context* context, mcor_buffer* buffer)
+{
+  if (buffer->mem)
+  {
+    clReleaseMemObject(buffer->mem);
+    context->cl.bytes -= (int64_t)buffer->size;
+  }
+  buffer->mem = NULL;
+  buffer->size = 0;
+}
+
+mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes)
+{
+  mcor_cl* cl = &context->cl;
+  const size_t size = (bytes + 255) / 256 * 256 + 256; /* never empty */
+  if (buffer->mem && buffer->size >= bytes)
+  {
+    return MCOR_OK;
+  }
+  mcor_release(context, buffer);
+  MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->device_memory,
+    context, MCOR_OUT_OF_CAPACITY,
+    "This would need a buffer of %.0f MB besides %.0f MB in use, but device %s has %.0f MB, %.0f MB "
+    "at most in one buffer. Use a larger cube size, or fewer particles.",
+    (double)size / 1e6, (double)cl->bytes / 1e6, cl->device_name, (double)cl->device_memory / 1e6,
+    (double)cl->largest_buffer / 1e6);
+  cl_int error;
+  buffer->mem = clCreateBuffer(cl->context, CL_MEM_READ_WRITE, size, NULL, &error);
+  if (error != CL_SUCCESS)
+  {
+    buffer->mem = NULL;
+    return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
+      "Device %s could not allocate %.0f MB (%s). Use a larger cube size, or fewer particles.",
+      cl->device_name, (double)size / 1e6, mcor_cl_error_name(error));
+  }
+  buffer->size = size;
+  cl->bytes += (int64_t)size;
+  cl->bytes_peak = cl->bytes > cl->bytes_peak ? cl->bytes : cl->bytes_peak;
+  return MCOR_OK;
+}
+
+mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes)
+{
+  MCOR_TRY(mcor_reserve(context, buffer, bytes));
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueWriteBuffer(
+        context->cl.queue, buffer->mem, CL_TRUE, 0, bytes, data, 0, NULL, NULL),
+      "clEnqueueWriteBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_read(
+  mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes)
+{
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueReadBuffer(
+        context->cl.queue, buffer->mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL),
+      "clEnqueueReadBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_zero(mcor_context* context, mcor_buffer* buffer, size_t bytes)
+{
+  MCOR_TRY(mcor_reserve(context, buffer, bytes));
+  const cl_uchar zero = 0;
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueFillBuffer(
+        context->cl.queue, buffer->mem, &zero, sizeof zero, 0, bytes, 0, NULL, NULL),
+      "clEnqueueFillBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_copy(
+  mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t bytes)
+{
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueCopyBuffer(context->cl.queue, from->mem, to->mem, 0, 0, bytes, 0, NULL, NULL),
+      "clEnqueueCopyBuffer");
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_find_kernel(mcor_context* context, const char* name, cl_kernel* kernel)
+{
+  mcor_cl* cl = &context->cl;
+  for (int i = 0; i < cl->kernel_count; ++i)
+  {
+    if (strcmp(cl->kernels[i].name, name) == 0)
+    {
+      *kernel = cl->kernels[i].kernel;
+      return MCOR_OK;
+    }
+  }
+  cl_int error = CL_OUT_OF_RESOURCES;
+  if (cl->kernel_count < MCOR_KERNEL_LIMIT)
+  {
+    *kernel = clCreateKernel(cl->program, name, &error);
+  }
+  MCOR_CL_TRY(context, error, name);
+  snprintf(cl->kernels[cl->kernel_count].name, sizeof cl->kernels[0].name, "%s", name);
+  cl->kernels[cl->kernel_count++].kernel = *kernel;
+  return MCOR_OK;
+}
+
+static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const mcor_arg* arg)
+{
+  const cl_int integer = arg->integer;
+  const cl_float single = (cl_float)arg->real;
+  const cl_double real = arg->real;
+  switch (arg->kind)
+  {
+    case MCOR_ARG_BUFFER:
+      return clSetKernelArg(kernel, i, sizeof(cl_mem), &arg->buffer->mem);
+    case MCOR_ARG_INT:
+      return clSetKernelArg(kernel, i, sizeof integer, &integer);
+    default:
+      return cl->real_size == sizeof single ? clSetKernelArg(kernel, i, sizeof single, &single)
+                                            : clSetKernelArg(kernel, i, sizeof real, &real);
+  }
+}
+
+mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
+  const mcor_arg* args, size_t arg_count)
+{
+  mcor_cl* cl = &context->cl;
+  if (items == 0)
+  {
+    return MCOR_OK;
+  }
+  cl_kernel kernel = NULL;
+  MCOR_TRY(mcor_find_kernel(context, name, &kernel));
+  for (size_t i = 0; i < arg_count; ++i)
+  {
+    MCOR_CL_TRY(context, mcor_set_arg(cl, kernel, (cl_uint)i, args + i), name);
+  }
+  const size_t group = cl->is_cpu && load == MCOR_HEAVY ? 1 : 64;
+  const size_t global = (items + group - 1) / group * group;
+  MCOR_CL_TRY(context,
+    clEnqueueNDRangeKernel(cl->queue, kernel, 1, NULL, &global, &group, 0, NULL, NULL), name);
+  return MCOR_OK;
+}
+
+mcor_status mcor_finish(mcor_context* context)
+{
+  MCOR_CL_TRY(context, clFinish(context->cl.queue), "clFinish");
+  return MCOR_OK;
+}

@@ -1,0 +1,112 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_cl_h
+#define mcor_cl_h
+
+/* OpenCL: device, program, buffers, launches. mcor_cl.c is the only file that calls cl*. */
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include "mcor.h"
+
+#include <stdbool.h>
+
+#define MCOR_KERNEL_LIMIT 64
+
+/* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
+typedef struct mcor_buffer
+{
+  cl_mem mem;
+  size_t size; /* bytes */
+} mcor_buffer;
+
+/* What the program is compiled for. */
+typedef struct mcor_build
+{
+  mcor_sph_kernel sph_kernel;
+  mcor_field field;
+  mcor_type precision;
+  bool solids;
+} mcor_build;
+
+typedef struct mcor_cl
+{
+  cl_platform_id platform;
+  cl_device_id device;
+  cl_context context;
+  cl_command_queue queue;
+  cl_program program;
+  mcor_build build; /* of program */
+  struct
+  {
+    char name[48];
+    cl_kernel kernel;
+  } kernels[MCOR_KERNEL_LIMIT];
+  int kernel_count;
+  bool is_cpu, has_fp64;
+  int lanes;  /* MCOR_LANES of program */
+  int chunks; /* runs into which scans and sorts cut their arrays */
+  size_t real_size, fix_size;
+  uint64_t device_memory, largest_buffer;
+  int64_t bytes, bytes_peak;
+  double build_seconds;
+  char device_name[128], platform_name[128];
+} mcor_cl;
+
+/* One kernel argument. Reals are passed in the program's precision. */
+typedef struct mcor_arg
+{
+  enum
+  {
+    MCOR_ARG_BUFFER,
+    MCOR_ARG_INT,
+    MCOR_ARG_REAL
+  } kind;
+  const mcor_buffer* buffer;
+  int integer;
+  double real;
+} mcor_arg;
+
+#define MCOR_BUFFER(b)                                                                             \
+  {                                                                                                \
+    .kind = MCOR_ARG_BUFFER, .buffer = (b)                                                         \
+  }
+#define MCOR_INT(i)                                                                                \
+  {                                                                                                \
+    .kind = MCOR_ARG_INT, .integer = (i)                                                           \
+  }
+#define MCOR_REAL(r)                                                                               \
+  {                                                                                                \
+    .kind = MCOR_ARG_REAL, .real = (r)                                                             \
+  }
+
+/* How much one work-item does: a light one is a few operations, a heavy one a field evaluation, for
+ * which a CPU gets a work-group each. */
+typedef enum mcor_load
+{
+  MCOR_LIGHT,
+  MCOR_HEAVY
+} mcor_load;
+
+#define MCOR_LAUNCH(context, name, load, items, ...)                                               \
+  mcor_launch(context, name, load, (size_t)(items), (const mcor_arg[]){ __VA_ARGS__ },             \
+    sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
+
+mcor_status mcor_open_device(mcor_context* context, const char* device);
+void mcor_close_device(mcor_context* context);
+/* Builds the program unless the one at hand fits. */
+mcor_status mcor_build_program(mcor_context* context, const mcor_build* build);
+mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
+void mcor_release(mcor_context* context, mcor_buffer* buffer);
+mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
+mcor_status mcor_read(
+  mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
+mcor_status mcor_zero(mcor_context* context, mcor_buffer* buffer, size_t bytes);
+mcor_status mcor_copy(
+  mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t bytes);
+mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
+  const mcor_arg* args, size_t arg_count);
+mcor_status mcor_finish(mcor_context* context);
+
+#endif

@@ -1,0 +1,303 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* mcor_extract: the phases in order. Section numbers in brackets, here and in the phases' files, are
+ * those of the paper named in mcor.h. */
+
+#include "mcor_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void mcor_set_default_options(mcor_options* options)
+{
+  *options = (mcor_options){ .sph_kernel = MCOR_CUBIC_SPLINE,
+    .field = MCOR_SHEPARD,
+    .seeds = MCOR_COMPLETE,
+    .h_scale = 1,
+    .cube_size_factor = 0.5,
+    .node_threshold = 0.1,
+    .vertex_threshold = 0.5,
+    .tolerance = 1e-6,
+    .iteration_limit = 30,
+    .precision = MCOR_FLOAT32,
+    .normals = 1 };
+}
+
+mcor_status mcor_create_context(const char* device, mcor_context** context)
+{
+  if (!context)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *context = calloc(1, sizeof **context);
+  if (!*context)
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  const mcor_status status = mcor_open_device(*context, device);
+  if (status == MCOR_OK)
+  {
+    uint8_t table[256][16];
+    mcor_make_case_table(table);
+    return mcor_write(*context, &(*context)->case_table, table, sizeof table);
+  }
+  return status;
+}
+
+void mcor_release_memory(mcor_context* context)
+{
+  if (!context)
+  {
+    return;
+  }
+  mcor_grid* g = &context->grid;
+  mcor_bricks* b = &context->bricks;
+  mcor_mesh* m = &context->mesh;
+  mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
+    &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &b->block_keys,
+    &b->block_buckets, &b->block_keep, &b->marks, &b->bits, &b->base, &b->now.bricks, &b->now.known,
+    &b->now.cells, &b->now.value, &b->now.weight, &b->last.bricks, &b->last.known, &b->last.cells,
+    &b->last.value, &b->last.weight, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
+    &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
+    &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->triangles,
+    &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
+    &m->scanned, &context->scan_sums, &context->sort_keys, &context->sort_values,
+    &context->sort_histogram, &context->attributes };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+  for (size_t i = 0; i < sizeof context->scratch / sizeof context->scratch[0]; ++i)
+  {
+    mcor_release(context, &context->scratch[i]);
+  }
+  for (size_t i = 0; i < sizeof context->out / sizeof context->out[0]; ++i)
+  {
+    mcor_release(context, &context->out[i]);
+  }
+  free(context->source);
+  context->source = NULL;
+  b->now.count = b->last.count = 0;
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+}
+
+void mcor_free_context(mcor_context* context)
+{
+  if (!context)
+  {
+    return;
+  }
+  mcor_release_memory(context);
+  mcor_release(context, &context->case_table);
+  mcor_close_device(context);
+  free(context);
+}
+
+void mcor_free_surface(mcor_surface* surface)
+{
+  if (!surface)
+  {
+    return;
+  }
+  void* const arrays[] = { surface->points, surface->triangles, surface->normals,
+    surface->gradients, surface->weight_sum, surface->correction_length, surface->residual,
+    surface->boundary_flag, surface->iso_value, surface->nearest_particle };
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+  {
+    free(arrays[i]);
+  }
+  for (int a = 0; surface->attributes && a < surface->attribute_count; ++a)
+  {
+    free(surface->attributes[a]);
+  }
+  free(surface->attributes);
+  *surface = (mcor_surface){ 0 };
+}
+
+mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction)
+{
+  const mcor_options* options = context->options;
+  MCOR_TRY(mcor_finish(context));
+  const double now = mcor_seconds();
+  context->statistics->seconds[context->phase] += now - context->phase_begin;
+  context->phase = phase;
+  context->phase_begin = now;
+  MCOR_RETURN_IF(options->progress &&
+      options->progress(options->progress_user, fraction, mcor_phase_name(phase)) != 0,
+    context, MCOR_CANCELLED, "The extraction was cancelled before phase \"%s\".",
+    mcor_phase_name(phase));
+  return MCOR_OK;
+}
+
+static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
+{
+  return (a->data == NULL) == (b->data == NULL) && a->type == b->type &&
+    (a->data || a->constant == b->constant);
+}
+
+/* What of the last call still holds. The caller's version numbers stand for the arrays' content; all
+ * else that the search grid, the scalar and the node values depend on is compared. */
+static void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  const mcor_input* last = &context->last_input;
+  const mcor_options* o = &context->last_options;
+  const bool particles = input->particles_version != 0 &&
+    input->particles_version == last->particles_version && input->count == last->count &&
+    mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
+    input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
+    input->estimate_smoothing_length == last->estimate_smoothing_length &&
+    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
+    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
+    mcor_same_array(&input->density, &last->density) &&
+    mcor_same_array(&input->volume, &last->volume) &&
+    (input->solid == NULL) == (last->solid == NULL) && input->ignore_solids == last->ignore_solids;
+  const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
+    options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
+    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision;
+  context->grid_valid = context->grid_valid && particles && parameters;
+  context->value_valid = context->value_valid && context->grid_valid &&
+    input->scalar_version != 0 && input->scalar_version == last->scalar_version &&
+    input->scalar_component == last->scalar_component &&
+    (input->scalar_dot.data == NULL) == (last->scalar_dot.data == NULL);
+  context->nodes_valid = context->nodes_valid && context->value_valid;
+}
+
+static mcor_status mcor_prepare(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  if (!context->value_valid)
+  {
+    MCOR_TRY(mcor_measure_input(context, input, options));
+  }
+  context->grid.has_solids = context->measure.solid_count > 0 && !input->ignore_solids &&
+    options->field != MCOR_WEIGHT_SUM;
+  const mcor_build build = { .sph_kernel = options->sph_kernel,
+    .field = options->field,
+    .precision = options->precision,
+    .solids = context->grid.has_solids };
+  MCOR_TRY(mcor_build_program(context, &build));
+  if (!context->grid_valid)
+  {
+    MCOR_TRY(mcor_make_grid(context, input));
+  }
+  if (!context->value_valid)
+  {
+    MCOR_TRY(mcor_set_scalar(context, input));
+  }
+  if (!context->nodes_valid)
+  {
+    MCOR_TRY(mcor_make_blocks(context));
+  }
+  context->grid_valid = context->value_valid = context->nodes_valid = true;
+  return MCOR_OK;
+}
+
+static mcor_status mcor_extract_iso(
+  mcor_context* context, const mcor_input* input, int i, mcor_surface* surface)
+{
+  const mcor_options* options = context->options;
+  const double value = options->iso_values[i], iso = value - context->value_shift;
+  const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin));
+  MCOR_TRY(mcor_select_seeds(context, iso));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step));
+  MCOR_TRY(mcor_march(context, iso));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step));
+  MCOR_TRY(mcor_correct(context, iso));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step));
+  MCOR_TRY(mcor_trim(context, iso));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step));
+  return mcor_append_output(context, input, value, surface);
+}
+
+/* Numbers of SPEC's tables that are known at the end. */
+static void mcor_finish_statistics(mcor_context* context)
+{
+  mcor_statistics* s = context->statistics;
+  const mcor_measure* m = &context->measure;
+  const mcor_lattice* lattice = &context->lattice;
+  const double n = context->correction_count;
+  s->build_seconds = context->cl.build_seconds;
+  s->fluid_particles = m->fluid_count;
+  s->solid_particles = m->solid_count;
+  s->smoothing_length_min = m->h_min;
+  s->smoothing_length_max = m->h_max;
+  s->cube_size = lattice->cube;
+  s->scalar_min = m->scalar_min;
+  s->scalar_max = m->scalar_max;
+  s->virtual_cells = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    s->lattice_origin[a] = lattice->origin[a] + lattice->first[a];
+    s->lattice_cells[a] = lattice->last[a] - lattice->first[a];
+    s->virtual_cells *= s->lattice_cells[a];
+  }
+  s->bricks = context->bricks.now.count;
+  s->correction_mean = n > 0 ? context->correction_sum / n : 0;
+  s->correction_deviation = n > 0
+    ? sqrt(fmax(context->correction_squares / n - s->correction_mean * s->correction_mean, 0))
+    : 0;
+  s->iterations_mean = s->vertices_corrected > 0
+    ? (double)s->newton_evaluations / (double)s->vertices_corrected - 1
+    : 0;
+  s->device_bytes_peak = context->cl.bytes_peak;
+  snprintf(s->device, sizeof s->device, "%s", context->cl.device_name);
+  snprintf(s->platform, sizeof s->platform, "%s", context->cl.platform_name);
+}
+
+static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface)
+{
+  surface->attribute_count = input->attribute_count;
+  surface->attributes = calloc((size_t)input->attribute_count + 1, sizeof(double*));
+  MCOR_RETURN_IF(!surface->attributes, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_check_input(context, input, options));
+  if (input->count == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_check_reuse(context, input, options);
+  MCOR_TRY(mcor_prepare(context, input, options));
+  for (int i = 0; i < options->iso_count; ++i)
+  {
+    MCOR_TRY(mcor_extract_iso(context, input, i, surface));
+  }
+  if (surface->normals)
+  {
+    MCOR_TRY(mcor_finish_normals(context, surface));
+  }
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1));
+  mcor_finish_statistics(context);
+  return MCOR_OK;
+}
+
+mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface)
+{
+  if (!context || !surface)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *surface = (mcor_surface){ 0 };
+  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
+  MCOR_RETURN_IF(!context->cl.queue, context, MCOR_DEVICE_ERROR, "The context has no device.");
+  context->error[0] = '\0';
+  context->options = options;
+  context->statistics = &surface->statistics;
+  context->phase = MCOR_PHASE_INPUT;
+  context->phase_begin = mcor_seconds();
+  context->correction_count = context->correction_sum = context->correction_squares = 0;
+  context->cl.bytes_peak = context->cl.bytes;
+  const mcor_status status = mcor_run(context, input, options, surface);
+  context->last_input = *input;
+  context->last_options = *options;
+  if (status != MCOR_OK)
+  {
+    context->grid_valid = context->value_valid = context->nodes_valid = false;
+    mcor_free_surface(surface);
+  }
+  return status;
+}

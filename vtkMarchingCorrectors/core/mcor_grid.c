@@ -1,0 +1,326 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Search grid [III-A]: levels, counting sort, volumes; and the scalar in sorted order. */
+
+#include "mcor_input.h"
+#include "mcor_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The input in the device's form, in input order; solids that are not used left out. */
+typedef struct mcor_staging
+{
+  int count;
+  void *xyz, *inv_h, *size; /* fix [count][3], real [count]; size: volume, mass, or 1 */
+  uint8_t *solid, *level;
+  int32_t* source;
+} mcor_staging;
+
+static void mcor_free_staging(mcor_staging* staging)
+{
+  free(staging->xyz);
+  free(staging->inv_h);
+  free(staging->size);
+  free(staging->solid);
+  free(staging->level);
+  *staging = (mcor_staging){ 0 };
+}
+
+static void mcor_put_real(const mcor_context* context, void* array, int64_t i, double value)
+{
+  if (context->cl.real_size == sizeof(float))
+  {
+    ((float*)array)[i] = (float)value;
+  }
+  else
+  {
+    ((double*)array)[i] = value;
+  }
+}
+
+static void mcor_put_position(
+  const mcor_context* context, const mcor_input* input, int64_t i, void* xyz, int64_t to)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double cubes =
+      mcor_array_at(&positions, i, a) / lattice->cube - (double)lattice->origin[a];
+    const double fixed = nearbyint(ldexp(cubes, lattice->fix_bits));
+    if (context->cl.fix_size == sizeof(int32_t))
+    {
+      ((int32_t*)xyz)[3 * to + a] = (int32_t)fixed;
+    }
+    else
+    {
+      ((int64_t*)xyz)[3 * to + a] = (int64_t)fixed;
+    }
+  }
+}
+
+/* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume in
+ * cubes, the mass over the mean mass, or 1. */
+static double mcor_size_scale(const mcor_context* context, const mcor_input* input)
+{
+  const double cube = context->lattice.cube;
+  if (input->has_volume || (input->has_mass && input->has_density))
+  {
+    return 1 / (cube * cube * cube);
+  }
+  if (!input->has_mass)
+  {
+    return 1;
+  }
+  double sum = 0;
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    sum += mcor_array_at(&input->mass, i, 0);
+  }
+  return (double)input->count / sum;
+}
+
+static bool mcor_needs_density(const mcor_input* input)
+{
+  return !input->has_volume && !(input->has_mass && input->has_density);
+}
+
+static double mcor_size_at(const mcor_input* input, int64_t i)
+{
+  if (input->has_volume)
+  {
+    return mcor_array_at(&input->volume, i, 0);
+  }
+  const double mass = input->has_mass ? mcor_array_at(&input->mass, i, 0) : 1;
+  return input->has_mass && input->has_density ? mass / mcor_array_at(&input->density, i, 0) : mass;
+}
+
+static int mcor_level_of(double support_max, double support)
+{
+  const int level = ilogb(support_max / support);
+  return level < 0 ? 0 : level >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : level;
+}
+
+static mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging)
+{
+  const mcor_measure* m = &context->measure;
+  const size_t n = (size_t)input->count;
+  const double reach =
+    mcor_support_factor(context->options->sph_kernel) * context->options->h_scale;
+  const double size_scale = mcor_size_scale(context, input);
+  staging->xyz = malloc(n * 3 * context->cl.fix_size);
+  staging->inv_h = malloc(n * context->cl.real_size);
+  staging->size = malloc(n * context->cl.real_size);
+  staging->solid = malloc(n);
+  staging->level = malloc(n);
+  free(context->source);
+  context->source = malloc(n * sizeof(int32_t));
+  MCOR_RETURN_IF(!staging->xyz || !staging->inv_h || !staging->size || !staging->solid ||
+      !staging->level || !context->source,
+    context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld particles could not be allocated.",
+    (long long)input->count);
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    if (!mcor_is_used(context, input, i))
+    {
+      continue;
+    }
+    const int to = staging->count++;
+    const double h = mcor_smoothing_length_at(context, input, i);
+    const double scaled = context->options->h_scale * h / context->lattice.cube;
+    mcor_put_position(context, input, i, staging->xyz, to);
+    mcor_put_real(context, staging->inv_h, to, 1 / scaled);
+    mcor_put_real(context, staging->size, to, mcor_size_at(input, i) * size_scale);
+    staging->solid[to] = input->solid && input->solid[i];
+    staging->level[to] = (uint8_t)mcor_level_of(m->support_max, h * reach);
+    context->source[to] = (int32_t)i;
+  }
+  return MCOR_OK;
+}
+
+/* One level for each factor of 2 of support radius that occurs; renumbers staging->level. Returns
+ * the number of search cells of all levels. */
+static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
+{
+  mcor_grid* grid = &context->grid;
+  const mcor_lattice* lattice = &context->lattice;
+  bool occurs[MCOR_LEVEL_LIMIT] = { false };
+  uint8_t number[MCOR_LEVEL_LIMIT];
+  for (int i = 0; i < staging->count; ++i)
+  {
+    occurs[staging->level[i]] = true;
+  }
+  uint64_t base = 0;
+  grid->level_count = 0;
+  for (int l = 0; l < MCOR_LEVEL_LIMIT; ++l)
+  {
+    if (!occurs[l])
+    {
+      continue;
+    }
+    number[l] = (uint8_t)grid->level_count;
+    mcor_level* level = &grid->levels[grid->level_count++];
+    /* A little more than the support: rounding, here and on the device, must not lose a particle. */
+    const double support = context->measure.support_max / lattice->cube * ldexp(1.0001, -l);
+    level->base = base;
+    level->support = (cl_float)support;
+    level->inv_cell = (cl_float)(1 / ldexp(support, lattice->fix_bits));
+    level->unused = 0;
+    uint64_t cells = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      level->cells[a] = (cl_int)((double)lattice->last[a] / support) + 2;
+      cells *= (uint64_t)level->cells[a];
+    }
+    base += cells;
+  }
+  for (int i = 0; i < staging->count; ++i)
+  {
+    staging->level[i] = number[staging->level[i]];
+  }
+  return base;
+}
+
+static mcor_status mcor_reserve_particles(mcor_context* context, int count)
+{
+  mcor_grid* grid = &context->grid;
+  const size_t n = (size_t)count + MCOR_PADDING;
+  mcor_buffer* fixes[] = { &grid->px, &grid->py, &grid->pz };
+  mcor_buffer* reals[] = { &grid->inv_h, &grid->trim_weight, &grid->value };
+  for (int i = 0; i < 3; ++i)
+  {
+    /* Zeroed, as vector loads read the padding. */
+    MCOR_TRY(mcor_zero(context, fixes[i], n * context->cl.fix_size));
+    MCOR_TRY(mcor_zero(context, reals[i], n * context->cl.real_size));
+  }
+  return grid->has_solids ? mcor_zero(context, &grid->fluid_weight, n * context->cl.real_size)
+                          : MCOR_OK;
+}
+
+/* Sorts by search cell, then within a cell, and moves the particles into that order. */
+static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* staging)
+{
+  mcor_grid* grid = &context->grid;
+  const size_t n = (size_t)staging->count;
+  mcor_buffer *xyz = &context->scratch[0], *inv_h = &context->scratch[1],
+              *size = &context->scratch[2], *solid = &context->scratch[3],
+              *level = &context->scratch[4];
+  const uint64_t cells = mcor_make_levels(context, staging);
+  const int count = grid->count = staging->count;
+  MCOR_TRY(mcor_write(
+    context, &grid->level_buffer, grid->levels, (size_t)grid->level_count * sizeof(mcor_level)));
+  MCOR_TRY(mcor_write(context, level, staging->level, n));
+  MCOR_TRY(mcor_write(context, xyz, staging->xyz, 3 * n * context->cl.fix_size));
+  MCOR_TRY(mcor_write(context, inv_h, staging->inv_h, n * context->cl.real_size));
+  MCOR_TRY(mcor_write(context, size, staging->size, n * context->cl.real_size));
+  MCOR_TRY(mcor_write(context, solid, staging->solid, n));
+  MCOR_TRY(mcor_reserve(context, &grid->cell_keys, n * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(level), MCOR_BUFFER(xyz),
+    MCOR_BUFFER(&grid->cell_keys)));
+  MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size),
+    MCOR_BUFFER(&grid->order)));
+  MCOR_TRY(mcor_index_keys(
+    context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
+  MCOR_TRY(mcor_reserve_particles(context, count));
+  return MCOR_LAUNCH(context, "mcor_grid_gather", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size),
+    MCOR_BUFFER(solid), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
+    MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+    MCOR_BUFFER(&grid->trim_weight));
+}
+
+/* V = m / sum_k m_k W(x_j - x_k, h_j), own and unscaled h; m = 1 where no mass is known. */
+static mcor_status mcor_compute_volumes(mcor_context* context)
+{
+  mcor_grid* grid = &context->grid;
+  const int count = grid->count;
+  const size_t bytes = ((size_t)count + MCOR_PADDING) * context->cl.real_size;
+  mcor_buffer *size = &context->scratch[2], *solid = &context->scratch[3],
+              *mass = &context->scratch[4], *density = &context->scratch[5];
+  MCOR_TRY(mcor_reserve(context, mass, bytes));
+  MCOR_TRY(mcor_reserve(context, density, bytes));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(size), MCOR_BUFFER(mass),
+    MCOR_INT(0)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
+    (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
+    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(mass), MCOR_BUFFER(density)));
+  return MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(solid),
+    MCOR_BUFFER(mass), MCOR_BUFFER(density),
+    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+    MCOR_BUFFER(&grid->trim_weight));
+}
+
+mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
+{
+  mcor_staging staging = { 0 };
+  mcor_status status = mcor_stage(context, input, &staging);
+  if (status == MCOR_OK)
+  {
+    status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1);
+  }
+  if (status == MCOR_OK)
+  {
+    status = mcor_sort_particles(context, &staging);
+  }
+  mcor_free_staging(&staging);
+  MCOR_TRY(status);
+  return mcor_needs_density(input) ? mcor_compute_volumes(context) : MCOR_OK;
+}
+
+/* One real per particle used, from the caller's order to the sorted one, to element to_offset. */
+mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
+  double (*at)(const mcor_input* input, const void* user, int64_t i), const void* user,
+  double shift, mcor_buffer* to, int to_offset)
+{
+  const mcor_grid* grid = &context->grid;
+  const size_t bytes = (size_t)grid->count * context->cl.real_size;
+  mcor_buffer* raw = &context->scratch[0];
+  void* values = malloc(bytes + 1);
+  MCOR_RETURN_IF(!values, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %d values could not be allocated.", grid->count);
+  for (int i = 0; i < grid->count; ++i)
+  {
+    mcor_put_real(context, values, i, at(input, user, context->source[i]) - shift);
+  }
+  mcor_status status = mcor_write(context, raw, values, bytes);
+  free(values);
+  MCOR_TRY(status);
+  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw),
+    MCOR_BUFFER(to), MCOR_INT(to_offset));
+}
+
+static double mcor_scalar_value(const mcor_input* input, const void* user, int64_t i)
+{
+  (void)user;
+  return mcor_scalar_at(input, i);
+}
+
+/* A Shepard mean shifts with its values, so A - A0 with A0 in mid range keeps the digits of a scalar
+ * with a large offset. */
+mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
+{
+  mcor_grid* grid = &context->grid;
+  const mcor_field field = context->options->field;
+  const mcor_measure* m = &context->measure;
+  context->value_shift =
+    field == MCOR_SHEPARD ? 0.5 * m->scalar_min + 0.5 * m->scalar_max : 0;
+  if (field == MCOR_WEIGHT_SUM)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_sort_values(
+    context, input, mcor_scalar_value, NULL, context->value_shift, &grid->value, 0));
+  return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
+    MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(&grid->value));
+}

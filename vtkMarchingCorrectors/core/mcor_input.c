@@ -1,0 +1,383 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Checks of everything a caller hands in, and what the other phases need to know of it. */
+
+#include "mcor_internal.h"
+#include "mcor_input.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-10 cubes. */
+#define MCOR_LATTICE_LIMIT (1 << 20)
+
+static const char* mcor_array_name(const mcor_array* array, const char* role)
+{
+  return array->name ? array->name : role;
+}
+
+static int mcor_components(const mcor_array* array)
+{
+  return array->components > 0 ? array->components : 1;
+}
+
+double mcor_scalar_at(const mcor_input* input, int64_t i)
+{
+  const mcor_array* a = &input->scalar;
+  const int components = mcor_components(a);
+  if (input->scalar_dot.data || input->scalar_component == MCOR_MAGNITUDE)
+  {
+    const mcor_array* b = input->scalar_dot.data ? &input->scalar_dot : a;
+    double sum = 0;
+    for (int c = 0; c < components; ++c)
+    {
+      sum += mcor_array_at(a, i, c) * mcor_array_at(b, i, c);
+    }
+    return input->scalar_dot.data ? sum : sqrt(sum);
+  }
+  return mcor_array_at(a, i, components > 1 ? input->scalar_component : 0);
+}
+
+static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
+{
+#define MCOR_NEED(condition, ...)                                                                  \
+  MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
+  MCOR_NEED((unsigned)options->sph_kernel < MCOR_SPH_KERNEL_COUNT, "There is no SPH kernel number %d.",
+    (int)options->sph_kernel);
+  MCOR_NEED((unsigned)options->field <= MCOR_WEIGHT_SUM, "There is no field number %d.",
+    (int)options->field);
+  MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "There is no seed mode number %d.",
+    (int)options->seeds);
+  MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64, "There is no precision number %d.",
+    (int)options->precision);
+  MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,
+    "The h scale factor is %g; it must be above 0.", options->h_scale);
+  MCOR_NEED(isfinite(options->cube_size) && options->cube_size >= 0,
+    "The cube size is %g; it must be above 0, or 0 to use the cube size factor.", options->cube_size);
+  MCOR_NEED(options->cube_size > 0 ||
+      (isfinite(options->cube_size_factor) && options->cube_size_factor > 0),
+    "The cube size factor is %g; it must be above 0.", options->cube_size_factor);
+  MCOR_NEED(isfinite(options->node_threshold) && options->node_threshold >= 0 &&
+      isfinite(options->vertex_threshold) && options->vertex_threshold >= 0,
+    "The node threshold is %g and the vertex threshold %g; neither may be negative.",
+    options->node_threshold, options->vertex_threshold);
+  MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
+    "The tolerance is %g; it must be above 0.", options->tolerance);
+  MCOR_NEED(options->iteration_limit >= 0 && options->iteration_limit <= 255,
+    "The iteration limit is %d; it must be 0 to 255.", options->iteration_limit);
+  MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
+    "There are %d iso values.", options->iso_count);
+  for (int i = 0; i < options->iso_count; ++i)
+  {
+    MCOR_NEED(isfinite(options->iso_values[i]), "Iso value %d is not a finite number.", i);
+    MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
+      "The iso value of the free surface is %g; it must be above 0 (0.5 is usual).",
+      options->iso_values[i]);
+  }
+  return MCOR_OK;
+#undef MCOR_NEED
+}
+
+/* Every element that is used is finite, and above 0 where it must be. */
+static mcor_status mcor_check_array(mcor_context* context, const mcor_array* array,
+  const char* role, int64_t count, int components, bool positive)
+{
+  const char* name = mcor_array_name(array, role);
+  const bool same = strcmp(name, role) == 0;
+  MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
+    "The %s array %s has an unknown element type.", role, name);
+  const int64_t n = array->data ? count : 1;
+  for (int64_t i = 0; i < n; ++i)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      const double v = mcor_array_at(array, i, c);
+      if (isfinite(v) && (!positive || v > 0))
+      {
+        continue;
+      }
+      const char* problem =
+        isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
+      return array->data
+        ? mcor_fail(context, MCOR_INVALID_DATA,
+            "The %s%s%s of particle %lld is %s (%g). Remove such particles or choose another array.",
+            role, same ? "" : " array ", same ? "" : name, (long long)i, problem, v)
+        : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s (%g).", role, problem, v);
+    }
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_check_scalar(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    return MCOR_OK;
+  }
+  const int components = mcor_components(&input->scalar);
+  MCOR_RETURN_IF(!input->scalar.data, context, MCOR_INVALID_ARGUMENT,
+    "There is no scalar to contour. Choose a point array, or the free surface, which needs none.");
+  MCOR_RETURN_IF(components > 1 && !input->scalar_dot.data &&
+      input->scalar_component != MCOR_MAGNITUDE &&
+      (input->scalar_component < 0 || input->scalar_component >= components),
+    context, MCOR_INVALID_ARGUMENT,
+    "Component %d of array %s was asked for, but it has %d. Choose 0 to %d, or the magnitude.",
+    input->scalar_component, mcor_array_name(&input->scalar, "scalar"), components, components - 1);
+  MCOR_RETURN_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components, context,
+    MCOR_INVALID_ARGUMENT,
+    "The dot product needs two arrays with as many components each; %s has %d and %s has %d.",
+    mcor_array_name(&input->scalar, "the first"), components,
+    mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
+  MCOR_TRY(mcor_check_array(context, &input->scalar, "scalar", input->count, components, false));
+  return input->scalar_dot.data
+    ? mcor_check_array(context, &input->scalar_dot, "scalar", input->count, components, false)
+    : MCOR_OK;
+}
+
+mcor_status mcor_check_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  MCOR_TRY(mcor_check_options(context, options));
+  MCOR_RETURN_IF(input->count < 0 || input->count > INT32_MAX - MCOR_PADDING, context,
+    MCOR_OUT_OF_CAPACITY, "There are %lld particles; 2147483631 is the limit.",
+    (long long)input->count);
+  if (input->count == 0)
+  {
+    return MCOR_OK;
+  }
+  const int64_t n = input->count;
+  MCOR_RETURN_IF(
+    !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  MCOR_TRY(mcor_check_array(context, &positions, "position", n, 3, false));
+  if (!input->estimate_smoothing_length)
+  {
+    MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
+      MCOR_INVALID_ARGUMENT,
+      "There is no smoothing length. Name its array, give a constant, or ask for an estimate.");
+    MCOR_TRY(
+      mcor_check_array(context, &input->smoothing_length, "smoothing length", n, 1, true));
+  }
+  if (input->has_volume)
+  {
+    MCOR_TRY(mcor_check_array(context, &input->volume, "volume", n, 1, true));
+  }
+  else if (input->has_mass)
+  {
+    MCOR_TRY(mcor_check_array(context, &input->mass, "mass", n, 1, true));
+    if (input->has_density)
+    {
+      MCOR_TRY(mcor_check_array(context, &input->density, "density", n, 1, true));
+    }
+  }
+  MCOR_TRY(mcor_check_scalar(context, input, options));
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const mcor_array* attribute = input->attributes + a;
+    MCOR_TRY(
+      mcor_check_array(context, attribute, "attribute", n, mcor_components(attribute), false));
+  }
+  return MCOR_OK;
+}
+
+/* The order of samples by a hash of their position, so that input order does not matter. */
+typedef struct mcor_sample
+{
+  uint64_t hash;
+  double x[3];
+} mcor_sample;
+
+static uint64_t mcor_hash_position(const double x[3])
+{
+  uint64_t hash = 0x9E3779B97F4A7C15u;
+  for (int a = 0; a < 3; ++a)
+  {
+    uint64_t bits;
+    memcpy(&bits, x + a, sizeof bits);
+    hash = (hash ^ bits) * 0xBF58476D1CE4E5B9u;
+    hash ^= hash >> 31;
+  }
+  return hash;
+}
+
+static int mcor_compare_double(const void* a, const void* b)
+{
+  const double x = *(const double*)a, y = *(const double*)b;
+  return (x > y) - (x < y);
+}
+
+#define MCOR_SAMPLES 256
+#define MCOR_SAMPLE_NEIGHBOURS 32
+
+/* Distance from x to its 32nd nearest other particle, or the farthest if there are fewer. */
+static double mcor_neighbour_distance(const mcor_input* input, const double x[3], double* nearest)
+{
+  int found = 0;
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    double d2 = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double d = mcor_array_at(&input->positions, i, a) - x[a];
+      d2 += d * d;
+    }
+    if (found < MCOR_SAMPLE_NEIGHBOURS + 1 || d2 < nearest[found - 1])
+    {
+      int to = found < MCOR_SAMPLE_NEIGHBOURS + 1 ? found++ : found - 1;
+      for (; to > 0 && nearest[to - 1] > d2; --to)
+      {
+        nearest[to] = nearest[to - 1];
+      }
+      nearest[to] = d2;
+    }
+  }
+  return sqrt(nearest[found - 1]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / found);
+}
+
+/* 1.3 times the median, over a sample of particles, of the spacing of a lattice that has as many
+ * particles within the distance of the 32nd neighbour. */
+static double mcor_estimate_smoothing_length(const mcor_input* input)
+{
+  mcor_sample samples[MCOR_SAMPLES];
+  int count = 0;
+  const int64_t affordable = 1 + 300000000 / (input->count + 1);
+  const int most = (int)(affordable < 16 ? 16 : affordable > MCOR_SAMPLES ? MCOR_SAMPLES : affordable);
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  mcor_input view = *input;
+  view.positions = positions;
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    mcor_sample sample;
+    for (int a = 0; a < 3; ++a)
+    {
+      sample.x[a] = mcor_array_at(&positions, i, a);
+    }
+    sample.hash = mcor_hash_position(sample.x);
+    if (count == most && sample.hash >= samples[count - 1].hash)
+    {
+      continue;
+    }
+    int to = count < most ? count++ : count - 1;
+    for (; to > 0 && samples[to - 1].hash > sample.hash; --to)
+    {
+      samples[to] = samples[to - 1];
+    }
+    samples[to] = sample;
+  }
+  double spacing[MCOR_SAMPLES], nearest[MCOR_SAMPLE_NEIGHBOURS + 2];
+  for (int s = 0; s < count; ++s)
+  {
+    spacing[s] = mcor_neighbour_distance(&view, samples[s].x, nearest);
+  }
+  qsort(spacing, (size_t)count, sizeof spacing[0], mcor_compare_double);
+  return 1.3 * spacing[count / 2];
+}
+
+double mcor_smoothing_length_at(const mcor_context* context, const mcor_input* input, int64_t i)
+{
+  if (input->estimate_smoothing_length)
+  {
+    return context->measure.h_estimate;
+  }
+  const double h = mcor_array_at(&input->smoothing_length, i, 0);
+  return input->smoothing_length_is_support_radius
+    ? h / mcor_support_factor(context->options->sph_kernel)
+    : h;
+}
+
+static void mcor_measure_particles(mcor_context* context, const mcor_input* input, double reach)
+{
+  mcor_measure* m = &context->measure;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    const bool solid = input->solid && input->solid[i];
+    m->solid_count += solid;
+    m->fluid_count += !solid;
+    if (!mcor_is_used(context, input, i))
+    {
+      continue;
+    }
+    const double h = mcor_smoothing_length_at(context, input, i), support = h * reach;
+    m->support_min = fmin(m->support_min, support);
+    m->support_max = fmax(m->support_max, support);
+    if (!solid)
+    {
+      m->h_min = fmin(m->h_min, h);
+      m->h_max = fmax(m->h_max, h);
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const double x = mcor_array_at(&positions, i, a);
+      m->low[a] = fmin(m->low[a], x - support);
+      m->high[a] = fmax(m->high[a], x + support);
+    }
+    if (!solid && context->options->field != MCOR_WEIGHT_SUM)
+    {
+      const double v = mcor_scalar_at(input, i);
+      m->scalar_min = fmin(m->scalar_min, v);
+      m->scalar_max = fmax(m->scalar_max, v);
+    }
+  }
+}
+
+/* Bounds, ranges and the virtual grid's cube size; then the lattice. */
+mcor_status mcor_measure_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  mcor_measure* m = &context->measure;
+  *m = (mcor_measure){ .low = { DBL_MAX, DBL_MAX, DBL_MAX },
+    .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
+    .h_min = DBL_MAX,
+    .support_min = DBL_MAX,
+    .scalar_min = DBL_MAX,
+    .scalar_max = -DBL_MAX };
+  if (input->estimate_smoothing_length)
+  {
+    m->h_estimate = mcor_estimate_smoothing_length(input);
+    MCOR_RETURN_IF(!(m->h_estimate > 0), context, MCOR_INVALID_DATA,
+      "The smoothing length cannot be estimated: most particles lie at one point.");
+  }
+  mcor_measure_particles(
+    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale);
+  MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
+    "None of the %lld particles is marked as fluid.", (long long)input->count);
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    m->scalar_min = 0;
+    m->scalar_max = 1;
+  }
+  mcor_lattice* lattice = &context->lattice;
+  const double cube =
+    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  lattice->cube = m->cube = cube;
+  int64_t extent = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
+    MCOR_RETURN_IF(!(fabs(first) < 1e15) || !(fabs(last) < 1e15) ||
+        last - first > MCOR_LATTICE_LIMIT,
+      context, MCOR_OUT_OF_CAPACITY,
+      "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. Use a "
+      "larger cube size, or remove particles that are far away from the rest.",
+      cube, last - first, a, MCOR_LATTICE_LIMIT);
+    lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
+    lattice->first[a] = (int64_t)first - lattice->origin[a];
+    lattice->last[a] = (int64_t)last - lattice->origin[a];
+    lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
+    extent = lattice->last[a] > extent ? lattice->last[a] : extent;
+  }
+  lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
+  while ((extent + 64) << lattice->fix_bits >= INT64_C(1) << (options->precision == MCOR_FLOAT64 ? 62 : 30))
+  {
+    --lattice->fix_bits;
+  }
+  return MCOR_OK;
+}

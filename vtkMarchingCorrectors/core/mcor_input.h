@@ -1,0 +1,30 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_input_h
+#define mcor_input_h
+
+/* Reading the caller's arrays element by element, as double. */
+
+#include "mcor_internal.h"
+
+static inline double mcor_array_at(const mcor_array* array, int64_t i, int component)
+{
+  const int64_t at = i * (array->components > 0 ? array->components : 1) + component;
+  return !array->data                    ? array->constant
+    : array->type == MCOR_FLOAT64 ? ((const double*)array->data)[at]
+                                         : (double)((const float*)array->data)[at];
+}
+
+/* Solid particles take no part where they are ignored, nor in the free surface. */
+static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
+{
+  return !input->solid || !input->solid[i] ||
+    (!input->ignore_solids && context->options->field != MCOR_WEIGHT_SUM);
+}
+
+/* The scalar A of particle i. */
+double mcor_scalar_at(const mcor_input* input, int64_t i);
+/* Unscaled, unit L. */
+double mcor_smoothing_length_at(const mcor_context* context, const mcor_input* input, int64_t i);
+
+#endif

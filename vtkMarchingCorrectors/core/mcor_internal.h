@@ -1,0 +1,222 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_internal_h
+#define mcor_internal_h
+
+/* State shared by the phases. Each phase is one file of the same name as its kernels. */
+
+#include "mcor.h"
+#include "mcor_cl.h"
+
+#define MCOR_LEVEL_LIMIT 32
+#define MCOR_PADDING 16  /* elements beyond the end of particle arrays, for vector loads */
+#define MCOR_BLOCK_CUBES 32
+#define MCOR_BLOCK_BRICKS 512
+#define MCOR_BLOCK_WORDS 16
+#define MCOR_NEIGHBOURS 14
+
+#define MCOR_TRY(call)                                                                             \
+  do                                                                                               \
+  {                                                                                                \
+    const mcor_status mcor_try_status_ = (call);                                                   \
+    if (mcor_try_status_ != MCOR_OK)                                                               \
+    {                                                                                              \
+      return mcor_try_status_;                                                                     \
+    }                                                                                              \
+  } while (0)
+
+/* Returns with a status and the sentence that explains it. */
+#define MCOR_RETURN_IF(condition, context, status, ...)                                            \
+  do                                                                                               \
+  {                                                                                                \
+    if (condition)                                                                                 \
+    {                                                                                              \
+      return mcor_fail(context, status, __VA_ARGS__);                                              \
+    }                                                                                              \
+  } while (0)
+
+/* Twin of the struct in mcor_field.cl. */
+typedef struct mcor_level
+{
+  cl_ulong base;
+  cl_int cells[3];
+  cl_float inv_cell;
+  cl_float support;
+  cl_int unused;
+} mcor_level;
+
+/* The particles as the input gives them, checked and measured. Lengths in L. */
+typedef struct mcor_measure
+{
+  int64_t fluid_count, solid_count;
+  double low[3], high[3];           /* of positions +- support radius */
+  double h_min, h_max;              /* smoothing length of fluid particles */
+  double support_min, support_max;  /* scaled support radius of all particles */
+  double scalar_min, scalar_max;
+  double h_estimate;                /* where it was asked for */
+  double cube;
+} mcor_measure;
+
+/* The virtual grid: world position = (origin + fixed / 2^fix_bits) * cube. */
+typedef struct mcor_lattice
+{
+  double cube;
+  int64_t origin[3]; /* a multiple of MCOR_BLOCK_CUBES */
+  int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
+  int fix_bits;
+  int blocks[3];
+} mcor_lattice;
+
+/* [III-A] */
+typedef struct mcor_grid
+{
+  int count; /* particles on the device */
+  int level_count, bucket_shift;
+  mcor_level levels[MCOR_LEVEL_LIMIT];
+  mcor_buffer level_buffer, buckets, cell_keys, order;
+  mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
+  mcor_buffer value;
+  bool has_solids;
+} mcor_grid;
+
+/* What is known of the bricks that exist. */
+typedef struct mcor_brick_data
+{
+  int count;
+  mcor_buffer bricks; /* int4: position in bricks */
+  mcor_buffer known;  /* ulong: nodes evaluated */
+  mcor_buffer cells;  /* ulong: cells to examine for this iso value */
+  mcor_buffer value, weight; /* real [64] */
+} mcor_brick_data;
+
+/* [III-B] Blocks where particles reach, and the bricks that exist in them. */
+typedef struct mcor_bricks
+{
+  int block_count, block_shift;
+  mcor_buffer block_keys, block_buckets, block_keep;
+  mcor_buffer marks;      /* ushort [block_count][512], of this iso value */
+  mcor_buffer bits, base; /* [block_count][16] */
+  mcor_brick_data now, last; /* last: the other half of a double buffer */
+  mcor_buffer neighbours, need;
+} mcor_bricks;
+
+/* [III-D] One iso value's surface while it is made. */
+typedef struct mcor_mesh
+{
+  mcor_buffer above, valid, used, edges, vertex_base, triangle_base;
+  int march_count;  /* vertices on lattice edges */
+  int vertex_count; /* the same and those of the trim boundary */
+  int triangle_count;
+  mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
+  mcor_buffer triangles, trimmed, remaining, cuts, cut_keys, cut_distinct, cut_index;
+  mcor_buffer scanned;
+} mcor_mesh;
+
+struct mcor_context
+{
+  mcor_cl cl;
+  mcor_grid grid;
+  mcor_bricks bricks;
+  mcor_mesh mesh;
+  mcor_lattice lattice;
+  mcor_measure measure;
+  mcor_buffer case_table;
+  mcor_buffer scratch[6];     /* within one function */
+  mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
+  mcor_buffer out[8], attributes;
+  int32_t* source; /* [grid.count] input index of each device particle; NULL: the same */
+  double value_shift; /* A0 */
+  bool nodes_valid;   /* bricks hold node values of the current scalar */
+  mcor_input last_input; /* what grid and value were made from */
+  mcor_options last_options;
+  bool grid_valid, value_valid;
+  const mcor_options* options; /* of the call under way */
+  mcor_statistics* statistics;
+  mcor_phase phase;
+  double phase_begin;
+  double correction_count, correction_sum, correction_squares;
+  char error[4096];
+};
+
+mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
+#if defined(__GNUC__)
+  __attribute__((format(printf, 3, 4)))
+#endif
+  ;
+double mcor_seconds(void);
+
+/* Ends the phase under way, reports progress and may cancel. */
+mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
+
+/* mcor_input.c: checks and measures. */
+mcor_status mcor_check_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options);
+mcor_status mcor_measure_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options);
+
+/* mcor_scan.c */
+mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total);
+mcor_status mcor_sort(
+  mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit);
+mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
+  mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count);
+mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
+  uint64_t key_limit, mcor_buffer* buckets, int* shift);
+
+/* The phases. */
+mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
+mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
+mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
+  double (*at)(const mcor_input* input, const void* user, int64_t i), const void* user,
+  double shift, mcor_buffer* to, int to_offset);
+mcor_status mcor_make_blocks(mcor_context* context);
+mcor_status mcor_select_seeds(mcor_context* context, double iso);
+mcor_status mcor_mark_pairs(mcor_context* context, double iso);
+mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
+mcor_status mcor_place_bricks(mcor_context* context);
+mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
+mcor_status mcor_reserve_vertices(mcor_context* context, int count);
+mcor_status mcor_march(mcor_context* context, double iso);
+mcor_status mcor_correct(mcor_context* context, double iso);
+mcor_status mcor_trim(mcor_context* context, double iso);
+mcor_status mcor_append_output(
+  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
+mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
+
+/* 256 rows of 16: up to 15 edges, 3 a triangle; then the number of triangles. An edge is
+ * axis << 3 | lower corner; corner and axis bits 1 x, 2 y, 4 z. */
+void mcor_make_case_table(uint8_t table[256][16]);
+
+extern const char mcor_source_mcor_prelude_cl[];
+extern const char mcor_source_mcor_sph_kernel_h[];
+extern const char mcor_source_mcor_field_cl[];
+extern const char mcor_source_mcor_scan_cl[];
+extern const char mcor_source_mcor_grid_cl[];
+extern const char mcor_source_mcor_brick_cl[];
+extern const char mcor_source_mcor_seed_cl[];
+extern const char mcor_source_mcor_march_cl[];
+extern const char mcor_source_mcor_pair_cl[];
+extern const char mcor_source_mcor_correct_cl[];
+extern const char mcor_source_mcor_trim_cl[];
+extern const char mcor_source_mcor_output_cl[];
+
+/* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
+#define MCOR_GRID_ARGS(c)                                                                          \
+  MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
+    MCOR_INT((c)->lattice.fix_bits), MCOR_BUFFER(&(c)->grid.level_buffer),                         \
+    MCOR_BUFFER(&(c)->grid.buckets), MCOR_BUFFER(&(c)->grid.cell_keys),                            \
+    MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py), MCOR_BUFFER(&(c)->grid.pz),            \
+    MCOR_BUFFER(&(c)->grid.inv_h),                                                                 \
+    MCOR_BUFFER((c)->grid.has_solids ? &(c)->grid.fluid_weight : &(c)->grid.trim_weight),          \
+    MCOR_BUFFER(&(c)->grid.trim_weight), MCOR_BUFFER(&(c)->grid.value)
+
+#define MCOR_BLOCK_ARGS(c)                                                                         \
+  MCOR_INT((c)->bricks.block_count), MCOR_INT((c)->bricks.block_shift),                            \
+    MCOR_INT((c)->lattice.blocks[0]), MCOR_INT((c)->lattice.blocks[1]),                            \
+    MCOR_INT((c)->lattice.blocks[2]), MCOR_BUFFER(&(c)->bricks.block_keys),                        \
+    MCOR_BUFFER(&(c)->bricks.block_buckets)
+
+#define MCOR_BRICK_ARGS(c)                                                                         \
+  MCOR_BLOCK_ARGS(c), MCOR_BUFFER(&(c)->bricks.bits), MCOR_BUFFER(&(c)->bricks.base)
+
+#endif

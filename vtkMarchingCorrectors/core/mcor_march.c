@@ -1,0 +1,115 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Extraction [III-D.1]. */
+
+#include "mcor_internal.h"
+
+/* Values of all nodes that the cells to examine need and that are not known yet. */
+static mcor_status mcor_evaluate_nodes(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int count = bricks->now.count;
+  MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
+  return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->need),
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&bricks->now.weight));
+}
+
+static mcor_status mcor_sign_nodes(mcor_context* context, double iso)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t bytes = (size_t)bricks->now.count * sizeof(cl_ulong);
+  MCOR_TRY(mcor_reserve(context, &mesh->above, bytes));
+  MCOR_TRY(mcor_reserve(context, &mesh->valid, bytes));
+  return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_LIGHT, bricks->now.count,
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.known),
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&mesh->valid));
+}
+
+/* Number of bits set in an array of masks. */
+static mcor_status mcor_count_bits(
+  mcor_context* context, const mcor_buffer* masks, int count, int* total)
+{
+  mcor_buffer* counts = &context->scratch[0];
+  MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_bits", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(masks), MCOR_BUFFER(counts)));
+  return mcor_scan(context, counts, count, total);
+}
+
+/* Evaluates and, from paired seeds, grows until no cell is new. Ends with the used cells. */
+static mcor_status mcor_find_cells(mcor_context* context, double iso)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_statistics* statistics = context->statistics;
+  const bool pairs = context->options->seeds == MCOR_PAIRS;
+  int seeds = 0, hits, used;
+  MCOR_TRY(mcor_count_bits(context, &bricks->now.cells, bricks->now.count, &seeds));
+  statistics->seed_cells += seeds;
+  for (bool first = true, grown = true; grown; first = false)
+  {
+    MCOR_TRY(mcor_evaluate_nodes(context));
+    MCOR_TRY(mcor_sign_nodes(context, iso));
+    MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)bricks->now.count * sizeof(cl_ulong)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_LIGHT, bricks->now.count,
+      MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours),
+      MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
+      MCOR_BUFFER(&mesh->used)));
+    if (first)
+    {
+      MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &hits));
+      statistics->seed_cells_not_intersected += seeds - hits;
+    }
+    ++statistics->march_rounds;
+    grown = false;
+    if (pairs)
+    {
+      MCOR_TRY(mcor_grow_cells(context, &grown));
+    }
+  }
+  MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &used));
+  statistics->cells_used += used;
+  return MCOR_OK;
+}
+
+/* Vertices and triangles. iso: relative to A0. */
+mcor_status mcor_march(mcor_context* context, double iso)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  MCOR_TRY(mcor_find_cells(context, iso));
+  const int count = bricks->now.count;
+  const size_t n = (size_t)count;
+  MCOR_TRY(mcor_reserve(context, &mesh->edges, n * 6 * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base)));
+  MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
+  MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
+  mesh->vertex_count = mesh->march_count;
+  context->statistics->triangles_before_trimming += mesh->triangle_count;
+  const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
+  MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+}

@@ -1,0 +1,327 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Output [III-D.4]: compaction, transfer, and what a surface carries besides its geometry. */
+
+#include "mcor_input.h"
+#include "mcor_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_output.cl */
+
+/* Gradients below this fraction of range / cube size count as vanishing. */
+#define MCOR_LEAST_GRADIENT 1e-6
+
+/* What the device hands over for the vertices of one iso value. */
+typedef struct mcor_download
+{
+  int count;
+  cl_int* node;
+  cl_float* normal;
+  void *offset, *gradient, *numbers; /* real [count][4] */
+} mcor_download;
+
+static double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
+{
+  return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
+                                                : ((const double*)array)[i];
+}
+
+static void mcor_free_download(mcor_download* download)
+{
+  free(download->node);
+  free(download->normal);
+  free(download->offset);
+  free(download->gradient);
+  free(download->numbers);
+}
+
+/* Keeps the vertices that a triangle uses, in order; renumbers the triangles. */
+static mcor_status mcor_compact(mcor_context* context, int* count)
+{
+  mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* out = context->out;
+  const int vertices = mesh->vertex_count, corners = 3 * mesh->triangle_count;
+  const double range = context->measure.scalar_max - context->measure.scalar_min;
+  MCOR_TRY(mcor_zero(context, &mesh->scanned, ((size_t)vertices + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, corners,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
+  MCOR_TRY(mcor_scan(context, &mesh->scanned, vertices, count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_renumber", MCOR_LIGHT, corners,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->triangles)));
+  const size_t n = (size_t)*count, real = context->cl.real_size;
+  MCOR_TRY(mcor_reserve(context, &out[0], n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &out[1], n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &out[2], n * 4 * sizeof(cl_float)));
+  MCOR_TRY(mcor_reserve(context, &out[3], n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &out[4], n * 4 * real));
+  return MCOR_LAUNCH(context, "mcor_output_vertices", MCOR_LIGHT, vertices, MCOR_INT(vertices),
+    MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value),
+    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+    MCOR_REAL(MCOR_LEAST_GRADIENT * range), MCOR_BUFFER(&out[0]), MCOR_BUFFER(&out[1]),
+    MCOR_BUFFER(&out[2]), MCOR_BUFFER(&out[3]), MCOR_BUFFER(&out[4]));
+}
+
+static mcor_status mcor_download_vertices(mcor_context* context, mcor_download* d)
+{
+  const size_t n = (size_t)d->count, reals = n * 4 * context->cl.real_size;
+  d->node = malloc(n * 4 * sizeof(cl_int) + 1);
+  d->normal = malloc(n * 4 * sizeof(cl_float) + 1);
+  d->offset = malloc(reals + 1);
+  d->gradient = malloc(reals + 1);
+  d->numbers = malloc(reals + 1);
+  MCOR_RETURN_IF(!d->node || !d->normal || !d->offset || !d->gradient || !d->numbers, context,
+    MCOR_OUT_OF_CAPACITY, "Host memory for %d vertices could not be allocated.", d->count);
+  const mcor_buffer* out = context->out;
+  MCOR_TRY(mcor_read(context, &out[0], 0, d->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_read(context, &out[1], 0, d->offset, reals));
+  MCOR_TRY(mcor_read(context, &out[2], 0, d->normal, n * 4 * sizeof(cl_float)));
+  MCOR_TRY(mcor_read(context, &out[3], 0, d->gradient, reals));
+  return mcor_read(context, &out[4], 0, d->numbers, reals);
+}
+
+/* Room for `count` more elements of `width` bytes; *array may be NULL. */
+static mcor_status mcor_grow(
+  mcor_context* context, void** array, int64_t old, int64_t count, size_t width)
+{
+  void* grown = realloc(*array, (size_t)(old + count) * width + 1);
+  MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for a surface of %lld points could not be allocated.", (long long)(old + count));
+  *array = grown;
+  return MCOR_OK;
+}
+
+static mcor_status mcor_grow_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points, int64_t triangles)
+{
+  const mcor_options* o = context->options;
+  const int64_t n = s->point_count;
+  const bool normals = o->normals;
+  struct
+  {
+    bool wanted;
+    void** array;
+    size_t width;
+  } const arrays[] = { { true, (void**)&s->points, 3 * sizeof(double) },
+    { normals, (void**)&s->normals, 3 * sizeof(float) },
+    { o->gradients, (void**)&s->gradients, 3 * sizeof(double) },
+    { o->weight_sum, (void**)&s->weight_sum, sizeof(float) },
+    { o->correction_length, (void**)&s->correction_length, sizeof(float) },
+    { o->residual, (void**)&s->residual, sizeof(float) },
+    { o->boundary_flag, (void**)&s->boundary_flag, 1 },
+    { o->iso_value, (void**)&s->iso_value, sizeof(double) },
+    { o->nearest_particle, (void**)&s->nearest_particle, sizeof(int64_t) } };
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+  {
+    if (arrays[i].wanted)
+    {
+      MCOR_TRY(mcor_grow(context, arrays[i].array, n, points, arrays[i].width));
+    }
+  }
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const int components = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
+    MCOR_TRY(mcor_grow(
+      context, (void**)&s->attributes[a], n, points, (size_t)components * sizeof(double)));
+  }
+  return mcor_grow(
+    context, (void**)&s->triangles, s->triangle_count, triangles, 3 * sizeof(int32_t));
+}
+
+static void mcor_count_correction(mcor_context* context, const mcor_download* d)
+{
+  mcor_statistics* s = context->statistics;
+  const double cube = context->lattice.cube;
+  const double tolerance =
+    context->options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
+  for (int i = 0; i < d->count; ++i)
+  {
+    const int flag = d->node[4 * i + 3];
+    const double residual = fabs(mcor_get_real(context, d->numbers, 4 * i + 1));
+    s->trim_vertices += flag == 1 || flag == 2;
+    s->trim_vertices_linear += flag == 2;
+    if (flag == 1 || flag == 2)
+    {
+      continue;
+    }
+    const double length = fabs(mcor_get_real(context, d->numbers, 4 * i)) * cube;
+    context->correction_count += 1;
+    context->correction_sum += length;
+    context->correction_squares += length * length;
+    s->correction_max = fmax(s->correction_max, length);
+    s->residual_max = fmax(s->residual_max, residual);
+    s->vertices_above_tolerance += residual > tolerance;
+  }
+}
+
+/* Vertex i of the download becomes point `to` of the surface. */
+static void mcor_put_point(
+  const mcor_context* context, const mcor_download* d, int i, double iso, mcor_surface* s, int64_t to)
+{
+  const double cube = context->lattice.cube;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double node = (double)(context->lattice.origin[a] + d->node[4 * i + a]);
+    s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * i + a)) * cube;
+    if (s->normals)
+    {
+      s->normals[3 * to + a] = d->normal[4 * i + a];
+    }
+    if (s->gradients)
+    {
+      s->gradients[3 * to + a] = mcor_get_real(context, d->gradient, 4 * i + a) / cube;
+    }
+  }
+  if (s->weight_sum)
+  {
+    s->weight_sum[to] = (float)mcor_get_real(context, d->numbers, 4 * i + 2);
+  }
+  if (s->correction_length)
+  {
+    s->correction_length[to] = (float)(fabs(mcor_get_real(context, d->numbers, 4 * i)) * cube);
+  }
+  if (s->residual)
+  {
+    s->residual[to] = (float)mcor_get_real(context, d->numbers, 4 * i + 1);
+  }
+  if (s->boundary_flag)
+  {
+    s->boundary_flag[to] = (uint8_t)d->node[4 * i + 3];
+  }
+  if (s->iso_value)
+  {
+    s->iso_value[to] = iso;
+  }
+}
+
+/* One component of one attribute. */
+typedef struct mcor_component
+{
+  int attribute, component;
+} mcor_component;
+
+static double mcor_attribute_at(const mcor_input* input, const void* user, int64_t i)
+{
+  const mcor_component* c = user;
+  return mcor_array_at(&input->attributes[c->attribute], i, c->component);
+}
+
+/* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
+static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_input* input,
+  const mcor_component* components, int count, int points, mcor_surface* surface)
+{
+  const size_t real = context->cl.real_size;
+  const int stride = context->grid.count, lanes = context->cl.lanes;
+  const bool nearest = context->options->nearest_particle && components == NULL;
+  const size_t n = (size_t)points;
+  mcor_buffer *values = &context->out[5], *indices = &context->out[6];
+  MCOR_TRY(mcor_reserve(context, &context->attributes, (size_t)count * (size_t)stride * real));
+  MCOR_TRY(mcor_reserve(context, values, n * (size_t)count * real));
+  MCOR_TRY(mcor_reserve(context, indices, nearest ? n * sizeof(cl_int) : 1));
+  for (int c = 0; c < count; ++c)
+  {
+    MCOR_TRY(mcor_sort_values(context, input, mcor_attribute_at, components + c, 0,
+      &context->attributes, c * stride));
+  }
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_output_attributes", MCOR_HEAVY, (points + lanes - 1) / lanes,
+    MCOR_GRID_ARGS(context), MCOR_INT(points), MCOR_BUFFER(&context->out[0]),
+    MCOR_BUFFER(&context->out[1]), MCOR_INT(count), MCOR_INT(stride),
+    MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values), MCOR_INT(nearest),
+    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
+  void* host = malloc(n * ((size_t)count * real + sizeof(cl_int)) + 1);
+  MCOR_RETURN_IF(!host, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for the attributes of %d points could not be allocated.", points);
+  mcor_status status = nearest ? mcor_read(context, indices, 0, host, n * sizeof(cl_int))
+                               : mcor_read(context, values, 0, host, n * (size_t)count * real);
+  const int64_t base = surface->point_count;
+  for (int64_t i = 0; i < points && status == MCOR_OK; ++i)
+  {
+    if (nearest)
+    {
+      const cl_int at = ((const cl_int*)host)[i];
+      surface->nearest_particle[base + i] = at < 0 ? -1 : context->source[at];
+      continue;
+    }
+    for (int c = 0; c < count; ++c)
+    {
+      const int a = components[c].attribute;
+      const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
+      surface->attributes[a][(base + i) * width + components[c].component] =
+        mcor_get_real(context, host, i * count + c);
+    }
+  }
+  free(host);
+  return status;
+}
+
+static mcor_status mcor_add_attributes(
+  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface)
+{
+  mcor_component batch[MCOR_ATTRIBUTE_LIMIT];
+  int count = 0;
+  if (points == 0)
+  {
+    return MCOR_OK;
+  }
+  if (context->options->nearest_particle)
+  {
+    MCOR_TRY(mcor_evaluate_attributes(context, input, NULL, 0, points, surface));
+  }
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
+    for (int c = 0; c < width; ++c)
+    {
+      batch[count++] = (mcor_component){ a, c };
+      if (count == MCOR_ATTRIBUTE_LIMIT)
+      {
+        MCOR_TRY(mcor_evaluate_attributes(context, input, batch, count, points, surface));
+        count = 0;
+      }
+    }
+  }
+  return count > 0 ? mcor_evaluate_attributes(context, input, batch, count, points, surface)
+                   : MCOR_OK;
+}
+
+static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,
+  mcor_download* download, mcor_surface* surface)
+{
+  const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
+  MCOR_TRY(mcor_compact(context, &download->count));
+  MCOR_RETURN_IF(base + download->count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
+    "The surface would have %lld points; 2147483647 is the limit.",
+    (long long)(base + download->count));
+  MCOR_TRY(mcor_download_vertices(context, download));
+  MCOR_TRY(mcor_grow_surface(context, input, surface, download->count, triangles));
+  MCOR_TRY(mcor_add_attributes(context, input, download->count, surface));
+  int32_t* to = surface->triangles + 3 * surface->triangle_count;
+  MCOR_TRY(mcor_read(
+    context, &context->mesh.triangles, 0, to, (size_t)triangles * 3 * sizeof(int32_t)));
+  for (int64_t i = 0; i < 3 * triangles; ++i)
+  {
+    to[i] += (int32_t)base;
+  }
+  for (int i = 0; i < download->count; ++i)
+  {
+    mcor_put_point(context, download, i, iso, surface, base + i);
+  }
+  mcor_count_correction(context, download);
+  surface->point_count += download->count;
+  surface->triangle_count += triangles;
+  return MCOR_OK;
+}
+
+/* Appends the mesh of one iso value to the surface. */
+mcor_status mcor_append_output(
+  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
+{
+  mcor_download download = { 0 };
+  const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
+  mcor_free_download(&download);
+  return status;
+}

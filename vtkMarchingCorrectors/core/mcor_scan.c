@@ -1,0 +1,108 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+#include "mcor_internal.h"
+
+#include <limits.h>
+
+#define MCOR_RADIX_BITS 8
+
+/* Replaces counts[0..count) by their exclusive prefix sums; element `count` becomes the total. The
+ * buffer holds count + 1 ints. */
+mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
+{
+  const int chunks = context->cl.chunks;
+  cl_long sum = 0;
+  MCOR_TRY(
+    mcor_reserve(context, &context->scan_sums, ((size_t)chunks + 1) * sizeof(cl_long)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
+    MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks),
+    MCOR_BUFFER(&context->scan_sums)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
+    MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
+  MCOR_TRY(mcor_read(
+    context, &context->scan_sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
+  MCOR_RETURN_IF(sum > INT_MAX, context, MCOR_OUT_OF_CAPACITY,
+    "The surface is too large: a table would need %lld entries, %d is the limit. Use a larger cube "
+    "size.",
+    (long long)sum, INT_MAX);
+  *total = (int)sum;
+  return MCOR_OK;
+}
+
+static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
+{
+  const mcor_buffer c = *a;
+  *a = *b;
+  *b = c;
+}
+
+/* Sorts keys, all below key_limit; values[i] becomes the former position of key i. Stable. */
+mcor_status mcor_sort(
+  mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
+{
+  const int chunks = context->cl.chunks;
+  const size_t n = (size_t)count;
+  int total;
+  MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &context->sort_keys, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &context->sort_values, n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &context->sort_histogram,
+    (((size_t)chunks << MCOR_RADIX_BITS) + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(
+    context, "mcor_sort_identity", MCOR_LIGHT, count, MCOR_INT(count), MCOR_BUFFER(values)));
+  for (int shift = 0; shift < 64 && (key_limit - 1) >> shift; shift += MCOR_RADIX_BITS)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
+      MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_BUFFER(&context->sort_histogram)));
+    MCOR_TRY(mcor_scan(context, &context->sort_histogram, chunks << MCOR_RADIX_BITS, &total));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
+      MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift),
+      MCOR_BUFFER(&context->sort_histogram), MCOR_BUFFER(&context->sort_keys),
+      MCOR_BUFFER(&context->sort_values)));
+    mcor_swap(keys, &context->sort_keys);
+    mcor_swap(values, &context->sort_values);
+  }
+  return MCOR_OK;
+}
+
+/* Distinct keys in order; index_of[i] is the index of key i among them. Sorts `keys`. */
+mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
+  mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)
+{
+  mcor_buffer* values = &context->scratch[4];
+  mcor_buffer* flags = &context->scratch[5];
+  *distinct_count = 0;
+  if (count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_sort(context, keys, values, count, key_limit));
+  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_unique_count", MCOR_LIGHT, count, MCOR_BUFFER(keys),
+    MCOR_INT(count), MCOR_BUFFER(flags)));
+  MCOR_TRY(mcor_scan(context, flags, count, distinct_count));
+  MCOR_TRY(mcor_reserve(context, distinct, (size_t)*distinct_count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, index_of, (size_t)count * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_unique_fill", MCOR_LIGHT, count, MCOR_BUFFER(keys),
+    MCOR_BUFFER(values), MCOR_INT(count), MCOR_BUFFER(flags), MCOR_BUFFER(distinct),
+    MCOR_BUFFER(index_of));
+}
+
+/* Index into sorted keys: bucket b begins at the first key >= b << shift. About 4 buckets per key at
+ * most, so that memory stays linear however sparse the keys are. */
+mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
+  uint64_t key_limit, mcor_buffer* buckets, int* shift)
+{
+  const uint64_t most = 4 * (uint64_t)count + 65536;
+  *shift = 0;
+  while (key_limit >> *shift > most)
+  {
+    ++*shift;
+  }
+  const uint64_t bucket_count = (key_limit >> *shift) + 2;
+  MCOR_TRY(mcor_reserve(context, buckets, bucket_count * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_bucket_fill", MCOR_LIGHT, count + 1, MCOR_BUFFER(keys),
+    MCOR_INT(count), MCOR_INT(*shift), MCOR_INT((int)bucket_count), MCOR_BUFFER(buckets));
+}

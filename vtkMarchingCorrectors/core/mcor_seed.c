@@ -1,0 +1,73 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Seed cells [III-C]. */
+
+#include "mcor_internal.h"
+
+/* The blocks that particles reach. They do not depend on scalar or iso value. */
+mcor_status mcor_make_blocks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const mcor_grid* grid = &context->grid;
+  const int* blocks = context->lattice.blocks;
+  mcor_buffer *counts = &context->scratch[0], *keys = &context->scratch[1],
+              *index_of = &context->scratch[2];
+  const uint64_t key_limit = (uint64_t)blocks[0] * (uint64_t)blocks[1] * (uint64_t)blocks[2];
+  int key_count;
+  MCOR_TRY(mcor_reserve(context, counts, ((size_t)grid->count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_LIGHT, grid->count,
+    MCOR_GRID_ARGS(context), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_INT(blocks[2]),
+    MCOR_BUFFER(counts)));
+  MCOR_TRY(mcor_scan(context, counts, grid->count, &key_count));
+  MCOR_TRY(mcor_reserve(context, keys, (size_t)key_count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, grid->count,
+    MCOR_GRID_ARGS(context), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_INT(blocks[2]),
+    MCOR_BUFFER(counts), MCOR_BUFFER(keys)));
+  MCOR_TRY(mcor_unique(
+    context, keys, key_count, key_limit, &bricks->block_keys, index_of, &bricks->block_count));
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, bricks->block_count, key_limit,
+    &bricks->block_buckets, &bricks->block_shift));
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  bricks->now.count = 0;
+  return mcor_zero(context, &bricks->bits, words * sizeof(cl_uint));
+}
+
+/* Marks every brick box that the bound cannot exclude. */
+static mcor_status mcor_mark_complete(mcor_context* context, double iso)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int* blocks = context->lattice.blocks;
+  MCOR_TRY(mcor_reserve(context, &bricks->block_keep, (size_t)bricks->block_count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_block", MCOR_HEAVY, bricks->block_count,
+    MCOR_GRID_ARGS(context), MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]),
+    MCOR_INT(blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_REAL(iso),
+    MCOR_BUFFER(&bricks->block_keep)));
+  return MCOR_LAUNCH(context, "mcor_seed_brick", MCOR_HEAVY,
+    bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_GRID_ARGS(context),
+    MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_keep), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->marks));
+}
+
+/* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */
+mcor_status mcor_select_seeds(mcor_context* context, double iso)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const size_t marks = (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
+  MCOR_RETURN_IF(marks > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large: %d blocks of 32^3 cells hold particles. Use a larger cube size.",
+    bricks->block_count);
+  MCOR_TRY(mcor_zero(context, &bricks->marks, marks * sizeof(cl_ushort)));
+  const bool pairs = context->options->seeds == MCOR_PAIRS;
+  MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_mark_complete(context, iso));
+  MCOR_TRY(mcor_place_bricks(context));
+  if (pairs)
+  {
+    return mcor_mark_pair_cells(context, iso);
+  }
+  return MCOR_LAUNCH(context, "mcor_seed_cells", MCOR_LIGHT, bricks->now.count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
+    MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(&bricks->now.cells));
+}

@@ -1,0 +1,95 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_sph_kernel_h
+#define mcor_sph_kernel_h
+
+/* The SPH smoothing kernels. This file is both included by the C core and compiled as OpenCL C: it
+ * is the one place to change when a kernel is added (besides its name in mcor_sph_kernel, mcor.h).
+ *
+ * A kernel is W = norm / h^3 * w(q), q = r / h, with w written in truncated powers so that one
+ * branch-free expression holds for all q >= 0, 0 beyond the support. A tensor kernel is
+ * W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h). */
+
+/* ENTRY(enumerator, name, support / h, norm, is a tensor product) */
+#define MCOR_SPH_KERNEL_TABLE(ENTRY)                                                               \
+  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2, 0.31830988618379067154, 0)     /* 1 / pi */                   \
+  ENTRY(MCOR_QUADRATIC, quadratic, 2, 0.07460387957432593864, 0)    /* 15 / (64 pi) */             \
+  ENTRY(MCOR_M_PRIME_4, mprime4, 2, 1.0, 1)                                                        \
+  ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3, 0.00265258238486492226, 0) /* 1 / (120 pi) */             \
+  ENTRY(MCOR_WENDLAND_C2, wendland, 2, 0.41778172561622525639, 0)   /* 21 / (16 pi) */
+
+#ifdef __OPENCL_VERSION__
+
+/* w(q), and its derivative w'(q). */
+
+realv mcor_w_cubic(realv q)
+{
+  const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
+  return (real)0.25 * a * a * a - b * b * b;
+}
+
+realv mcor_dw_cubic(realv q)
+{
+  const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
+  return (real)3 * b * b - (real)0.75 * a * a;
+}
+
+/* 3/16 q^2 - 3/4 q + 3/4 = 3/16 (2 - q)^2; the 3/16 is in the norm. */
+realv mcor_w_quadratic(realv q)
+{
+  const realv a = fmax((real)2 - q, (realv)0);
+  return a * a;
+}
+
+realv mcor_dw_quadratic(realv q)
+{
+  return (real)-2 * fmax((real)2 - q, (realv)0);
+}
+
+/* Per axis; 1 - 5/2 q^2 + 3/2 q^3 = 1/2 (2-q)^2 (1-q) - (1-q)^2 (1-2q). */
+realv mcor_w_mprime4(realv q)
+{
+  const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
+  return (real)0.5 * a * a * ((real)1 - q) - b * b * ((real)1 - (real)2 * q);
+}
+
+realv mcor_dw_mprime4(realv q)
+{
+  const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
+  return (real)2 * b * (b + (real)1 - (real)2 * q) - a * ((real)1 - q + (real)0.5 * a);
+}
+
+realv mcor_w_quintic(realv q)
+{
+  const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
+              c = fmax((real)1 - q, (realv)0);
+  const realv a2 = a * a, b2 = b * b, c2 = c * c;
+  return a2 * a2 * a - (real)6 * b2 * b2 * b + (real)15 * c2 * c2 * c;
+}
+
+realv mcor_dw_quintic(realv q)
+{
+  const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
+              c = fmax((real)1 - q, (realv)0);
+  const realv a2 = a * a, b2 = b * b, c2 = c * c;
+  return (real)-5 * (a2 * a2 - (real)6 * b2 * b2 + (real)15 * c2 * c2);
+}
+
+realv mcor_w_wendland(realv q)
+{
+  const realv a = fmax((real)1 - (real)0.5 * q, (realv)0), a2 = a * a;
+  return a2 * a2 * ((real)2 * q + (real)1);
+}
+
+realv mcor_dw_wendland(realv q)
+{
+  const realv a = fmax((real)1 - (real)0.5 * q, (realv)0);
+  return (real)-5 * q * a * a * a;
+}
+
+/* Lowest value of w: M'4 has a negative lobe, its minimum at q = 4/3. */
+#define mcor_lowest_mprime4 ((real)-0.074074074074074074)
+#define mcor_turning_mprime4 ((real)1.3333333333333333)
+
+#endif
+#endif

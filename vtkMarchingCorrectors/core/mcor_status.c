@@ -1,0 +1,75 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+#include "mcor_internal.h"
+#include "mcor_sph_kernel.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+const char* mcor_status_name(mcor_status status)
+{
+  static const char* const names[] = { "ok", "invalid argument", "invalid data", "out of capacity",
+    "device error", "cancelled" };
+  return (unsigned)status < sizeof names / sizeof names[0] ? names[status] : "unknown status";
+}
+
+const char* mcor_phase_name(mcor_phase phase)
+{
+  static const char* const names[MCOR_PHASE_COUNT] = { "input", "search grid", "seeds",
+    "extraction", "correction", "trimming", "output" };
+  return (unsigned)phase < MCOR_PHASE_COUNT ? names[phase] : "unknown phase";
+}
+
+#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, support },
+static const struct
+{
+  const char* name;
+  double support;
+} mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
+#undef MCOR_ENTRY
+
+int mcor_find_sph_kernel(const char* name)
+{
+  for (int k = 0; name && k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    if (strcmp(name, mcor_kernel_table[k].name) == 0)
+    {
+      return k;
+    }
+  }
+  return -1;
+}
+
+const char* mcor_sph_kernel_name(mcor_sph_kernel kernel)
+{
+  return (unsigned)kernel < MCOR_SPH_KERNEL_COUNT ? mcor_kernel_table[kernel].name : NULL;
+}
+
+double mcor_support_factor(mcor_sph_kernel kernel)
+{
+  return (unsigned)kernel < MCOR_SPH_KERNEL_COUNT ? mcor_kernel_table[kernel].support : 0;
+}
+
+mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  vsnprintf(context->error, sizeof context->error, format, args);
+  va_end(args);
+  return status;
+}
+
+const char* mcor_last_error(const mcor_context* context)
+{
+  return context ? context->error : "Host memory ran out.";
+}
+
+double mcor_seconds(void)
+{
+  struct timespec now;
+  timespec_get(&now, TIME_UTC);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}

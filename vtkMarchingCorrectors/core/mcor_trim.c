@@ -1,0 +1,102 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Trimming [III-D.3]. */
+
+#include "mcor_internal.h"
+
+#define MCOR_TRIM_STEPS 12
+
+/* Counts what remains; ends with scanned counts in mesh->remaining and mesh->cuts. */
+static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int* cuts)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->triangle_count + 1;
+  MCOR_TRY(mcor_reserve(context, &mesh->remaining, n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->cuts, n * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_LIGHT, mesh->triangle_count,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts)));
+  MCOR_TRY(mcor_scan(context, &mesh->remaining, mesh->triangle_count, remaining));
+  return mcor_scan(context, &mesh->cuts, mesh->triangle_count, cuts);
+}
+
+/* Grows a buffer, keeping its content. */
+static mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes)
+{
+  if (buffer->size >= bytes)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer bigger = { 0 };
+  MCOR_TRY(mcor_reserve(context, &bigger, bytes));
+  MCOR_TRY(mcor_copy(context, buffer, &bigger, old));
+  mcor_release(context, buffer);
+  *buffer = bigger;
+  return MCOR_OK;
+}
+
+static mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const size_t o = (size_t)old, n = (size_t)count, real = context->cl.real_size;
+  const size_t reals = o * real, new_reals = n * real;
+  MCOR_TRY(mcor_extend(context, &mesh->node, o * 16, n * 16));
+  MCOR_TRY(mcor_extend(context, &mesh->offset, 4 * reals, 4 * new_reals));
+  MCOR_TRY(mcor_extend(context, &mesh->field_value, reals, new_reals));
+  MCOR_TRY(mcor_extend(context, &mesh->gradient, 4 * reals, 4 * new_reals));
+  MCOR_TRY(mcor_extend(context, &mesh->vertex_weight, reals, new_reals));
+  return mcor_extend(context, &mesh->flag, o, n);
+}
+
+/* Places the cut vertices: linear cut, then both equations at once. */
+static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double iso)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const mcor_options* options = context->options;
+  const int lanes = context->cl.lanes, vertices = mesh->march_count;
+  const double range = context->measure.scalar_max - context->measure.scalar_min;
+  MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
+  mesh->vertex_count = vertices + cut_count;
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
+    MCOR_BUFFER(&mesh->cut_distinct), MCOR_INT(vertices), MCOR_REAL(options->vertex_threshold),
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->vertex_weight)));
+  return MCOR_LAUNCH(context, "mcor_trim_solve", MCOR_HEAVY, (cut_count + lanes - 1) / lanes,
+    MCOR_GRID_ARGS(context), MCOR_INT(vertices), MCOR_INT(cut_count), MCOR_BUFFER(&mesh->node),
+    MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
+    MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
+    MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag));
+}
+
+/* iso: relative to A0. */
+mcor_status mcor_trim(mcor_context* context, double iso)
+{
+  mcor_mesh* mesh = &context->mesh;
+  int remaining, cuts, cut_count;
+  if (context->options->field == MCOR_WEIGHT_SUM || mesh->triangle_count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_count_trimmed(context, &remaining, &cuts));
+  MCOR_TRY(mcor_reserve(context, &mesh->cut_keys, (size_t)cuts * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_LIGHT, mesh->triangle_count,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(&mesh->cuts), MCOR_BUFFER(&mesh->cut_keys)));
+  MCOR_TRY(mcor_reserve(context, &mesh->cut_index, sizeof(cl_int)));
+  MCOR_TRY(mcor_unique(context, &mesh->cut_keys, cuts, (uint64_t)mesh->march_count << 32,
+    &mesh->cut_distinct, &mesh->cut_index, &cut_count));
+  MCOR_TRY(mcor_reserve(context, &mesh->trimmed, (size_t)remaining * 3 * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_LIGHT, mesh->triangle_count,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts),
+    MCOR_BUFFER(&mesh->cut_index), MCOR_BUFFER(&mesh->trimmed)));
+  const mcor_buffer untrimmed = mesh->triangles;
+  mesh->triangles = mesh->trimmed;
+  mesh->trimmed = untrimmed;
+  mesh->triangle_count = remaining;
+  return cut_count > 0 ? mcor_place_cuts(context, cut_count, iso) : MCOR_OK;
+}

@@ -1,0 +1,257 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where particles reach; a brick
+ * has a slot (values, masks) where it is needed. Blocks are sorted by key, bricks by block, then
+ * z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
+
+#define MCOR_BLOCK_BRICKS 512
+#define MCOR_BLOCK_WORDS 16 /* words of 32 bricks: x 0..7, y 0..3 or 4..7, one z */
+#define MCOR_BLOCK_CUBES 32
+
+#define MCOR_BLOCK_PARAMS                                                                          \
+  const int block_count, const int block_shift, const int blocks_x, const int blocks_y,            \
+    const int blocks_z, __global const ulong *block_keys, __global const int *block_buckets
+
+#define MCOR_BRICK_PARAMS                                                                          \
+  MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
+
+/* Index of a block, or -1. */
+int mcor_find_block(MCOR_BLOCK_PARAMS, int x, int y, int z)
+{
+  if (x < 0 || y < 0 || z < 0 || x >= blocks_x || y >= blocks_y || z >= blocks_z)
+  {
+    return -1;
+  }
+  const ulong key = ((ulong)z * blocks_y + y) * blocks_x + x;
+  int low = block_buckets[key >> block_shift], high = block_buckets[(key >> block_shift) + 1];
+  while (low < high)
+  {
+    const int middle = low + (high - low) / 2;
+    if (block_keys[middle] < key)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low < block_count && block_keys[low] == key ? low : -1;
+}
+
+#define MCOR_BLOCK_ARGS                                                                            \
+  block_count, block_shift, blocks_x, blocks_y, blocks_z, block_keys, block_buckets
+
+/* Position of a brick among the MCOR_BLOCK_BRICKS of each block, or -1 where it has no block. */
+int mcor_find_mark(MCOR_BLOCK_PARAMS, int x, int y, int z)
+{
+  const int block = mcor_find_block(MCOR_BLOCK_ARGS, x >> 3, y >> 3, z >> 3);
+  return block < 0 ? -1
+                   : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
+}
+
+/* Slot of a brick, or -1. */
+int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
+{
+  const int mark = mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z);
+  if (mark < 0)
+  {
+    return -1;
+  }
+  const uint bits = brick_bits[mark >> 5], bit = 1u << (mark & 31);
+  return bits & bit ? brick_base[mark >> 5] + (int)popcount(bits & (bit - 1)) : -1;
+}
+
+#define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
+
+/* Brick coordinates of mark number m. */
+int4 mcor_brick_of_mark(
+  __global const ulong* block_keys, const int blocks_x, const int blocks_y, int m)
+{
+  const ulong key = block_keys[m / MCOR_BLOCK_BRICKS];
+  const int local_brick = m % MCOR_BLOCK_BRICKS;
+  int4 brick;
+  brick.x = (int)(key % blocks_x) * 8 + (local_brick & 7);
+  brick.y = (int)(key / blocks_x % blocks_y) * 8 + ((local_brick >> 3) & 7);
+  brick.z = (int)(key / blocks_x / blocks_y) * 8 + (local_brick >> 6);
+  brick.w = 0;
+  return brick;
+}
+
+/* Range of blocks that particles of the search cell of sorted particle i may touch. One brick is
+ * added on the upper side, as cells need the nodes there. */
+void mcor_block_range(const mcor_grid* grid, int i, const int* blocks, int* low, int* high)
+{
+  int l = 0;
+  while (l + 1 < grid->level_count && grid->cell_keys[i] >= grid->levels[l + 1].base)
+  {
+    ++l;
+  }
+  const mcor_level level = grid->levels[l];
+  ulong key = grid->cell_keys[i] - level.base;
+  for (int a = 0; a < 3; ++a)
+  {
+    const float cell = (float)(key % level.cells[a]);
+    key /= level.cells[a];
+    const float size = ldexp(1 / level.inv_cell, -grid->fix_bits); /* cubes */
+    const float reach = level.support + 1;
+    const float first = floor((cell * size - reach) / MCOR_BLOCK_CUBES);
+    const float last = floor(((cell + 1) * size + reach + MCOR_BRICK) / MCOR_BLOCK_CUBES);
+    low[a] = max((int)first, 0);
+    high[a] = min((int)last, blocks[a] - 1);
+  }
+}
+
+/* One work-item = one sorted particle, the first of its search cell. Writes how many blocks the
+ * cell's particles may touch. */
+__kernel void mcor_block_count(
+  MCOR_GRID_PARAMS, const int blocks_x, const int blocks_y, const int blocks_z, __global int* counts)
+{
+  const mcor_grid grid = MCOR_GRID;
+  const int i = get_global_id(0);
+  if (i >= particle_count)
+  {
+    return;
+  }
+  int count = 0;
+  if (i == 0 || cell_keys[i] != cell_keys[i - 1])
+  {
+    const int blocks[3] = { blocks_x, blocks_y, blocks_z };
+    int low[3], high[3];
+    mcor_block_range(&grid, i, blocks, low, high);
+    const long n = max((long)high[0] - low[0] + 1, 0L) * max((long)high[1] - low[1] + 1, 0L) *
+      max((long)high[2] - low[2] + 1, 0L);
+    count = (int)min(n, (long)INT_MAX);
+  }
+  counts[i] = count;
+}
+
+/* One work-item = the same. Reads the scanned counts. Writes the keys of the blocks. */
+__kernel void mcor_block_fill(MCOR_GRID_PARAMS, const int blocks_x, const int blocks_y,
+  const int blocks_z, __global const int* scanned, __global ulong* keys)
+{
+  const mcor_grid grid = MCOR_GRID;
+  const int i = get_global_id(0);
+  if (i >= particle_count || scanned[i] == scanned[i + 1])
+  {
+    return;
+  }
+  const int blocks[3] = { blocks_x, blocks_y, blocks_z };
+  int low[3], high[3], to = scanned[i];
+  mcor_block_range(&grid, i, blocks, low, high);
+  for (int z = low[2]; z <= high[2]; ++z)
+  {
+    for (int y = low[1]; y <= high[1]; ++y)
+    {
+      for (int x = low[0]; x <= high[0]; ++x)
+      {
+        keys[to++] = ((ulong)z * blocks_y + y) * blocks_x + x;
+      }
+    }
+  }
+}
+
+/* One work-item = one word of 32 bricks. Reads the marks (bricks with cells to examine) and the
+ * bricks that exist already. Writes which bricks are to exist: those, and the upper neighbours,
+ * which own some nodes of a marked brick's cells. */
+__kernel void mcor_brick_bits(MCOR_BLOCK_PARAMS, __global const ushort* marks,
+  __global const uint* old_bits, __global uint* bits, __global int* counts)
+{
+  const int word = get_global_id(0);
+  if (word >= block_count * MCOR_BLOCK_WORDS)
+  {
+    return;
+  }
+  uint result = old_bits[word];
+  for (int b = 0; b < 32; ++b)
+  {
+    const int m = word * 32 + b;
+    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+    bool needed = marks[m] != 0 || (result >> b & 1);
+    for (int d = 1; d < 8 && !needed; ++d)
+    {
+      const bool inside = ((d & 1) == 0 || (m & 7)) && ((d & 2) == 0 || (m >> 3 & 7)) &&
+        ((d & 4) == 0 || (m >> 6 & 7));
+      const int other = inside ? m - (d & 1) - (d >> 1 & 1) * 8 - (d >> 2) * 64
+                               : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x - (d & 1),
+                                   brick.y - (d >> 1 & 1), brick.z - (d >> 2));
+      needed = other >= 0 && marks[other] != 0;
+    }
+    result |= (uint)needed << b;
+  }
+  bits[word] = result;
+  counts[word] = (int)popcount(result);
+}
+
+/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of
+ * each brick to its slot. */
+__kernel void mcor_brick_fill(MCOR_BRICK_PARAMS, __global int4* bricks)
+{
+  const int word = get_global_id(0);
+  if (word >= block_count * MCOR_BLOCK_WORDS)
+  {
+    return;
+  }
+  int slot = brick_base[word];
+  for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
+  {
+    const int b = 31 - (int)clz(bits & -bits);
+    bricks[slot++] = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, word * 32 + b);
+  }
+}
+
+/* One work-item = one brick. Writes the slots of its 7 upper neighbours (offset bits 1 x, 2 y, 4 z:
+ * entry offset - 1), then of the 7 lower ones; -1 where there is none. */
+__kernel void mcor_brick_neighbours(
+  MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  const int4 brick = bricks[slot];
+  for (int d = 1; d < 8; ++d)
+  {
+    const int x = d & 1, y = d >> 1 & 1, z = d >> 2;
+    neighbours[slot * 14 + d - 1] =
+      mcor_find_brick(MCOR_BRICK_ARGS, brick.x + x, brick.y + y, brick.z + z);
+    neighbours[slot * 14 + d + 6] =
+      mcor_find_brick(MCOR_BRICK_ARGS, brick.x - x, brick.y - y, brick.z - z);
+  }
+}
+
+/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set. */
+__kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
+  __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
+  __global const real* old_value, __global const real* old_weight, __global ulong* known,
+  __global ulong* cells, __global real* node_value, __global real* node_weight)
+{
+  const int old = get_global_id(0);
+  if (old >= old_count)
+  {
+    return;
+  }
+  const int4 brick = old_bricks[old];
+  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, brick.x, brick.y, brick.z);
+  known[slot] = old_known[old];
+  cells[slot] = old_cells[old];
+  for (int n = 0; n < 64; ++n)
+  {
+    node_value[slot * 64 + n] = old_value[old * 64 + n];
+    node_weight[slot * 64 + n] = old_weight[old * 64 + n];
+  }
+}
+
+/* Gathers a mask of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
+void mcor_brick_masks(
+  __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)
+{
+  out[0] = masks[slot];
+  for (int d = 1; d < 8; ++d)
+  {
+    const int other = neighbours[slot * 14 + first + d - 1];
+    out[d] = other < 0 ? 0 : masks[other];
+  }
+}

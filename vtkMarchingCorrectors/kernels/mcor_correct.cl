@@ -1,0 +1,241 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Correction [III-D.2]: evaluation of field and gradient at MCOR_LANES points at a time, and the
+ * safeguarded Newton iteration along a lattice edge. */
+
+/* Points: lattice node plus offset in cubes. */
+typedef struct
+{
+  fixv x, y, z;
+  realv ox, oy, oz;
+} mcor_points;
+
+/* Field minus iso value, its gradient, and the trimming weight with its gradient; per cube. */
+typedef struct
+{
+  realv value, gx, gy, gz;
+  realv weight, wx, wy, wz;
+} mcor_field_at;
+
+/* Loads the nodes of points begin.. (the last one repeated beyond `count`) and fits the query. */
+void mcor_points_load(__global const int4* node, int begin, int count, int fix_bits,
+  mcor_points* points, mcor_query* query, int* bits)
+{
+  fix n[3][MCOR_LANES];
+  int low[3] = { INT_MAX, INT_MAX, INT_MAX }, high[3] = { INT_MIN, INT_MIN, INT_MIN };
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int4 p = node[min(begin + lane, count - 1)];
+    const int c[3] = { p.x, p.y, p.z };
+    for (int a = 0; a < 3; ++a)
+    {
+      n[a][lane] = (fix)c[a] << fix_bits;
+      low[a] = min(low[a], c[a]);
+      high[a] = max(high[a], c[a]);
+    }
+    bits[lane] = p.w;
+  }
+#if MCOR_LANES == 1
+  points->x = n[0][0];
+  points->y = n[1][0];
+  points->z = n[2][0];
+#else
+  points->x = MCOR_CAT(vload, MCOR_LANES)(0, n[0]);
+  points->y = MCOR_CAT(vload, MCOR_LANES)(0, n[1]);
+  points->z = MCOR_CAT(vload, MCOR_LANES)(0, n[2]);
+#endif
+  query->radius = -1;
+  for (int a = 0; a < 3; ++a)
+  {
+    query->low[a] = (fix)low[a] << fix_bits;
+    query->high[a] = (fix)high[a] << fix_bits;
+  }
+}
+
+/* Extends the query from the nodes to all points with offsets in [low, high]. */
+void mcor_points_extend(mcor_query* query, int axis, real low, real high, int fix_bits)
+{
+  query->low[axis] += (fix)floor(ldexp(low, fix_bits)) - 1;
+  query->high[axis] += (fix)ceil(ldexp(high, fix_bits)) + 1;
+}
+
+/* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
+void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  const mcor_points* points, real iso, mcor_field_at* at)
+{
+  realv s = 0, sx = 0, sy = 0, sz = 0, w = 0, wx = 0, wy = 0, wz = 0;
+#if MCOR_SOLIDS
+  realv t = 0, tx = 0, ty = 0, tz = 0;
+#endif
+  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
+  {
+    for (int i = 0; i < tile->count; ++i)
+    {
+      const int j = tile->list[i];
+      const realv dx = points->ox - MCOR_CONVERT_REALV(grid->px[j] - points->x) * grid->unit;
+      const realv dy = points->oy - MCOR_CONVERT_REALV(grid->py[j] - points->y) * grid->unit;
+      const realv dz = points->oz - MCOR_CONVERT_REALV(grid->pz[j] - points->z) * grid->unit;
+      realv gx, gy, gz;
+      const realv k = mcor_weight_gradient(dx, dy, dz, grid->inv_h[j], &gx, &gy, &gz);
+      const real m = grid->weight[j];
+#if MCOR_FIELD == 0
+      const real c = m * (grid->value[j] - iso);
+#elif MCOR_FIELD == 1
+      const real c = m * grid->value[j];
+#endif
+#if MCOR_FIELD != 2
+      s += c * k;
+      sx += c * gx;
+      sy += c * gy;
+      sz += c * gz;
+#endif
+      w += m * k;
+      wx += m * gx;
+      wy += m * gy;
+      wz += m * gz;
+#if MCOR_SOLIDS
+      const real mt = grid->trim_weight[j];
+      t += mt * k;
+      tx += mt * gx;
+      ty += mt * gy;
+      tz += mt * gz;
+#endif
+    }
+  }
+#if MCOR_FIELD == 0
+  const realv inv_w = (real)1 / (w != 0 ? w : (realv)1);
+  at->value = s * inv_w;
+  at->gx = (sx - at->value * wx) * inv_w;
+  at->gy = (sy - at->value * wy) * inv_w;
+  at->gz = (sz - at->value * wz) * inv_w;
+#elif MCOR_FIELD == 1
+  at->value = s - iso;
+  at->gx = sx;
+  at->gy = sy;
+  at->gz = sz;
+#else
+  at->value = w - iso;
+  at->gx = wx;
+  at->gy = wy;
+  at->gz = wz;
+#endif
+#if MCOR_SOLIDS
+  at->weight = t;
+  at->wx = tx;
+  at->wy = ty;
+  at->wz = tz;
+#else
+  at->weight = w;
+  at->wx = wx;
+  at->wy = wy;
+  at->wz = wz;
+#endif
+}
+
+/* x / y, or -1 (outside of every bracket) where y is 0. No kernel makes an infinite value or a NaN,
+ * as compilers that relax arithmetic need not honour them. */
+realv mcor_correct_ratio(realv x, realv y)
+{
+  return y != 0 ? x / (y != 0 ? y : (realv)1) : (realv)-1;
+}
+
+/* Root of the cubic through the values at 0, 1 and t and the slope at t: near t, by Newton steps. */
+realv mcor_correct_cubic(realv v0, realv v1, realv t, realv v, realv slope)
+{
+  const realv a = ((v0 - v) / t + slope) / t;                      /* (p(0) - tangent) / t^2 */
+  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t);    /* the same at 1 */
+  const realv c3 = b - a, c2 = a + c3 * t;
+  realv d = -mcor_correct_ratio(v, slope);
+  for (int i = 0; i < 3; ++i)
+  {
+    d -= mcor_correct_ratio(v + d * (slope + d * (c2 + d * c3)),
+      slope + d * ((real)2 * c2 + d * (real)3 * c3));
+  }
+  return t + d;
+}
+
+/* A vertex keeps this distance from the ends of its edge, so that vertices of edges which meet in a
+ * node at the iso value stay apart and no triangle loses its area. */
+#define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
+#define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
+
+/* One work-item = MCOR_LANES vertices. Reads edges and end values (against iso). Writes position
+ * (node, offset), linear position, value, gradient and trimming weight, and how many evaluations
+ * were made. limit 0: no correction (preview). */
+__kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int vertex_count,
+  __global const int4* vertex_edge, __global const real* vertex_ends, const real iso,
+  const real tolerance, const int limit, __global real4* offset, __global real* linear,
+  __global real* value, __global real4* gradient, __global real* weight,
+  __global uchar* evaluations)
+{
+  const int begin = get_global_id(0) * MCOR_LANES;
+  if (begin >= vertex_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  int axis_of[MCOR_LANES];
+  mcor_points_load(vertex_edge, begin, vertex_count, fix_bits, &points, &query, axis_of);
+  realv v0, v1, ax = 0, ay = 0, az = 0;
+  int axes = 0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = min(begin + lane, vertex_count - 1), axis = axis_of[lane] & 3;
+    MCOR_SET(v0, lane) = vertex_ends[2 * v];
+    MCOR_SET(v1, lane) = vertex_ends[2 * v + 1];
+    MCOR_SET(ax, lane) = axis == 0;
+    MCOR_SET(ay, lane) = axis == 1;
+    MCOR_SET(az, lane) = axis == 2;
+    axes |= 1 << axis;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_points_extend(&query, a, 0, (real)(axes >> a & 1), fix_bits);
+  }
+  realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
+  const realv t0 = clamp(v0 / (v0 - v1), low, high);
+  realv t = t0;
+  const fixv rising = v0 < 0;
+  fixv active = low < high, count = 0;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  mcor_field_at at;
+  for (int i = 0;; ++i)
+  {
+    points.ox = t * ax;
+    points.oy = t * ay;
+    points.oz = t * az;
+    mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
+    count += active ? (fixv)1 : (fixv)0;
+    active = active && fabs(at.value) > tolerance && high - low > MCOR_EDGE_RESOLUTION;
+    if (i >= limit || !MCOR_ANY(active))
+    {
+      break;
+    }
+    const fixv before = rising ? at.value < 0 : at.value >= 0;
+    low = before ? t : low;
+    high = before ? high : t;
+    const realv slope = at.gx * ax + at.gy * ay + at.gz * az;
+    realv next = i == 0 ? mcor_correct_cubic(v0, v1, t, at.value, slope) : t - mcor_correct_ratio(at.value, slope);
+    /* Newton may creep where the field has a kink or no slope: from the 6th step on every other
+     * step halves the bracket. */
+    const bool newton = i < 5 || (i & 1);
+    next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
+    active = active && next != t;
+    t = active ? next : t;
+  }
+  for (int lane = 0; lane < MCOR_LANES && begin + lane < vertex_count; ++lane)
+  {
+    const int v = begin + lane;
+    offset[v] = (real4)(MCOR_GET(points.ox, lane), MCOR_GET(points.oy, lane), MCOR_GET(points.oz, lane), 0);
+    linear[v] = MCOR_GET(t0, lane) - MCOR_GET(t, lane);
+    value[v] = MCOR_GET(at.value, lane);
+    gradient[v] =
+      (real4)(MCOR_GET(at.gx, lane), MCOR_GET(at.gy, lane), MCOR_GET(at.gz, lane), 0);
+    weight[v] = MCOR_GET(at.weight, lane);
+    evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
+  }
+}

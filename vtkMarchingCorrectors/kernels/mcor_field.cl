@@ -1,0 +1,317 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The SPH field: which particles reach a box (search grid), and what they add at a point.
+ *
+ * The search grid has one level for each factor of 2 of support radius that occurs, so that a
+ * particle costs work only where its own support reaches. Particles are sorted by (level, z, y, x)
+ * cell and, in a cell, by position: the order of every sum is fixed by the particles alone. */
+
+typedef struct
+{
+  ulong base;       /* key of the level's cell (0, 0, 0) */
+  int cells[3];     /* extent of the level, in its cells */
+  float inv_cell;   /* 1 / cell size, in fixed-point units */
+  float support;    /* largest support radius of the level's particles, cubes, rounded up */
+  int unused;
+} mcor_level;
+
+#define MCOR_GRID_PARAMS                                                                           \
+  const int particle_count, const int level_count, const int bucket_shift, const int fix_bits,     \
+    __global const mcor_level *levels, __global const int *buckets,                                \
+    __global const ulong *cell_keys, __global const fix *px, __global const fix *py,               \
+    __global const fix *pz, __global const real *p_inv_h, __global const real *p_weight,           \
+    __global const real *p_trim_weight, __global const real *p_value
+
+/* Arrays are padded by 16 elements, so that a vector load may run over the end. */
+typedef struct
+{
+  int particle_count, level_count, bucket_shift, fix_bits;
+  real unit;
+  __global const mcor_level* levels;
+  __global const int* buckets;     /* first particle with cell key >= bucket << bucket_shift */
+  __global const ulong* cell_keys; /* sorted */
+  __global const fix *px, *py, *pz;
+  __global const real* inv_h;       /* 1 / (h scale * smoothing length), per cube */
+  __global const real* weight;      /* V norm / (scaled h)^3; 0 for solids */
+  __global const real* trim_weight; /* the same, solids included */
+  __global const real* value;       /* A - A0 */
+} mcor_grid;
+
+#define MCOR_GRID                                                                                  \
+  {                                                                                                \
+    particle_count, level_count, bucket_shift, fix_bits, ldexp((real)1, -fix_bits), levels,        \
+      buckets, cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                    \
+  }
+
+/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. */
+int mcor_cell_of(fix x, float inv_cell)
+{
+  return (int)floor((float)x * inv_cell);
+}
+
+/* Index of the first particle whose cell key is >= key. */
+int mcor_first_particle(const mcor_grid* grid, ulong key)
+{
+  const ulong bucket = key >> grid->bucket_shift;
+  int low = grid->buckets[bucket];
+  if (grid->bucket_shift == 0)
+  {
+    return low;
+  }
+  int high = grid->buckets[bucket + 1];
+  while (low < high)
+  {
+    const int middle = low + (high - low) / 2;
+    if (grid->cell_keys[middle] < key)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/* All particles that may reach the box [low, high], row by row of search cells. */
+typedef struct
+{
+  fix low[3], high[3];
+  real center[3], half_size[3]; /* cubes, relative to low */
+  float radius;                 /* cubes; >= 0: instead of the particles' own support */
+  int level, first[3], last[3], y, z;
+  int begin, end; /* particles left of the current row */
+} mcor_query;
+
+/* The part of a query that depends on the level; false where the level has no cell in reach. */
+bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
+{
+  const mcor_level level = grid->levels[query->level];
+  const float radius = query->radius >= 0 ? query->radius : level.support;
+  const fix reach = (fix)ceil(ldexp(radius, grid->fix_bits)) + 1;
+  bool some = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    query->first[a] = max(mcor_cell_of(query->low[a] - reach, level.inv_cell), 0);
+    query->last[a] = min(mcor_cell_of(query->high[a] + reach, level.inv_cell), level.cells[a] - 1);
+    some = some && query->first[a] <= query->last[a];
+  }
+  query->y = query->first[1] - 1;
+  query->z = query->first[2];
+  return some;
+}
+
+void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    query->half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
+    query->center[a] = query->half_size[a];
+  }
+  query->begin = query->end = 0;
+  for (query->level = 0; query->level < grid->level_count; ++query->level)
+  {
+    if (mcor_query_level(grid, query))
+    {
+      return;
+    }
+  }
+}
+
+/* Moves to the next row with particles, [begin, end); false at the end. */
+bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
+{
+  while (query->level < grid->level_count)
+  {
+    if (++query->y > query->last[1])
+    {
+      query->y = query->first[1];
+      if (++query->z > query->last[2])
+      {
+        for (++query->level; query->level < grid->level_count; ++query->level)
+        {
+          if (mcor_query_level(grid, query))
+          {
+            break;
+          }
+        }
+        continue;
+      }
+    }
+    __global const mcor_level* level = grid->levels + query->level;
+    const ulong row =
+      level->base + ((ulong)query->z * level->cells[1] + query->y) * level->cells[0];
+    query->begin = mcor_first_particle(grid, row + query->first[0]);
+    query->end = mcor_first_particle(grid, row + query->last[0] + 1);
+    if (query->begin < query->end)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Fits the query's box to sorted particles [begin, begin + count); returns the least of their inv_h. */
+real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, int count)
+{
+  real coarsest = grid->inv_h[begin];
+  for (int a = 0; a < 3; ++a)
+  {
+    __global const fix* p = a == 0 ? grid->px : a == 1 ? grid->py : grid->pz;
+    query->low[a] = query->high[a] = p[begin];
+    for (int i = begin + 1; i < begin + count; ++i)
+    {
+      query->low[a] = min(query->low[a], p[i]);
+      query->high[a] = max(query->high[a], p[i]);
+      coarsest = min(coarsest, grid->inv_h[i]);
+    }
+  }
+  return coarsest;
+}
+
+/* Whether particles reach the query's box: distance of each to the box, per axis. */
+fixv mcor_reaches(const mcor_grid* grid, const mcor_query* query, fixv x, fixv y, fixv z, realv inv_h)
+{
+  const realv dx = fmax(
+    fabs(MCOR_CONVERT_REALV(x - query->low[0]) * grid->unit - query->center[0]) - query->half_size[0],
+    (realv)0);
+  const realv dy = fmax(
+    fabs(MCOR_CONVERT_REALV(y - query->low[1]) * grid->unit - query->center[1]) - query->half_size[1],
+    (realv)0);
+  const realv dz = fmax(
+    fabs(MCOR_CONVERT_REALV(z - query->low[2]) * grid->unit - query->center[2]) - query->half_size[2],
+    (realv)0);
+#if MCOR_TENSOR
+  const realv q = fmax(dx, fmax(dy, dz)) * inv_h;
+  const realv limit = (realv)MCOR_SUPPORT;
+#else
+  const realv q = (dx * dx + dy * dy + dz * dz) * inv_h * inv_h;
+  const realv limit = (realv)(MCOR_SUPPORT * MCOR_SUPPORT);
+#endif
+  /* The margin covers rounding: a particle kept in vain adds exactly 0. */
+  return q < limit * (real)1.0001;
+}
+
+/* The particles that reach a query's box, MCOR_TILE at a time:
+ *
+ *   mcor_tile_init(&tile);
+ *   for (bool first = true; mcor_tile_next(grid, &query, &tile, first); first = false)
+ *     for (int i = 0; i < tile.count; ++i)
+ *       ... particle tile.list[i] ...
+ *
+ * The loop may be repeated; a list that fits one tile is then not gathered again. */
+typedef struct
+{
+  int count;
+  bool complete;  /* the list holds everything */
+  bool delivered; /* nothing is left for this loop */
+  int list[MCOR_TILE + 16];
+} mcor_tile;
+
+void mcor_tile_init(mcor_tile* tile)
+{
+  tile->complete = false;
+}
+
+bool mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
+{
+  int count = 0;
+  while (count <= MCOR_TILE - MCOR_LANES)
+  {
+    if (query->begin >= query->end && !mcor_query_next_row(grid, query))
+    {
+      tile->count = count;
+      return true;
+    }
+#if MCOR_LANES == 1
+    const int j = query->begin++;
+    tile->list[count] = j;
+    const real inv_h = query->radius >= 0 ? MCOR_SUPPORT / query->radius : grid->inv_h[j];
+    count += mcor_reaches(grid, query, grid->px[j], grid->py[j], grid->pz[j], inv_h) != 0;
+#else
+    const int j = query->begin;
+    const realv inv_h = query->radius >= 0 ? (realv)(MCOR_SUPPORT / query->radius)
+                                           : MCOR_CAT(vload, MCOR_LANES)(0, grid->inv_h + j);
+    const fixv inside = mcor_reaches(grid, query, MCOR_CAT(vload, MCOR_LANES)(0, grid->px + j),
+      MCOR_CAT(vload, MCOR_LANES)(0, grid->py + j), MCOR_CAT(vload, MCOR_LANES)(0, grid->pz + j),
+      inv_h);
+    fix keep[MCOR_LANES];
+    MCOR_CAT(vstore, MCOR_LANES)(inside, 0, keep);
+    const int lanes = min(MCOR_LANES, query->end - j);
+    for (int lane = 0; lane < lanes; ++lane)
+    {
+      tile->list[count] = j + lane;
+      count += (int)(keep[lane] & 1);
+    }
+    query->begin += lanes;
+#endif
+  }
+  tile->count = count;
+  return false;
+}
+
+bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool first)
+{
+  if (!first && tile->delivered)
+  {
+    return false;
+  }
+  if (first && tile->complete)
+  {
+    tile->delivered = true;
+    return true;
+  }
+  if (first)
+  {
+    mcor_query_begin(grid, query);
+  }
+  tile->delivered = mcor_tile_fill(grid, query, tile);
+  tile->complete = first && tile->delivered;
+  return true;
+}
+
+/* W / norm * h^3 at offset (dx, dy, dz), in two steps: what (dx, dy) give serves a whole column. */
+realv mcor_planar(realv dx, realv dy, real inv_h)
+{
+#if MCOR_TENSOR
+  return MCOR_W(fabs(dx) * inv_h) * MCOR_W(fabs(dy) * inv_h);
+#else
+  return dx * dx + dy * dy;
+#endif
+}
+
+realv mcor_weight(realv planar, realv dz, real inv_h)
+{
+#if MCOR_TENSOR
+  return planar * MCOR_W(fabs(dz) * inv_h);
+#else
+  return MCOR_W(sqrt(planar + dz * dz) * inv_h);
+#endif
+}
+
+/* The same, and the gradient with respect to (dx, dy, dz). */
+realv mcor_weight_gradient(
+  realv dx, realv dy, realv dz, real inv_h, realv* gx, realv* gy, realv* gz)
+{
+#if MCOR_TENSOR
+  const realv qx = fabs(dx) * inv_h, qy = fabs(dy) * inv_h, qz = fabs(dz) * inv_h;
+  const realv wx = MCOR_W(qx), wy = MCOR_W(qy), wz = MCOR_W(qz);
+  *gx = sign(dx) * MCOR_DW(qx) * wy * wz * inv_h;
+  *gy = sign(dy) * MCOR_DW(qy) * wx * wz * inv_h;
+  *gz = sign(dz) * MCOR_DW(qz) * wx * wy * inv_h;
+  return wx * wy * wz;
+#else
+  /* The floor keeps 1 / r finite at r = 0, where the gradient is 0 (defined so for kernels whose
+   * slope is not: the quadratic one). */
+  const realv r2 = fmax(dx * dx + dy * dy + dz * dz, (realv)1e-30f);
+  const realv inv_r = rsqrt(r2);
+  const realv q = r2 * inv_r * inv_h;
+  const realv slope = MCOR_DW(q) * inv_r * inv_h;
+  *gx = slope * dx;
+  *gy = slope * dy;
+  *gz = slope * dz;
+  return MCOR_W(q);
+#endif
+}

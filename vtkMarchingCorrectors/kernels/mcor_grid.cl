@@ -1,0 +1,232 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Search grid [III-A]: particles sorted by cell; volumes. */
+
+/* One work-item = one particle. Reads position and level. Writes the key of its search cell. */
+__kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
+  __global const uchar* level_of, __global const fix* xyz, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const mcor_level level = levels[level_of[i]];
+  ulong cell[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    cell[a] = clamp(mcor_cell_of(xyz[3 * i + a], level.inv_cell), 0, level.cells[a] - 1);
+  }
+  keys[i] = level.base + (cell[2] * level.cells[1] + cell[1]) * level.cells[0] + cell[0];
+}
+
+/* Order of two particles of one search cell: by position, then by size. Particles equal in all of
+ * this are interchangeable but for their scalar, see mcor_grid_order_value. */
+bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
+  __global const real* volume, int i, int j)
+{
+  for (int a = 2; a >= 0; --a)
+  {
+    if (xyz[3 * i + a] != xyz[3 * j + a])
+    {
+      return xyz[3 * i + a] < xyz[3 * j + a];
+    }
+  }
+  return inv_h[i] != inv_h[j] ? inv_h[i] < inv_h[j] : volume[i] < volume[j];
+}
+
+/* Heap sort's sift: the child `root` sinks in order[0..count). */
+void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
+  __global const real* volume, __global int* order, int root, int count)
+{
+  const int item = order[root];
+  for (int child = 2 * root + 1; child < count; child = 2 * root + 1)
+  {
+    if (child + 1 < count &&
+      mcor_grid_before(xyz, inv_h, volume, order[child], order[child + 1]))
+    {
+      ++child;
+    }
+    if (!mcor_grid_before(xyz, inv_h, volume, item, order[child]))
+    {
+      break;
+    }
+    order[root] = order[child];
+    root = child;
+  }
+  order[root] = item;
+}
+
+/* One work-item = one particle, the first of its cell. Reads the particles. Writes their order in
+ * the cell, which then no longer depends on the order of the input. */
+__kernel void mcor_grid_order(const int count, __global const ulong* keys,
+  __global const fix* xyz, __global const real* inv_h, __global const real* volume,
+  __global int* order)
+{
+  const int begin = get_global_id(0);
+  if (begin >= count || (begin > 0 && keys[begin] == keys[begin - 1]))
+  {
+    return;
+  }
+  int end = begin + 1;
+  while (end < count && keys[end] == keys[begin])
+  {
+    ++end;
+  }
+  __global int* cell = order + begin;
+  const int size = end - begin;
+  if (size <= 64)
+  {
+    for (int i = 1; i < size; ++i)
+    {
+      const int item = cell[i];
+      int to = i;
+      for (; to > 0 && mcor_grid_before(xyz, inv_h, volume, item, cell[to - 1]); --to)
+      {
+        cell[to] = cell[to - 1];
+      }
+      cell[to] = item;
+    }
+    return;
+  }
+  for (int i = size / 2 - 1; i >= 0; --i)
+  {
+    mcor_grid_sift(xyz, inv_h, volume, cell, i, size);
+  }
+  for (int last = size - 1; last > 0; --last)
+  {
+    const int item = cell[last];
+    cell[last] = cell[0];
+    cell[0] = item;
+    mcor_grid_sift(xyz, inv_h, volume, cell, 0, last);
+  }
+}
+
+/* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order.
+ * `volume` is 0 where it is still to be computed. */
+__kernel void mcor_grid_gather(const int count, __global const int* order,
+  __global const fix* xyz, __global const real* inv_h_in, __global const real* volume,
+  __global const uchar* solid, __global fix* px, __global fix* py, __global fix* pz,
+  __global real* inv_h_out, __global real* weight, __global real* trim_weight)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int j = order[i];
+  px[i] = xyz[3 * j];
+  py[i] = xyz[3 * j + 1];
+  pz[i] = xyz[3 * j + 2];
+  const real inv_h = inv_h_in[j];
+  inv_h_out[i] = inv_h;
+  const real w = volume[j] * (real)MCOR_NORM * inv_h * inv_h * inv_h;
+  trim_weight[i] = w;
+#if MCOR_SOLIDS
+  weight[i] = solid[j] ? (real)0 : w;
+#endif
+}
+
+/* One work-item = one sorted particle. Reads an array in input order. Writes it in sorted order. */
+__kernel void mcor_grid_gather_value(const int count, __global const int* order,
+  __global const real* in, __global real* out, const int out_offset)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    out[out_offset + i] = in[order[i]];
+  }
+}
+
+/* One work-item = one sorted particle, the first of a run that differs in the scalar only. Sorts
+ * the run by scalar, so that not even coincident particles make a result depend on input order. */
+__kernel void mcor_grid_order_value(const int count, __global const fix* px,
+  __global const fix* py, __global const fix* pz, __global const real* inv_h,
+  __global const real* weight, __global real* value)
+{
+  const int begin = get_global_id(0);
+#define MCOR_SAME(i, j)                                                                            \
+  (px[i] == px[j] && py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] &&                   \
+    weight[i] == weight[j])
+  if (begin + 1 >= count || !MCOR_SAME(begin, begin + 1) ||
+    (begin > 0 && MCOR_SAME(begin, begin - 1)))
+  {
+    return;
+  }
+  for (int i = begin + 1; i < count && MCOR_SAME(begin, i); ++i)
+  {
+    const real item = value[i];
+    int to = i;
+    for (; to > begin && item < value[to - 1]; --to)
+    {
+      value[to] = value[to - 1];
+    }
+    value[to] = item;
+  }
+#undef MCOR_SAME
+}
+
+/* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (1 each: number density).
+ * Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j. */
+__kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, __global const real* mass,
+  __global real* density)
+{
+  const mcor_grid grid = MCOR_GRID;
+  const int begin = get_global_id(0) * MCOR_LANES;
+  if (begin >= particle_count)
+  {
+    return;
+  }
+  mcor_query query;
+  const real coarsest =
+    mcor_query_particles(&grid, &query, begin, min(MCOR_LANES, particle_count - begin));
+  query.radius = (float)(MCOR_SUPPORT / (coarsest * h_scale)) * 1.0001f;
+#if MCOR_LANES == 1
+  const fixv x = px[begin], y = py[begin], z = pz[begin];
+  const realv inv_h = p_inv_h[begin] * h_scale;
+#else
+  const fixv x = MCOR_CAT(vload, MCOR_LANES)(0, px + begin);
+  const fixv y = MCOR_CAT(vload, MCOR_LANES)(0, py + begin);
+  const fixv z = MCOR_CAT(vload, MCOR_LANES)(0, pz + begin);
+  const realv inv_h = MCOR_CAT(vload, MCOR_LANES)(0, p_inv_h + begin) * h_scale;
+#endif
+  realv sum = 0;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+  {
+    for (int i = 0; i < tile.count; ++i)
+    {
+      const int k = tile.list[i];
+      const realv scale = grid.unit * inv_h;
+      const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
+      const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
+      const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
+      sum += mass[k] * mcor_weight(mcor_planar(qx, qy, (real)1), qz, (real)1);
+    }
+  }
+#if MCOR_LANES == 1
+  density[begin] = sum;
+#else
+  MCOR_CAT(vstore, MCOR_LANES)(sum, 0, density + begin);
+#endif
+}
+
+/* One work-item = one sorted particle. Turns density into the weight V norm / (scaled h)^3: as
+ * V = m / (sum m W), the norm and the unscaled h^3 cancel. */
+__kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
+  __global const uchar* solid, __global const real* mass, __global const real* density,
+  __global real* weight, __global real* trim_weight)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const real w = mass[i] / (density[i] * h_scale * h_scale * h_scale);
+  trim_weight[i] = w;
+#if MCOR_SOLIDS
+  weight[i] = solid[order[i]] ? (real)0 : w;
+#endif
+}

@@ -1,0 +1,383 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices numbered
+ * by lattice edge. */
+
+/* Below this a fluid weight is rounding noise of a kernel's rim, and the Shepard mean undefined. */
+#define MCOR_LEAST_WEIGHT ((real)1e-5)
+
+#define MCOR_NODE_GROUPS (64 / MCOR_LANES)
+#define MCOR_PLANE_GROUPS (MCOR_LANES == 1 ? 16 : 16 / MCOR_LANES)
+
+/* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
+ * are not yet known, rounded up to whole planes of 16. */
+__kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
+  __global const ulong* cells, __global const ulong* known, __global ulong* need)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong m[8];
+  mcor_brick_masks(cells, neighbours, slot, 7, m);
+  for (int i = 0; i < 8; i += 2)
+  {
+    m[i] |= mcor_from_last_x(m[i], m[i + 1]);
+  }
+  for (int i = 0; i < 8; i += 4)
+  {
+    m[i] |= mcor_from_last_y(m[i], m[i + 2]);
+  }
+  m[0] |= mcor_from_last_z(m[0], m[4]);
+  ulong planes = 0;
+  for (int z = 0; z < 4; ++z)
+  {
+    planes |= (m[0] >> (16 * z) & MCOR_LOW_Z) ? MCOR_LOW_Z << (16 * z) : 0;
+  }
+  need[slot] = planes & ~known[slot];
+}
+
+/* Sums at the nodes of a brick: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
+typedef struct
+{
+  realv s[MCOR_NODE_GROUPS], w[MCOR_NODE_GROUPS];
+#if MCOR_SOLIDS
+  realv t[MCOR_NODE_GROUPS];
+#endif
+} mcor_node_sums;
+
+/* Adds particle j to the planes of `need`; its position relative to the brick is (x, y, z). */
+void mcor_march_add(const mcor_grid* grid, int j, real x, real y, real z, ulong need,
+  const realv* lane_x, const realv* lane_y, mcor_node_sums* sums)
+{
+  const real inv_h = grid->inv_h[j];
+#if MCOR_SOLIDS
+  const real trim = grid->trim_weight[j];
+#endif
+  const real weight = grid->weight[j], c = MCOR_FIELD == 2 ? (real)0 : weight * grid->value[j];
+  realv planar[MCOR_PLANE_GROUPS];
+  for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
+  {
+    planar[g] = mcor_planar(x - lane_x[g], y - lane_y[g], inv_h);
+  }
+  for (int plane = 0; plane < 4; ++plane)
+  {
+    const real dz = z - plane;
+    if ((need >> (16 * plane) & 1) && fabs(dz) * inv_h < MCOR_SUPPORT)
+    {
+      for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
+      {
+        const int n = plane * MCOR_PLANE_GROUPS + g;
+        const realv w = mcor_weight(planar[g], (realv)dz, inv_h);
+        sums->s[n] += c * w;
+        sums->w[n] += weight * w;
+#if MCOR_SOLIDS
+        sums->t[n] += trim * w;
+#endif
+      }
+    }
+  }
+}
+
+/* The field's value and the trimming weight (-1: no valid value) of node n of a brick. */
+void mcor_march_store(real s, real w, real t, __global real* value, __global real* weight)
+{
+#if MCOR_FIELD == 0
+  const bool defined = w >= MCOR_LEAST_WEIGHT;
+  *value = defined ? s / w : (real)0;
+  *weight = defined ? t : (real)-1;
+#elif MCOR_FIELD == 1
+  *value = s;
+  *weight = t;
+#else
+  *value = w;
+  *weight = t;
+#endif
+}
+
+/* One work-item = one brick. Reads the particles that reach the needed nodes. Writes the values and
+ * weights of those nodes. */
+__kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
+  __global const int4* bricks, __global const ulong* need, __global ulong* known,
+  __global real* node_value, __global real* node_weight)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count || need[slot] == 0)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const ulong wanted = need[slot];
+  const int low = mcor_ctz(wanted) / 16, high = 3 - (int)(clz(wanted) / 16);
+  const int4 brick = bricks[slot];
+  mcor_query query;
+  mcor_seed_box(
+    &query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK, 3, fix_bits);
+  const fix origin_z = query.low[2];
+  query.low[2] = origin_z + ((fix)low << fix_bits);
+  query.high[2] = origin_z + ((fix)high << fix_bits);
+  realv lane_x[MCOR_PLANE_GROUPS], lane_y[MCOR_PLANE_GROUPS];
+  for (int n = 0; n < 16; ++n)
+  {
+    MCOR_SET(lane_x[n / MCOR_LANES], n % MCOR_LANES) = n & 3;
+    MCOR_SET(lane_y[n / MCOR_LANES], n % MCOR_LANES) = n >> 2;
+  }
+  mcor_node_sums sums;
+  for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+  {
+    sums.s[g] = sums.w[g] = 0;
+#if MCOR_SOLIDS
+    sums.t[g] = 0;
+#endif
+  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+  {
+    for (int i = 0; i < tile.count; ++i)
+    {
+      const int j = tile.list[i];
+      mcor_march_add(&grid, j, (real)(px[j] - query.low[0]) * grid.unit,
+        (real)(py[j] - query.low[1]) * grid.unit, (real)(pz[j] - origin_z) * grid.unit, wanted,
+        lane_x, lane_y, &sums);
+    }
+  }
+  for (int n = 0; n < 64; ++n)
+  {
+    if (wanted >> n & 1)
+    {
+      const int g = n / MCOR_LANES, lane = n % MCOR_LANES;
+      const real w = MCOR_GET(sums.w[g], lane);
+#if MCOR_SOLIDS
+      const real t = MCOR_GET(sums.t[g], lane);
+#else
+      const real t = w;
+#endif
+      mcor_march_store(MCOR_GET(sums.s[g], lane), w, t, node_value + slot * 64L + n,
+        node_weight + slot * 64L + n);
+    }
+  }
+  known[slot] |= wanted;
+}
+
+/* One work-item = one brick. Reads node values. Writes which nodes are above the iso value, and
+ * which are valid (weight not below the node threshold). */
+__kernel void mcor_march_sign(const int brick_count, __global const ulong* known,
+  __global const real* node_value, __global const real* node_weight, const real iso,
+  const real node_threshold, __global ulong* above, __global ulong* valid)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong a = 0, v = 0;
+  for (int n = 0; n < 64; ++n)
+  {
+    a |= (ulong)(node_value[slot * 64L + n] >= iso) << n;
+    v |= (ulong)(MCOR_FIELD == 2 || node_weight[slot * 64L + n] >= node_threshold) << n;
+  }
+  above[slot] = a & known[slot];
+  valid[slot] = v & known[slot];
+}
+
+/* Per cell: whether some (all) of its 8 nodes are set. m: masks of a brick and its upper
+ * neighbours; overwritten. */
+ulong mcor_cell_some(ulong* m)
+{
+  for (int i = 0; i < 8; i += 2)
+  {
+    m[i] |= mcor_from_next_x(m[i], m[i + 1]);
+  }
+  for (int i = 0; i < 8; i += 4)
+  {
+    m[i] |= mcor_from_next_y(m[i], m[i + 2]);
+  }
+  return m[0] | mcor_from_next_z(m[0], m[4]);
+}
+
+ulong mcor_cell_all(ulong* m)
+{
+  for (int i = 0; i < 8; ++i)
+  {
+    m[i] = ~m[i];
+  }
+  return ~mcor_cell_some(m);
+}
+
+/* One work-item = one brick. Reads the node masks. Writes the used cells: examined, valid at all
+ * nodes, with nodes on both sides. */
+__kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
+  __global const ulong* cells, __global const ulong* above, __global const ulong* valid,
+  __global ulong* used)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  const ulong some = mcor_cell_some(m);
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  const ulong all_above = mcor_cell_all(m);
+  mcor_brick_masks(valid, neighbours, slot, 0, m);
+  used[slot] = cells[slot] & some & ~all_above & mcor_cell_all(m);
+}
+
+/* Marching Cubes case of a cell: bit c is set where corner c (bits x, y, z) is above. m: node masks
+ * of the brick and its upper neighbours. */
+int mcor_march_case(const ulong* m, int cell)
+{
+  int result = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    const int x = (cell & 3) + (c & 1), y = (cell >> 2 & 3) + (c >> 1 & 1), z = (cell >> 4) + (c >> 2);
+    const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
+    result |= (int)(m[d] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1) << c;
+  }
+  return result;
+}
+
+/* Per edge along x, y, z of a brick: whether one of the 4 cells around it is set. m: masks of a
+ * brick and its lower neighbours. */
+void mcor_march_around(const ulong* m, ulong* around)
+{
+  const ulong yz = m[0] | mcor_from_last_y(m[0], m[2]);
+  const ulong yz_low = m[4] | mcor_from_last_y(m[4], m[6]);
+  const ulong xz = m[0] | mcor_from_last_x(m[0], m[1]);
+  const ulong xz_low = m[4] | mcor_from_last_x(m[4], m[5]);
+  const ulong xy_low = m[2] | mcor_from_last_x(m[2], m[3]);
+  around[0] = yz | mcor_from_last_z(yz, yz_low);
+  around[1] = xz | mcor_from_last_z(xz, xz_low);
+  around[2] = xz | mcor_from_last_y(xz, xy_low);
+}
+
+/* One work-item = one brick. Reads used cells and node masks. Writes the crossed edges along x, y
+ * and z whose lower node is in the brick and that a used cell has (0..2), and which of them have a
+ * cell around them that is not used (3..5); counts vertices and triangles. */
+__kernel void mcor_march_count(const int brick_count, __global const int* neighbours,
+  __global const ulong* used, __global const ulong* above, __global const uchar* case_table,
+  __global ulong* edges, __global int* vertex_count, __global int* triangle_count)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong m[8], around[3], unused_around[3];
+  mcor_brick_masks(used, neighbours, slot, 7, m);
+  mcor_march_around(m, around);
+  for (int i = 0; i < 8; ++i)
+  {
+    m[i] = ~m[i];
+  }
+  mcor_march_around(m, unused_around);
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  const ulong changes[3] = { m[0] ^ mcor_from_next_x(m[0], m[1]),
+    m[0] ^ mcor_from_next_y(m[0], m[2]), m[0] ^ mcor_from_next_z(m[0], m[4]) };
+  int vertices = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const ulong crossed = around[a] & changes[a];
+    edges[slot * 6 + a] = crossed;
+    edges[slot * 6 + 3 + a] = crossed & unused_around[a];
+    vertices += (int)popcount(crossed);
+  }
+  vertex_count[slot] = vertices;
+  int triangles = 0;
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    triangles += case_table[mcor_march_case(m, mcor_ctz(rest)) * 16 + 15];
+  }
+  triangle_count[slot] = triangles;
+}
+
+/* Rank of edge (node n, axis) among the vertices of its brick: by node, then axis. */
+int mcor_march_rank(__global const ulong* edges, int slot, int n, int axis)
+{
+  const ulong below = (1UL << n) - 1;
+  const ulong x = edges[slot * 6], y = edges[slot * 6 + 1], z = edges[slot * 6 + 2];
+  return (int)(popcount(x & below) + popcount(y & below) + popcount(z & below)) +
+    (axis > 0 ? (int)(x >> n & 1) : 0) + (axis > 1 ? (int)(y >> n & 1) : 0);
+}
+
+/* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
+ * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against the iso value. */
+__kernel void mcor_march_vertices(const int brick_count, __global const int4* bricks,
+  __global const int* neighbours, __global const ulong* edges, __global const real* node_value,
+  __global const int* vertex_base, const real iso, __global int4* vertex_edge,
+  __global real* vertex_ends)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  __global const ulong* e = edges + slot * 6;
+  int to = vertex_base[slot];
+  for (ulong rest = e[0] | e[1] | e[2]; rest; rest &= rest - 1)
+  {
+    const int n = mcor_ctz(rest);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (e[axis] >> n & 1)
+      {
+        const int step = 1 << (2 * axis);
+        const bool outside = (n >> (2 * axis) & 3) == 3;
+        const int other = outside ? neighbours[slot * 14 + (1 << axis) - 1] : slot;
+        const int m = outside ? n - 3 * step : n + step;
+        vertex_edge[to] = (int4)(bricks[slot].x * MCOR_BRICK + (n & 3),
+          bricks[slot].y * MCOR_BRICK + (n >> 2 & 3), bricks[slot].z * MCOR_BRICK + (n >> 4),
+          axis | (int)(e[3 + axis] >> n & 1) << 2);
+        vertex_ends[2 * to] = node_value[slot * 64L + n] - iso;
+        vertex_ends[2 * to + 1] = node_value[other * 64L + m] - iso;
+        ++to;
+      }
+    }
+  }
+}
+
+/* One work-item = one brick. Reads used cells, node masks and edge numbering. Writes triangles. */
+__kernel void mcor_march_triangles(const int brick_count, __global const int* neighbours,
+  __global const ulong* used, __global const ulong* above, __global const ulong* edges,
+  __global const uchar* case_table, __global const int* vertex_base,
+  __global const int* triangle_base, __global int* triangles)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count || used[slot] == 0)
+  {
+    return;
+  }
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  int to = triangle_base[slot] * 3;
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    __global const uchar* row = case_table + mcor_march_case(m, cell) * 16;
+    for (int i = 0; i < 3 * row[15]; ++i)
+    {
+      /* An edge is its axis and its lower corner within the cell, bits x, y, z. */
+      const int axis = row[i] >> 3, corner = row[i] & 7;
+      const int x = (cell & 3) + (corner & 1), y = (cell >> 2 & 3) + (corner >> 1 & 1),
+                z = (cell >> 4) + (corner >> 2);
+      const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
+      const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
+      const int n = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
+      triangles[to++] = vertex_base[owner] + mcor_march_rank(edges, owner, n, axis);
+    }
+  }
+}
+
+/* One work-item = one mask. Writes its number of bits. */
+__kernel void mcor_march_bits(const int count, __global const ulong* masks, __global int* bits)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    bits[i] = (int)popcount(masks[i]);
+  }
+}

@@ -1,0 +1,115 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What a surface carries [III-D.4]: compaction, normals, attributes. */
+
+/* One work-item = one vertex. Reads the vertex and the scanned uses. Writes it to its final place:
+ * node with flag, offset, normal (zero where the gradient vanishes), gradient, and the three numbers
+ * correction (cubes), value against iso, weight. */
+__kernel void mcor_output_vertices(const int vertex_count, const int march_count,
+  __global const int* scanned, __global const int4* node, __global const real4* offset,
+  __global const real* linear, __global const real* value, __global const real4* gradient,
+  __global const real* weight, __global const uchar* flag, const real least_gradient,
+  __global int4* out_node, __global real4* out_offset, __global float4* out_normal,
+  __global real4* out_gradient, __global real4* out_numbers)
+{
+  const int v = get_global_id(0);
+  if (v >= vertex_count || scanned[v] == scanned[v + 1])
+  {
+    return;
+  }
+  const int to = scanned[v];
+  const bool march = v < march_count;
+  /* An edge with an unused cell around it lies on the border that the node threshold leaves. */
+  const int border = march ? (node[v].w >> 2 & 1) * 4 : flag[v];
+  out_node[to] = (int4)(node[v].x, node[v].y, node[v].z, border);
+  out_offset[to] = offset[v];
+  const real4 g = gradient[v];
+  const real length_of_g = sqrt(g.x * g.x + g.y * g.y + g.z * g.z);
+  const real scale = length_of_g > least_gradient ? -1 / length_of_g : (real)0;
+  out_normal[to] = (float4)((float)(g.x * scale), (float)(g.y * scale), (float)(g.z * scale), 0);
+  out_gradient[to] = g;
+  out_numbers[to] = (real4)(march ? linear[v] : (real)0, value[v], weight[v], 0);
+}
+
+#define MCOR_ATTRIBUTE_LIMIT 8
+
+/* One work-item = MCOR_LANES points. Reads `attribute_count` sorted arrays, one after the other.
+ * Writes their Shepard means (at most 8) and, if asked for, the nearest fluid particle. */
+__kernel void mcor_output_attributes(MCOR_GRID_PARAMS, const int point_count,
+  __global const int4* node, __global const real4* offset, const int attribute_count,
+  const int stride, __global const real* attributes, __global real* out, const int want_nearest,
+  __global const int* order, __global int* nearest)
+{
+  const int begin = get_global_id(0) * MCOR_LANES;
+  if (begin >= point_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  int unused[MCOR_LANES];
+  mcor_points_load(node, begin, point_count, fix_bits, &points, &query, unused);
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const real4 o = offset[min(begin + lane, point_count - 1)];
+    MCOR_SET(points.ox, lane) = o.x;
+    MCOR_SET(points.oy, lane) = o.y;
+    MCOR_SET(points.oz, lane) = o.z;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const realv o = a == 0 ? points.ox : a == 1 ? points.oy : points.oz;
+    real low = MCOR_GET(o, 0), high = low;
+    for (int lane = 1; lane < MCOR_LANES; ++lane)
+    {
+      low = fmin(low, MCOR_GET(o, lane));
+      high = fmax(high, MCOR_GET(o, lane));
+    }
+    mcor_points_extend(&query, a, low, high, fix_bits);
+  }
+  realv sums[MCOR_ATTRIBUTE_LIMIT], w = 0, least = MAXFLOAT;
+  fixv index = -1;
+  for (int c = 0; c < attribute_count; ++c)
+  {
+    sums[c] = 0;
+  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+  {
+    for (int i = 0; i < tile.count; ++i)
+    {
+      const int j = tile.list[i];
+      if (MCOR_SOLIDS && p_weight[j] == 0)
+      {
+        continue;
+      }
+      const realv dx = MCOR_CONVERT_REALV(px[j] - points.x) * grid.unit - points.ox;
+      const realv dy = MCOR_CONVERT_REALV(py[j] - points.y) * grid.unit - points.oy;
+      const realv dz = MCOR_CONVERT_REALV(pz[j] - points.z) * grid.unit - points.oz;
+      const realv k = p_weight[j] * mcor_weight(mcor_planar(dx, dy, p_inv_h[j]), dz, p_inv_h[j]);
+      w += k;
+      for (int c = 0; c < attribute_count; ++c)
+      {
+        sums[c] += k * attributes[c * stride + j];
+      }
+      const realv r2 = dx * dx + dy * dy + dz * dz;
+      index = r2 < least ? (fixv)j : index;
+      least = fmin(least, r2);
+    }
+  }
+  for (int lane = 0; lane < MCOR_LANES && begin + lane < point_count; ++lane)
+  {
+    const int v = begin + lane, j = (int)MCOR_GET_FIX(index, lane);
+    for (int c = 0; c < attribute_count; ++c)
+    {
+      out[(long)v * attribute_count + c] = MCOR_GET(sums[c], lane) / MCOR_GET(w, lane);
+    }
+    if (want_nearest)
+    {
+      nearest[v] = j < 0 ? -1 : order[j];
+    }
+  }
+}

@@ -1,0 +1,96 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Types, constants and bit tricks that all kernels share. Set by the host at build time:
+ *
+ *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, whose
+ *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
+ *   MCOR_DOUBLE   real is double instead of float
+ *   MCOR_W, MCOR_DW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
+ *   MCOR_FIELD    0 Shepard, 1 sum, 2 weight sum
+ *   MCOR_SOLIDS   1: some particles are solid and count in the trimming weight only
+ *
+ * All lengths are in cubes of the virtual grid. A position is a fixed-point number, 2^-fix_bits
+ * cubes, counted from the lattice origin, so that a difference of two positions is exact: a node's
+ * value does not depend on the brick it is evaluated in, nor on how far away the origin is. */
+
+#define MCOR_CAT_(a, b) a##b
+#define MCOR_CAT(a, b) MCOR_CAT_(a, b)
+
+#if MCOR_DOUBLE
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real;
+typedef double4 real4;
+typedef long fix;
+#define MCOR_REAL_NAME double
+#define MCOR_FIX_NAME long
+#else
+typedef float real;
+typedef float4 real4;
+typedef int fix;
+#define MCOR_REAL_NAME float
+#define MCOR_FIX_NAME int
+#endif
+
+#if MCOR_LANES == 1
+typedef real realv;
+typedef fix fixv; /* also the result of comparing two realv */
+#define MCOR_CONVERT_REALV MCOR_CAT(convert_, MCOR_REAL_NAME)
+#define MCOR_ANY(mask) ((mask) != 0)
+#define MCOR_GET(v, lane) (v)
+#define MCOR_SET(v, lane) (v)
+#define MCOR_GET_FIX(v, lane) (v)
+#else
+typedef MCOR_CAT(MCOR_REAL_NAME, MCOR_LANES) realv;
+typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
+#define MCOR_CONVERT_REALV MCOR_CAT(convert_, MCOR_CAT(MCOR_REAL_NAME, MCOR_LANES))
+#define MCOR_ANY(mask) any(mask)
+#define MCOR_GET(v, lane) (((const real*)&(v))[lane])
+#define MCOR_SET(v, lane) (((real*)&(v))[lane])
+#define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
+#endif
+
+/* Particles that one gather collects at most before they are evaluated. A GPU has little private
+ * memory per work-item. */
+#define MCOR_TILE (MCOR_LANES == 1 ? 32 : 1024)
+
+/* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest node they are. Node or cell
+ * (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
+#define MCOR_BRICK 4
+#define MCOR_LOW_X 0x1111111111111111UL
+#define MCOR_LOW_Y 0x000F000F000F000FUL
+#define MCOR_LOW_Z 0x000000000000FFFFUL
+
+/* The mask whose bit n is bit n + 1 along an axis; `next` is the neighbour brick's mask there. */
+ulong mcor_from_next_x(ulong m, ulong next)
+{
+  return ((m >> 1) & ~(MCOR_LOW_X << 3)) | ((next & MCOR_LOW_X) << 3);
+}
+ulong mcor_from_next_y(ulong m, ulong next)
+{
+  return ((m >> 4) & ~(MCOR_LOW_Y << 12)) | ((next & MCOR_LOW_Y) << 12);
+}
+ulong mcor_from_next_z(ulong m, ulong next)
+{
+  return (m >> 16) | (next << 48);
+}
+
+/* The mask whose bit n is bit n - 1 along an axis; `last` is the neighbour brick's mask there. */
+ulong mcor_from_last_x(ulong m, ulong last)
+{
+  return ((m & ~(MCOR_LOW_X << 3)) << 1) | ((last >> 3) & MCOR_LOW_X);
+}
+ulong mcor_from_last_y(ulong m, ulong last)
+{
+  return ((m & ~(MCOR_LOW_Y << 12)) << 4) | ((last >> 12) & MCOR_LOW_Y);
+}
+ulong mcor_from_last_z(ulong m, ulong last)
+{
+  return (m << 16) | (last >> 48);
+}
+
+/* Index of the lowest bit set. */
+int mcor_ctz(ulong m)
+{
+  return 63 - (int)clz(m & -m);
+}

@@ -1,0 +1,179 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `chunks` runs of
+ * equal length; one work-item walks one run. */
+
+#define MCOR_RADIX 256
+
+int mcor_chunk_begin(int chunk, int chunks, int count)
+{
+  return (int)((long)count * chunk / chunks);
+}
+
+/* One work-item = one chunk. Reads the counts of the chunk. Writes their sum. */
+__kernel void mcor_scan_sum(
+  __global const int* counts, const int count, const int chunks, __global long* sums)
+{
+  const int chunk = get_global_id(0);
+  if (chunk >= chunks)
+  {
+    return;
+  }
+  long sum = 0;
+  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
+  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  {
+    sum += counts[i];
+  }
+  sums[chunk] = sum;
+}
+
+/* One work-item in all. Reads the chunk sums. Writes their exclusive prefix sums, the total last. */
+__kernel void mcor_scan_top(const int chunks, __global long* sums)
+{
+  if (get_global_id(0) != 0)
+  {
+    return;
+  }
+  long sum = 0;
+  for (int i = 0; i < chunks; ++i)
+  {
+    const long s = sums[i];
+    sums[i] = sum;
+    sum += s;
+  }
+  sums[chunks] = sum;
+}
+
+/* One work-item = one chunk. Reads counts and chunk sums. Writes the exclusive prefix sums in place
+ * of the counts; element `count` becomes the total. */
+__kernel void mcor_scan_fill(
+  __global int* counts, const int count, const int chunks, __global const long* sums)
+{
+  const int chunk = get_global_id(0);
+  if (chunk >= chunks)
+  {
+    return;
+  }
+  int sum = (int)sums[chunk];
+  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
+  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  {
+    const int c = counts[i];
+    counts[i] = sum;
+    sum += c;
+  }
+  if (chunk == chunks - 1)
+  {
+    counts[count] = sum;
+  }
+}
+
+/* One work-item = one chunk. Reads the keys of the chunk. Writes how often each digit occurs. */
+__kernel void mcor_sort_count(__global const ulong* keys, const int count, const int chunks,
+  const int shift, __global int* histogram)
+{
+  const int chunk = get_global_id(0);
+  if (chunk >= chunks)
+  {
+    return;
+  }
+  int bins[MCOR_RADIX];
+  for (int b = 0; b < MCOR_RADIX; ++b)
+  {
+    bins[b] = 0;
+  }
+  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
+  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  {
+    ++bins[(int)(keys[i] >> shift) & (MCOR_RADIX - 1)];
+  }
+  for (int b = 0; b < MCOR_RADIX; ++b)
+  {
+    histogram[b * chunks + chunk] = bins[b];
+  }
+}
+
+/* One work-item = one chunk. Reads keys, values and the scanned histogram. Writes both in the order
+ * of the digit, equal digits in the order in which they came. */
+__kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
+  const int count, const int chunks, const int shift, __global const int* histogram,
+  __global ulong* sorted_keys, __global int* sorted_values)
+{
+  const int chunk = get_global_id(0);
+  if (chunk >= chunks)
+  {
+    return;
+  }
+  int bins[MCOR_RADIX];
+  for (int b = 0; b < MCOR_RADIX; ++b)
+  {
+    bins[b] = histogram[b * chunks + chunk];
+  }
+  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
+  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  {
+    const ulong key = keys[i];
+    const int to = bins[(int)(key >> shift) & (MCOR_RADIX - 1)]++;
+    sorted_keys[to] = key;
+    sorted_values[to] = values[i];
+  }
+}
+
+/* One work-item = one key. Writes value i = i. */
+__kernel void mcor_sort_identity(const int count, __global int* values)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    values[i] = i;
+  }
+}
+
+/* One work-item = one sorted key. Writes 1 where a key differs from the one before it. */
+__kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    flags[i] = i == 0 || keys[i] != keys[i - 1];
+  }
+}
+
+/* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
+ * for every key (at its original position `values`) the index of its distinct key. */
+__kernel void mcor_unique_fill(__global const ulong* keys, __global const int* values,
+  const int count, __global const int* scanned, __global ulong* distinct, __global int* index_of)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const bool first = i == 0 || keys[i] != keys[i - 1];
+  const int index = scanned[i + 1] - 1;
+  if (first)
+  {
+    distinct[index] = keys[i];
+  }
+  index_of[values[i]] = index;
+}
+
+/* One work-item = one sorted key. Writes, for each bucket, the index of the first key that is not
+ * below it: bucket b begins at key b << shift. */
+__kernel void mcor_bucket_fill(__global const ulong* keys, const int count, const int shift,
+  const int bucket_count, __global int* buckets)
+{
+  const int i = get_global_id(0);
+  if (i > count)
+  {
+    return;
+  }
+  const int first = i == 0 ? 0 : (int)(keys[i - 1] >> shift) + 1;
+  const int last = i == count ? bucket_count - 1 : (int)(keys[i] >> shift);
+  for (int b = first; b <= last; ++b)
+  {
+    buckets[b] = i;
+  }
+}

@@ -1,0 +1,245 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Seed cells [III-C]: which cells are to be examined. A brick's mark is not 0 where it has some; with
+ * complete seeds it has one bit per box of 2 x 2 x 1 cells: bit x + 2 y + 4 z. */
+
+#define MCOR_BOXES 16
+#define MCOR_BOX_GROUPS (MCOR_BOXES / MCOR_LANES)
+
+/* Interval of w(q) for |dx| in [near, far], per axis or for the distance. */
+void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
+{
+  const realv a = MCOR_W(near), b = MCOR_W(far);
+  *low = fmin(a, b);
+  *high = fmax(a, b);
+#if MCOR_TENSOR
+  *low = (near < mcor_turning_mprime4 && far > mcor_turning_mprime4) ? (realv)mcor_lowest_mprime4
+                                                                     : *low;
+#endif
+}
+
+/* Smallest and largest w over boxes of half size (1, 1, 1/2) around (dx, dy, dz). */
+void mcor_seed_weight_range(realv dx, realv dy, realv dz, real inv_h, realv* low, realv* high)
+{
+  const real half_z = (real)0.5;
+  const realv nx = fmax(fabs(dx) - 1, (realv)0) * inv_h, fx = (fabs(dx) + 1) * inv_h;
+  const realv ny = fmax(fabs(dy) - 1, (realv)0) * inv_h, fy = (fabs(dy) + 1) * inv_h;
+  const realv nz = fmax(fabs(dz) - half_z, (realv)0) * inv_h, fz = (fabs(dz) + half_z) * inv_h;
+#if MCOR_TENSOR
+  realv xl, xh, yl, yh, zl, zh;
+  mcor_seed_interval(nx, fx, &xl, &xh);
+  mcor_seed_interval(ny, fy, &yl, &yh);
+  mcor_seed_interval(nz, fz, &zl, &zh);
+  const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
+  const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
+  *low = fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh));
+  *high = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
+#else
+  mcor_seed_interval(
+    sqrt(nx * nx + ny * ny + nz * nz), sqrt(fx * fx + fy * fy + fz * fz), low, high);
+#endif
+}
+
+/* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the least
+ * and the greatest of its values. */
+#define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
+
+void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bits)
+{
+  query->radius = -1;
+  query->low[0] = (fix)x << fix_bits;
+  query->low[1] = (fix)y << fix_bits;
+  query->low[2] = (fix)z << fix_bits;
+  for (int a = 0; a < 3; ++a)
+  {
+    query->high[a] = query->low[a] + ((fix)size << fix_bits);
+  }
+}
+
+/* One work-item = one block. Reads the particles that reach it. Writes whether the iso value may
+ * occur in it. */
+__kernel void mcor_seed_block(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+  const int blocks_y, __global const ulong* block_keys, const real iso, __global uchar* keep)
+{
+  const int block = get_global_id(0);
+  if (block >= block_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int4 brick =
+    mcor_brick_of_mark(block_keys, blocks_x, blocks_y, block * MCOR_BLOCK_BRICKS);
+  mcor_query query;
+  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
+    MCOR_BLOCK_CUBES, fix_bits);
+  mcor_query_begin(&grid, &query);
+  bool above = false, below = false;
+  while (!(above && below) && mcor_query_next_row(&grid, &query))
+  {
+    for (int j = query.begin; j < query.end; ++j)
+    {
+      const bool fluid = !MCOR_SOLIDS || p_weight[j] != 0;
+      above = above || (fluid && p_value[j] >= iso);
+      below = below || (fluid && p_value[j] < iso);
+    }
+  }
+  keep[block] = MCOR_RANGE_DECIDES ? above && below : 1;
+}
+
+/* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
+ * field's sign against iso in a box is that of F = sum c_j w_j - (0 or iso), and
+ *
+ *   sum of c_j * (least or greatest w_j in the box, whichever makes it smaller) <= sum c_j w_j,
+ *
+ * likewise from above: each w_j lies in its interval wherever in the box the point is, whatever the
+ * sign of w_j. A box with F > 0 or F < 0 throughout has no crossing; one whose greatest possible
+ * trimming weight is below the node threshold has no valid cell. The margin is 1e-5 of the sum of
+ * the absolute terms, above the rounding of this sum and of the node values. */
+typedef struct
+{
+  realv x, y, z; /* centres of the boxes */
+  realv low, high, size, weight;
+} mcor_bound;
+
+void mcor_seed_bound_init(mcor_bound* bounds)
+{
+  for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
+  {
+    mcor_bound* b = bounds + g;
+    b->low = b->high = b->size = b->weight = 0;
+    for (int lane = 0; lane < MCOR_LANES; ++lane)
+    {
+      const int box = g * MCOR_LANES + lane;
+      MCOR_SET(b->x, lane) = 1 + 2 * (box & 1);
+      MCOR_SET(b->y, lane) = 1 + (box & 2);
+      MCOR_SET(b->z, lane) = (real)0.5 + (box >> 2);
+    }
+  }
+}
+
+/* Adds a particle at (x, y, z). */
+void mcor_seed_bound_add(
+  mcor_bound* b, real x, real y, real z, real inv_h, real c, real trim_weight)
+{
+  realv w_low, w_high;
+  mcor_seed_weight_range(x - b->x, y - b->y, z - b->z, inv_h, &w_low, &w_high);
+  const realv p = c * w_low, q = c * w_high;
+  b->low += fmin(p, q);
+  b->high += fmax(p, q);
+  b->size += fmax(fabs(p), fabs(q));
+  b->weight += trim_weight * w_high;
+}
+
+/* The boxes of a group that remain, as bits of a mark. */
+uint mcor_seed_bound_mark(const mcor_bound* b, int group, real iso, real node_threshold)
+{
+  const real level = MCOR_FIELD == 0 ? (real)0 : iso;
+  uint mark = 0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const real size = MCOR_GET(b->size, lane), margin = size * (real)1e-5;
+    const bool can = size > 0 && MCOR_GET(b->low, lane) <= level + margin &&
+      MCOR_GET(b->high, lane) >= level - margin;
+    const bool valid =
+      MCOR_FIELD == 2 || MCOR_GET(b->weight, lane) >= node_threshold * (real)0.9999;
+    mark |= (uint)(can && valid) << (group * MCOR_LANES + lane);
+  }
+  return mark;
+}
+
+/* c_j of the bound. */
+real mcor_seed_coefficient(const mcor_grid* grid, int j, real iso)
+{
+#if MCOR_FIELD == 0
+  return grid->weight[j] * (grid->value[j] - iso);
+#elif MCOR_FIELD == 1
+  return grid->weight[j] * grid->value[j];
+#else
+  return grid->weight[j];
+#endif
+}
+
+/* Whether the particles of the tile have values on both sides; updates above and below. */
+bool mcor_seed_straddles(
+  const mcor_grid* grid, const mcor_tile* tile, real iso, bool* above, bool* below)
+{
+  for (int i = 0; i < tile->count && !(*above && *below); ++i)
+  {
+    const int j = tile->list[i];
+    const bool fluid = !MCOR_SOLIDS || grid->weight[j] != 0;
+    *above = *above || (fluid && grid->value[j] >= iso);
+    *below = *below || (fluid && grid->value[j] < iso);
+  }
+  return *above && *below;
+}
+
+/* One work-item = one brick (of all in blocks). Reads the particles that reach its cells. Writes its
+ * mark: the boxes in which the bound admits a crossing. */
+__kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+  const int blocks_y, __global const ulong* block_keys, __global const uchar* keep, const real iso,
+  const real node_threshold, __global ushort* marks)
+{
+  const int m = get_global_id(0);
+  if (m >= block_count * MCOR_BLOCK_BRICKS || !keep[m / MCOR_BLOCK_BRICKS])
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+  mcor_query query;
+  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
+    MCOR_BRICK, fix_bits);
+  mcor_bound bounds[MCOR_BOX_GROUPS];
+  mcor_seed_bound_init(bounds);
+  bool above = false, below = false;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+  {
+    const bool straddles = mcor_seed_straddles(&grid, &tile, iso, &above, &below);
+    if (MCOR_RANGE_DECIDES && tile.complete && !straddles)
+    {
+      return;
+    }
+    for (int i = 0; i < tile.count; ++i)
+    {
+      const int j = tile.list[i];
+      const real x = (real)(px[j] - query.low[0]) * grid.unit;
+      const real y = (real)(py[j] - query.low[1]) * grid.unit;
+      const real z = (real)(pz[j] - query.low[2]) * grid.unit;
+      const real c = mcor_seed_coefficient(&grid, j, iso);
+      for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
+      {
+        mcor_seed_bound_add(bounds + g, x, y, z, p_inv_h[j], c, p_trim_weight[j]);
+      }
+    }
+  }
+  uint mark = 0;
+  for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
+  {
+    mark |= mcor_seed_bound_mark(bounds + g, g, iso, node_threshold);
+  }
+  marks[m] = (MCOR_RANGE_DECIDES && !(above && below)) ? 0 : (ushort)mark;
+}
+
+/* One work-item = one brick slot. Reads its mark. Writes the cells to examine. */
+__kernel void mcor_seed_cells(MCOR_BLOCK_PARAMS, const int brick_count,
+  __global const int4* bricks, __global const ushort* marks, __global ulong* cells)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, bricks[slot].x, bricks[slot].y, bricks[slot].z);
+  ulong mask = 0;
+  for (int box = 0; box < MCOR_BOXES; ++box)
+  {
+    if (marks[m] >> box & 1)
+    {
+      mask |= 0x33UL << (2 * (box & 1) + 4 * (box & 2) + 16 * (box >> 2));
+    }
+  }
+  cells[slot] = mask;
+}

@@ -1,0 +1,242 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight passes the vertex
+ * threshold. A cut vertex belongs to a mesh edge, key (lower vertex << 32 | higher vertex), and is
+ * shared by the two triangles there. */
+
+/* Bits 0..2: corner at or above the threshold. A triangle with no corner strictly above is outside,
+ * so that one which merely touches the threshold leaves no sliver [Fig. 3 b]. */
+int mcor_trim_case(__global const int* t, __global const real* weight, const real threshold)
+{
+  int inside = 0;
+  bool some = false;
+  for (int c = 0; c < 3; ++c)
+  {
+    inside |= (weight[t[c]] >= threshold) << c;
+    some = some || weight[t[c]] > threshold;
+  }
+  return some ? inside : 0;
+}
+
+/* One work-item = one triangle. Writes how many triangles remain of it, and its cut edges. */
+__kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
+  __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
+{
+  const int i = get_global_id(0);
+  if (i >= triangle_count)
+  {
+    return;
+  }
+  const int corners = (int)popcount(mcor_trim_case(triangles + 3 * i, weight, threshold));
+  remaining[i] = corners == 0 ? 0 : corners == 2 ? 2 : 1;
+  cuts[i] = corners == 1 || corners == 2 ? 2 : 0;
+}
+
+/* The lone corner of a cut triangle: the one inside of one, or the one outside of two. */
+int mcor_trim_lone(int inside)
+{
+  return inside == 1 || inside == 6 ? 0 : inside == 2 || inside == 5 ? 1 : 2;
+}
+
+ulong mcor_trim_key(int a, int b)
+{
+  return (ulong)min(a, b) << 32 | (uint)max(a, b);
+}
+
+/* One work-item = one triangle. Writes the keys of its cut edges: from the lone corner to the next
+ * corner, then to the last one. */
+__kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
+  __global const real* weight, const real threshold, __global const int* cuts,
+  __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  if (i >= triangle_count || cuts[i] == cuts[i + 1])
+  {
+    return;
+  }
+  __global const int* t = triangles + 3 * i;
+  const int lone = mcor_trim_lone(mcor_trim_case(t, weight, threshold));
+  keys[cuts[i]] = mcor_trim_key(t[lone], t[(lone + 1) % 3]);
+  keys[cuts[i] + 1] = mcor_trim_key(t[lone], t[(lone + 2) % 3]);
+}
+
+/* One work-item = one triangle. Writes what remains of it [Fig. 3 a, c, d, e]; a quad is split. */
+__kernel void mcor_trim_fill(const int triangle_count, __global const int* triangles,
+  __global const real* weight, const real threshold, const int vertex_count,
+  __global const int* remaining, __global const int* cuts, __global const int* cut_vertex,
+  __global int* out)
+{
+  const int i = get_global_id(0);
+  if (i >= triangle_count || remaining[i] == remaining[i + 1])
+  {
+    return;
+  }
+  __global const int* t = triangles + 3 * i;
+  __global int* to = out + 3 * remaining[i];
+  const int inside = mcor_trim_case(t, weight, threshold);
+  if (inside == 7)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      to[c] = t[c];
+    }
+    return;
+  }
+  const int lone = mcor_trim_lone(inside);
+  const int next = t[(lone + 1) % 3], last = t[(lone + 2) % 3];
+  const int cut_next = vertex_count + cut_vertex[cuts[i]];
+  const int cut_last = vertex_count + cut_vertex[cuts[i] + 1];
+  to[0] = cut_next;
+  if (inside >> lone & 1)
+  {
+    to[1] = cut_last;
+    to[2] = t[lone];
+    return;
+  }
+  to[1] = next;
+  to[2] = last;
+  to[3] = cut_next;
+  to[4] = last;
+  to[5] = cut_last;
+}
+
+/* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
+ * mesh edge, is the threshold: node of the lower vertex, offset. */
+__kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
+  const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
+  __global const real* weight)
+{
+  const int i = get_global_id(0);
+  if (i >= cut_count)
+  {
+    return;
+  }
+  const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
+  const real wa = weight[a], wb = weight[b];
+  const real s = clamp((threshold - wa) / (wb - wa), (real)0, (real)1);
+  const int4 d = node[b] - node[a];
+  const real4 to = offset[b] + (real4)(d.x, d.y, d.z, 0);
+  const int4 n = node[a];
+  node[vertex_count + i] = (int4)(n.x, n.y, n.z, 0);
+  offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
+}
+
+/* How far a cut vertex may move from the linear cut, in cubes. */
+#define MCOR_TRIM_REACH ((real)0.5)
+#define MCOR_TRIM_STEPS 12
+
+/* One work-item = MCOR_LANES cut vertices. Moves them to where both field = iso and weight =
+ * threshold, by the shortest (least-norm) Newton steps; where that does not converge nearby, the two
+ * surfaces being tangent, the linear cut stays and flag becomes 2 instead of 1. */
+__kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int vertex_count, const int cut_count,
+  __global const int4* node, const real iso, const real tolerance, const real threshold,
+  const int limit, __global real4* offset, __global real* value, __global real4* gradient,
+  __global real* weight, __global uchar* flag)
+{
+  const int begin = vertex_count + get_global_id(0) * MCOR_LANES;
+  const int end = vertex_count + cut_count;
+  if (begin >= end)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  int unused[MCOR_LANES];
+  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
+  realv x0, y0, z0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const real4 o = offset[min(begin + lane, end - 1)];
+    MCOR_SET(x0, lane) = o.x;
+    MCOR_SET(y0, lane) = o.y;
+    MCOR_SET(z0, lane) = o.z;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const realv o = a == 0 ? x0 : a == 1 ? y0 : z0;
+    real low = MCOR_GET(o, 0), high = low;
+    for (int lane = 1; lane < MCOR_LANES; ++lane)
+    {
+      low = fmin(low, MCOR_GET(o, lane));
+      high = fmax(high, MCOR_GET(o, lane));
+    }
+    mcor_points_extend(&query, a, low - MCOR_TRIM_REACH, high + MCOR_TRIM_REACH, fix_bits);
+  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  mcor_field_at at;
+  points.ox = x0;
+  points.oy = y0;
+  points.oz = z0;
+  fixv done = 0, failed = 0;
+  for (int i = 0; i <= limit; ++i)
+  {
+    mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
+    const realv f = at.value, w = at.weight - threshold;
+    done = done || (fabs(f) <= tolerance && fabs(w) <= (real)1e-5f);
+    if (i == limit || !MCOR_ANY(!(done || failed)))
+    {
+      break;
+    }
+    /* Least-norm step: -J^T (J J^T)^-1 (f, w), J the two gradients. */
+    const realv ff = at.gx * at.gx + at.gy * at.gy + at.gz * at.gz;
+    const realv ww = at.wx * at.wx + at.wy * at.wy + at.wz * at.wz;
+    const realv fw = at.gx * at.wx + at.gy * at.wy + at.gz * at.wz;
+    const realv det = ff * ww - fw * fw;
+    const fixv tangent = det <= (real)1e-6 * ff * ww;
+    const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
+    const realv lf = (ww * f - fw * w) * inv_det, lw = (ff * w - fw * f) * inv_det;
+    const realv x = points.ox - lf * at.gx - lw * at.wx;
+    const realv y = points.oy - lf * at.gy - lw * at.wy;
+    const realv z = points.oz - lf * at.gz - lw * at.wz;
+    const fixv near = fabs(x - x0) <= MCOR_TRIM_REACH && fabs(y - y0) <= MCOR_TRIM_REACH &&
+      fabs(z - z0) <= MCOR_TRIM_REACH;
+    failed = failed || !(done || (near && !tangent));
+    const fixv move = !(done || failed);
+    points.ox = move ? x : failed ? x0 : points.ox;
+    points.oy = move ? y : failed ? y0 : points.oy;
+    points.oz = move ? z : failed ? z0 : points.oz;
+  }
+  const fixv back = !done;
+  if (MCOR_ANY(back))
+  {
+    points.ox = back ? x0 : points.ox;
+    points.oy = back ? y0 : points.oy;
+    points.oz = back ? z0 : points.oz;
+    mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
+  }
+  for (int lane = 0; lane < MCOR_LANES && begin + lane < end; ++lane)
+  {
+    const int v = begin + lane;
+    offset[v] = (real4)(MCOR_GET(points.ox, lane), MCOR_GET(points.oy, lane), MCOR_GET(points.oz, lane), 0);
+    value[v] = MCOR_GET(at.value, lane);
+    gradient[v] =
+      (real4)(MCOR_GET(at.gx, lane), MCOR_GET(at.gy, lane), MCOR_GET(at.gz, lane), 0);
+    weight[v] = MCOR_GET(at.weight, lane);
+    flag[v] = MCOR_GET_FIX(back, lane) ? 2 : 1;
+  }
+}
+
+/* One work-item = one triangle. Writes 1 to every vertex that it uses. */
+__kernel void mcor_trim_used(
+  const int triangle_count, __global const int* triangles, __global int* used)
+{
+  const int i = get_global_id(0);
+  if (i < 3 * triangle_count)
+  {
+    used[triangles[i]] = 1;
+  }
+}
+
+/* One work-item = one triangle corner. Reads the scanned uses. Renumbers the corner. */
+__kernel void mcor_trim_renumber(
+  const int triangle_count, __global const int* scanned, __global int* triangles)
+{
+  const int i = get_global_id(0);
+  if (i < 3 * triangle_count)
+  {
+    triangles[i] = scanned[triangles[i]];
+  }
+}

@@ -28,7 +28,7 @@ double mcor_scalar_at(const mcor_input* input, int64_t i)
 {
   const mcor_array* a = &input->scalar;
   const int components = mcor_components(a);
-  if (input->scalar_dot.data || input->scalar_component == MCOR_MAGNITUDE)
+  if (input->scalar_dot.data || (components > 1 && input->scalar_component == MCOR_MAGNITUDE))
   {
     const mcor_array* b = input->scalar_dot.data ? &input->scalar_dot : a;
     double sum = 0;

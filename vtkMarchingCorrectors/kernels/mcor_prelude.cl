@@ -5,6 +5,7 @@
  *
  *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, whose
  *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
+ *   MCOR_CPU      1: the device is a CPU
  *   MCOR_DOUBLE   real is double instead of float
  *   MCOR_W, MCOR_DW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
  *   MCOR_FIELD    0 Shepard, 1 sum, 2 weight sum
@@ -36,6 +37,8 @@ typedef int fix;
 typedef real realv;
 typedef fix fixv; /* also the result of comparing two realv */
 #define MCOR_CONVERT_REALV MCOR_CAT(convert_, MCOR_REAL_NAME)
+#define MCOR_AS_REALV MCOR_CAT(as_, MCOR_REAL_NAME)
+#define MCOR_AS_FIXV MCOR_CAT(as_, MCOR_FIX_NAME)
 #define MCOR_ANY(mask) ((mask) != 0)
 #define MCOR_GET(v, lane) (v)
 #define MCOR_SET(v, lane) (v)
@@ -44,6 +47,8 @@ typedef fix fixv; /* also the result of comparing two realv */
 typedef MCOR_CAT(MCOR_REAL_NAME, MCOR_LANES) realv;
 typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_CONVERT_REALV MCOR_CAT(convert_, MCOR_CAT(MCOR_REAL_NAME, MCOR_LANES))
+#define MCOR_AS_REALV MCOR_CAT(as_, MCOR_CAT(MCOR_REAL_NAME, MCOR_LANES))
+#define MCOR_AS_FIXV MCOR_CAT(as_, MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES))
 #define MCOR_ANY(mask) any(mask)
 #define MCOR_GET(v, lane) (((const real*)&(v))[lane])
 #define MCOR_SET(v, lane) (((real*)&(v))[lane])

@@ -36,8 +36,8 @@ void mcor_seed_weight_range(realv dx, realv dy, realv dz, real inv_h, realv* low
   *low = fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh));
   *high = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 #else
-  mcor_seed_interval(
-    sqrt(nx * nx + ny * ny + nz * nz), sqrt(fx * fx + fy * fy + fz * fz), low, high);
+  const realv near = nx * nx + ny * ny + nz * nz, far = fx * fx + fy * fy + fz * fz;
+  mcor_seed_interval(near * mcor_rsqrt(near), far * mcor_rsqrt(far), low, high);
 #endif
 }
 

@@ -1,0 +1,263 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int core_set_up(void** state)
+{
+  mcor_context* context = NULL;
+  if (mcor_create_context(NULL, &context) != MCOR_OK)
+  {
+    print_error("%s\n", mcor_last_error(context));
+    mcor_free_context(context);
+    return -1;
+  }
+  *state = context;
+  return 0;
+}
+
+int core_tear_down(void** state)
+{
+  mcor_free_context(*state);
+  return 0;
+}
+
+void* core_copy(const void* data, size_t bytes)
+{
+  void* copy = malloc(bytes);
+  assert_true(copy || bytes == 0);
+  if (bytes > 0)
+  {
+    memcpy(copy, data, bytes);
+  }
+  return copy;
+}
+
+core_set core_make_set(int64_t count)
+{
+  const size_t n = (size_t)count;
+  const core_set set = { .count = count,
+    .position = calloc(n, 3 * sizeof(double)),
+    .smoothing_length = calloc(n, sizeof(double)),
+    .volume = calloc(n, sizeof(double)),
+    .scalar = calloc(n, sizeof(double)),
+    .solid = calloc(n, 1) };
+  assert_true(
+    n == 0 || (set.position && set.smoothing_length && set.volume && set.scalar && set.solid));
+  return set;
+}
+
+void core_free_set(core_set* set)
+{
+  free(set->position);
+  free(set->smoothing_length);
+  free(set->volume);
+  free(set->scalar);
+  free(set->solid);
+  *set = (core_set){ 0 };
+}
+
+double core_ball(const double x[3])
+{
+  return 9 - x[0] * x[0] - x[1] * x[1] - x[2] * x[2];
+}
+
+double core_slope(const double x[3])
+{
+  return 0.7 * x[0] - 0.4 * x[1] + 0.5 * x[2] + 0.1;
+}
+
+core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(const double x[3]))
+{
+  core_set set = core_make_set((int64_t)n * n * n);
+  for (int i = 0; i < n * n * n; ++i)
+  {
+    double* x = set.position + 3 * i;
+    const int at[3] = { i % n, i / n % n, i / n / n };
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] = at[a] - 0.5 * (n - 1) + jitter * (2 * random_unit(&seed) - 1);
+    }
+    set.smoothing_length[i] = 1.3;
+    set.volume[i] = 1;
+    set.scalar[i] = value(x);
+  }
+  return set;
+}
+
+core_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed)
+{
+  core_set set = core_make_set(count);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = size * (random_unit(&seed) - 0.5);
+    }
+    const double h = h_min * pow(h_max / h_min, random_unit(&seed));
+    set.smoothing_length[i] = h;
+    set.volume[i] = (0.2 + random_unit(&seed)) * h * h * h;
+    set.scalar[i] = 2 * random_unit(&seed) - 1;
+  }
+  return set;
+}
+
+mcor_array core_array(const double* data, int components)
+{
+  return (mcor_array){ .data = data, .type = MCOR_FLOAT64, .components = components };
+}
+
+mcor_input core_input(const core_set* set)
+{
+  return (mcor_input){ .count = set->count,
+    .positions = core_array(set->position, 3),
+    .smoothing_length = core_array(set->smoothing_length, 1),
+    .volume = core_array(set->volume, 1),
+    .has_volume = 1,
+    .scalar = core_array(set->scalar, 1),
+    .solid = set->has_solids ? set->solid : NULL };
+}
+
+mcor_options core_options(const double* iso)
+{
+  mcor_options options;
+  mcor_set_default_options(&options);
+  options.iso_values = iso;
+  options.iso_count = 1;
+  return options;
+}
+
+oracle_particles core_oracle(const core_set* set)
+{
+  return (oracle_particles){ .count = set->count,
+    .position = set->position,
+    .smoothing_length = set->smoothing_length,
+    .volume = set->volume,
+    .scalar = set->scalar,
+    .solid = set->solid };
+}
+
+int64_t* core_make_order(int64_t count, uint64_t seed)
+{
+  int64_t* order = malloc((size_t)count * sizeof *order);
+  assert_non_null(order);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const int64_t j = (int64_t)(random_bits(&seed) % (uint64_t)(i + 1));
+    order[i] = order[j];
+    order[j] = i;
+  }
+  return order;
+}
+
+core_set core_permute(const core_set* set, const int64_t* order)
+{
+  core_set result = core_make_set(set->count);
+  result.has_solids = set->has_solids;
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    memcpy(result.position + 3 * i, set->position + 3 * order[i], 3 * sizeof(double));
+    result.smoothing_length[i] = set->smoothing_length[order[i]];
+    result.volume[i] = set->volume[order[i]];
+    result.scalar[i] = set->scalar[order[i]];
+    result.solid[i] = set->solid[order[i]];
+  }
+  return result;
+}
+
+mcor_surface core_extract(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  mcor_surface surface = { 0 };
+  CORE_OK(context, mcor_extract(context, input, options, &surface));
+  return surface;
+}
+
+mesh_report core_check_mesh(const mcor_surface* surface)
+{
+  mesh_report report;
+  CORE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
+               surface->triangle_count, &report),
+    "out of memory");
+  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
+  {
+    CORE_CHECK(report.faults[fault] == 0, "%lld of: %s; %s", (long long)report.faults[fault],
+      mesh_fault_name(fault), report.first[fault]);
+  }
+  return report;
+}
+
+static uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)
+{
+  for (size_t i = 0; data && i < bytes; ++i)
+  {
+    hash = (hash ^ ((const unsigned char*)data)[i]) * 0x100000001B3u;
+  }
+  return hash;
+}
+
+uint64_t core_hash(const mcor_surface* s)
+{
+  const size_t n = (size_t)s->point_count;
+  uint64_t hash = core_hash_bytes(0xCBF29CE484222325u, &s->point_count, sizeof s->point_count);
+  hash = core_hash_bytes(hash, s->points, n * 3 * sizeof(double));
+  hash = core_hash_bytes(hash, s->triangles, (size_t)s->triangle_count * 3 * sizeof(int32_t));
+  hash = core_hash_bytes(hash, s->normals, n * 3 * sizeof(float));
+  hash = core_hash_bytes(hash, s->gradients, n * 3 * sizeof(double));
+  hash = core_hash_bytes(hash, s->weight_sum, n * sizeof(float));
+  hash = core_hash_bytes(hash, s->correction_length, n * sizeof(float));
+  hash = core_hash_bytes(hash, s->residual, n * sizeof(float));
+  return core_hash_bytes(hash, s->boundary_flag, n);
+}
+
+void core_build(
+  mcor_context* context, mcor_sph_kernel kernel, mcor_field field, mcor_type precision)
+{
+  mcor_build build;
+  memset(&build, 0, sizeof build); /* compared bytewise, padding included */
+  build.sph_kernel = kernel;
+  build.field = field;
+  build.precision = precision;
+  CORE_OK(context, mcor_build_program(context, &build));
+}
+
+void core_extend_program(mcor_context* context, const char* source)
+{
+  mcor_cl* cl = &context->cl;
+  size_t length = 0, options_length = 0;
+  assert_int_equal(clGetProgramInfo(cl->program, CL_PROGRAM_SOURCE, 0, NULL, &length), CL_SUCCESS);
+  assert_int_equal(clGetProgramBuildInfo(
+                     cl->program, cl->device, CL_PROGRAM_BUILD_OPTIONS, 0, NULL, &options_length),
+    CL_SUCCESS);
+  char* own = calloc(length + 1, 1);
+  char* options = calloc(options_length + 1, 1);
+  assert_true(own && options);
+  clGetProgramInfo(cl->program, CL_PROGRAM_SOURCE, length, own, NULL);
+  clGetProgramBuildInfo(
+    cl->program, cl->device, CL_PROGRAM_BUILD_OPTIONS, options_length, options, NULL);
+  if (strstr(own, source))
+  {
+    free(own);
+    free(options);
+    return;
+  }
+  const char* sources[] = { own, "\n", source };
+  cl_int error;
+  cl_program program = clCreateProgramWithSource(cl->context, 3, sources, NULL, &error);
+  assert_int_equal(error, CL_SUCCESS);
+  error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
+  free(own);
+  free(options);
+  if (error != CL_SUCCESS)
+  {
+    char log[4000] = "";
+    clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
+    clReleaseProgram(program);
+    fail_msg("build error %d: %s", (int)error, log);
+  }
+  clReleaseProgram(cl->program);
+  cl->program = program;
+}

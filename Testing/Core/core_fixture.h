@@ -1,0 +1,99 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef core_fixture_h
+#define core_fixture_h
+
+/* What the unit tests of the core share. The oracle library lends its double-precision field and
+ * its mesh checker. Every array handed to the core is a heap block of exactly its size, so that a
+ * sanitizer sees a read beyond it. */
+
+#include "mcor_internal.h"
+#include "mesh_check.h"
+#include "oracle.h"
+#include "particle_sets.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+/* cmocka wants the above first. */
+#include <cmocka.h>
+
+#define CORE_CHECK(condition, ...)                                          \
+  do                                                                        \
+  {                                                                         \
+    if (!(condition))                                                       \
+    {                                                                       \
+      print_error("%s:%d: not true: %s\n", __FILE__, __LINE__, #condition); \
+      fail_msg(__VA_ARGS__);                                                \
+    }                                                                       \
+  } while (0)
+
+#define CORE_OK(context, call)                                                    \
+  do                                                                              \
+  {                                                                               \
+    const mcor_status core_status_ = (call);                                      \
+    CORE_CHECK(core_status_ == MCOR_OK, "%s: %s", mcor_status_name(core_status_), \
+      mcor_last_error(context));                                                  \
+  } while (0)
+
+/* Particles, each array of exactly `count` elements. */
+typedef struct core_set
+{
+  int64_t count;
+  double* position; /* [count][3] */
+  double* smoothing_length;
+  double* volume;
+  double* scalar;
+  uint8_t* solid;
+  int has_solids; /* 0: no solid array is handed over */
+} core_set;
+
+/* Group fixtures: *state is a mcor_context*. */
+int core_set_up(void** state);
+int core_tear_down(void** state);
+
+/* A block of heap memory that holds a copy of exactly these bytes. */
+void* core_copy(const void* data, size_t bytes);
+
+core_set core_make_set(int64_t count);
+void core_free_set(core_set* set);
+
+/* n^3 particles with spacing 1 around the origin, displaced by up to `jitter`, smoothing
+ * length 1.3, volume 1, scalar = value(x). */
+core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(const double x[3]));
+/* Particles anywhere in a cube of edge `size`; smoothing lengths in [h_min, h_max], log-uniform;
+ * scalars in [-1, 1]. */
+core_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed);
+
+double core_ball(const double x[3]);  /* 9 - |x|^2: iso 0 is a sphere of radius 3 */
+double core_slope(const double x[3]); /* linear */
+
+/* The set as input; borrowed. */
+mcor_array core_array(const double* data, int components);
+mcor_input core_input(const core_set* set);
+mcor_options core_options(const double* iso);
+
+/* The set for the oracle; borrowed, not to be freed. */
+oracle_particles core_oracle(const core_set* set);
+
+/* Particle i of the result is particle order[i] of the set. */
+core_set core_permute(const core_set* set, const int64_t* order);
+/* A seemingly random order; free with free(). */
+int64_t* core_make_order(int64_t count, uint64_t seed);
+
+/* Extracts; the test fails if that does. */
+mcor_surface core_extract(
+  mcor_context* context, const mcor_input* input, const mcor_options* options);
+
+/* Fails unless the surface is an oriented manifold without degenerate triangles. */
+mesh_report core_check_mesh(const mcor_surface* surface);
+/* Point count, points, triangles and every optional array. */
+uint64_t core_hash(const mcor_surface* surface);
+
+/* Compiles the context's program anew with more kernels behind it, for mcor_launch. */
+void core_extend_program(mcor_context* context, const char* source);
+/* Builds the program for a kernel and a field. */
+void core_build(
+  mcor_context* context, mcor_sph_kernel kernel, mcor_field field, mcor_type precision);
+
+#endif

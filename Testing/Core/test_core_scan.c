@@ -1,0 +1,241 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Prefix sums, sort, distinct keys and the key index, each against a naive twin. */
+
+#include "core_fixture.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const int sizes[] = { 0, 1, 2, 15, 16, 17, 255, 1000, 100003 };
+#define SIZE_COUNT (int)(sizeof sizes / sizeof sizes[0])
+
+/* Key sets: dense, with many repeats, sparse over the whole range, all equal, all but one equal. */
+typedef struct key_kind
+{
+  const char* name;
+  uint64_t limit;
+} key_kind;
+static const key_kind kinds[] = { { "dense", 1000 }, { "one byte", 256 }, { "nine bits", 257 },
+  { "sparse", UINT64_C(1) << 52 }, { "huge", UINT64_C(1) << 62 }, { "one value", 1 },
+  { "two values", UINT64_C(0x123456789A) } };
+#define KIND_COUNT (int)(sizeof kinds / sizeof kinds[0])
+
+static uint64_t* make_keys(int kind, int count)
+{
+  uint64_t seed = (uint64_t)(count * 8 + kind);
+  uint64_t* keys = malloc((size_t)count * sizeof *keys + 1);
+  assert_non_null(keys);
+  for (int i = 0; i < count; ++i)
+  {
+    keys[i] = kind == 6 ? (i == count / 2 ? kinds[kind].limit - 1 : 7)
+                        : random_bits(&seed) % kinds[kind].limit;
+  }
+  return keys;
+}
+
+static int compare_keys(const void* a, const void* b)
+{
+  const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
+  return (x > y) - (x < y);
+}
+
+/* Reads `count` elements of `width` bytes; free the result. */
+static void* read_back(mcor_context* context, const mcor_buffer* buffer, int count, size_t width)
+{
+  void* data = malloc((size_t)count * width + 1);
+  assert_non_null(data);
+  CORE_OK(context, mcor_read(context, buffer, 0, data, (size_t)count * width));
+  return data;
+}
+
+static int set_up(void** state)
+{
+  if (core_set_up(state))
+  {
+    return -1;
+  }
+  core_build(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
+  return 0;
+}
+
+static void check_scan(mcor_context* context, int count, int largest)
+{
+  uint64_t seed = (uint64_t)count;
+  int* counts = calloc((size_t)count + 1, sizeof(int));
+  assert_non_null(counts);
+  for (int i = 0; i < count; ++i)
+  {
+    counts[i] = (int)(random_bits(&seed) % (unsigned)(largest + 1));
+  }
+  mcor_buffer buffer = { 0 };
+  int total = -1;
+  CORE_OK(context, mcor_write(context, &buffer, counts, ((size_t)count + 1) * sizeof(int)));
+  CORE_OK(context, mcor_scan(context, &buffer, count, &total));
+  int* scanned = read_back(context, &buffer, count + 1, sizeof(int));
+  int sum = 0;
+  for (int i = 0; i <= count; ++i)
+  {
+    CORE_CHECK(scanned[i] == sum, "size %d: element %d is %d, not %d", count, i, scanned[i], sum);
+    sum += i < count ? counts[i] : 0;
+  }
+  assert_int_equal(total, sum);
+  mcor_release(context, &buffer);
+  free(counts);
+  free(scanned);
+}
+
+static void test_scan(void** state)
+{
+  for (int s = 0; s < SIZE_COUNT; ++s)
+  {
+    check_scan(*state, sizes[s], 1);
+    check_scan(*state, sizes[s], 20000);
+  }
+}
+
+static void test_scan_overflow(void** state)
+{
+  mcor_context* context = *state;
+  const int counts[4] = { INT_MAX, 0, 1, 0 };
+  mcor_buffer buffer = { 0 };
+  int total;
+  CORE_OK(context, mcor_write(context, &buffer, counts, sizeof counts));
+  assert_int_equal(mcor_scan(context, &buffer, 3, &total), MCOR_OUT_OF_CAPACITY);
+  assert_non_null(strstr(mcor_last_error(context), "too large"));
+  mcor_release(context, &buffer);
+}
+
+static void check_sort(mcor_context* context, int kind, int count)
+{
+  uint64_t* keys = make_keys(kind, count);
+  mcor_buffer buffer = { 0 }, order = { 0 };
+  CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
+  CORE_OK(context, mcor_sort(context, &buffer, &order, count, kinds[kind].limit));
+  uint64_t* sorted = read_back(context, &buffer, count, sizeof *keys);
+  int* from = read_back(context, &order, count, sizeof(int));
+  uint8_t* seen = calloc((size_t)count + 1, 1);
+  assert_non_null(seen);
+  for (int i = 0; i < count; ++i)
+  {
+    CORE_CHECK(from[i] >= 0 && from[i] < count && !seen[from[i]], "%s, size %d: value %d is %d",
+      kinds[kind].name, count, i, from[i]);
+    seen[from[i]] = 1;
+    CORE_CHECK(sorted[i] == keys[from[i]], "%s, size %d: key %d", kinds[kind].name, count, i);
+    CORE_CHECK(
+      i == 0 || sorted[i - 1] < sorted[i] || (sorted[i - 1] == sorted[i] && from[i - 1] < from[i]),
+      "%s, size %d: element %d is out of order", kinds[kind].name, count, i);
+  }
+  mcor_release(context, &buffer);
+  mcor_release(context, &order);
+  free(keys);
+  free(sorted);
+  free(from);
+  free(seen);
+}
+
+static void check_unique(mcor_context* context, int kind, int count)
+{
+  uint64_t* keys = make_keys(kind, count);
+  mcor_buffer buffer = { 0 }, distinct = { 0 }, index_of = { 0 };
+  int found = -1;
+  CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
+  CORE_OK(
+    context, mcor_unique(context, &buffer, count, kinds[kind].limit, &distinct, &index_of, &found));
+  if (count == 0)
+  {
+    assert_int_equal(found, 0);
+    free(keys);
+    mcor_release(context, &buffer);
+    return;
+  }
+  uint64_t* values = read_back(context, &distinct, found, sizeof *values);
+  int* index = read_back(context, &index_of, count, sizeof(int));
+  for (int i = 0; i < count; ++i)
+  {
+    CORE_CHECK(index[i] >= 0 && index[i] < found && values[index[i]] == keys[i],
+      "%s, size %d: index %d of key %d", kinds[kind].name, count, index[i], i);
+  }
+  qsort(keys, (size_t)count, sizeof *keys, compare_keys);
+  int expected = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    if (i == 0 || keys[i] != keys[i - 1])
+    {
+      CORE_CHECK(expected < found && values[expected] == keys[i], "%s, size %d: distinct key %d",
+        kinds[kind].name, count, expected);
+      ++expected;
+    }
+  }
+  assert_int_equal(found, expected);
+  mcor_release(context, &buffer);
+  mcor_release(context, &distinct);
+  mcor_release(context, &index_of);
+  free(keys);
+  free(values);
+  free(index);
+}
+
+static void check_index(mcor_context* context, int kind, int count)
+{
+  uint64_t* keys = make_keys(kind, count);
+  qsort(keys, (size_t)count, sizeof *keys, compare_keys);
+  mcor_buffer buffer = { 0 }, buckets = { 0 };
+  int shift = -1;
+  CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
+  CORE_OK(context, mcor_index_keys(context, &buffer, count, kinds[kind].limit, &buckets, &shift));
+  const uint64_t bucket_count = (kinds[kind].limit >> shift) + 2;
+  CORE_CHECK(bucket_count <= 4 * (uint64_t)count + 65536 + 2, "%s, size %d: %llu buckets",
+    kinds[kind].name, count, (unsigned long long)bucket_count);
+  int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
+  int expected = 0;
+  for (uint64_t b = 0; b < bucket_count; ++b)
+  {
+    while (expected < count && keys[expected] >> shift < b)
+    {
+      ++expected;
+    }
+    CORE_CHECK(first[b] == expected, "%s, size %d: bucket %llu begins at %d, not %d",
+      kinds[kind].name, count, (unsigned long long)b, first[b], expected);
+  }
+  mcor_release(context, &buffer);
+  mcor_release(context, &buckets);
+  free(keys);
+  free(first);
+}
+
+static void for_all(mcor_context* context, void (*check)(mcor_context*, int, int))
+{
+  for (int kind = 0; kind < KIND_COUNT; ++kind)
+  {
+    for (int s = 0; s < SIZE_COUNT; ++s)
+    {
+      check(context, kind, sizes[s]);
+    }
+  }
+}
+
+static void test_sort(void** state)
+{
+  for_all(*state, check_sort);
+}
+
+static void test_unique(void** state)
+{
+  for_all(*state, check_unique);
+}
+
+static void test_index_keys(void** state)
+{
+  for_all(*state, check_index);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_scan),
+    cmocka_unit_test(test_scan_overflow), cmocka_unit_test(test_sort),
+    cmocka_unit_test(test_unique), cmocka_unit_test(test_index_keys) };
+  return cmocka_run_group_tests_name("scan", tests, set_up, core_tear_down);
+}

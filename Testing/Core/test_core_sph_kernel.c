@@ -1,0 +1,198 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The SPH kernels as the device evaluates them: integral, support, gradient, twin formulas. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* W h^3 and its gradient at offsets, both as node sums and as the correction compute it. */
+static const char source[] =
+  "__kernel void test_kernel(const int count, const real inv_h, __global const real* offset,\n"
+  "  __global real* out)\n"
+  "{\n"
+  "  const int i = get_global_id(0);\n"
+  "  if (i >= count)\n"
+  "    return;\n"
+  "  const realv x = offset[3 * i], y = offset[3 * i + 1], z = offset[3 * i + 2];\n"
+  "  realv gx, gy, gz;\n"
+  "  const realv w = mcor_weight_gradient(x, y, z, inv_h, &gx, &gy, &gz);\n"
+  "  const realv plain = mcor_weight(mcor_planar(x, y, inv_h), z, inv_h);\n"
+  "  out[5 * i] = MCOR_GET(w, MCOR_LANES - 1) * MCOR_NORM;\n"
+  "  out[5 * i + 1] = MCOR_GET(plain, 0) * MCOR_NORM;\n"
+  "  out[5 * i + 2] = MCOR_GET(gx, 0) * MCOR_NORM;\n"
+  "  out[5 * i + 3] = MCOR_GET(gy, 0) * MCOR_NORM;\n"
+  "  out[5 * i + 4] = MCOR_GET(gz, MCOR_LANES - 1) * MCOR_NORM;\n"
+  "}\n";
+
+/* Evaluates W (h = 1 / inv_h, without the factor 1 / h^3) in double precision. Free the result. */
+static double* evaluate(
+  mcor_context* context, mcor_sph_kernel kernel, const double* offsets, int count, double inv_h)
+{
+  mcor_buffer in = { 0 }, out = { 0 };
+  const size_t bytes = (size_t)count * 5 * sizeof(double);
+  double* result = malloc(bytes);
+  assert_non_null(result);
+  core_build(context, kernel, MCOR_SHEPARD, MCOR_FLOAT64);
+  core_extend_program(context, source);
+  CORE_OK(context, mcor_write(context, &in, offsets, (size_t)count * 3 * sizeof(double)));
+  CORE_OK(context, mcor_reserve(context, &out, bytes));
+  CORE_OK(context,
+    MCOR_LAUNCH(context, "test_kernel", MCOR_LIGHT, count, MCOR_INT(count), MCOR_REAL(inv_h),
+      MCOR_BUFFER(&in), MCOR_BUFFER(&out)));
+  CORE_OK(context, mcor_read(context, &out, 0, result, bytes));
+  mcor_release(context, &in);
+  mcor_release(context, &out);
+  return result;
+}
+
+/* Midpoint rule over one octant of the support's cube. */
+static void check_integral(mcor_context* context, mcor_sph_kernel kernel)
+{
+  enum
+  {
+    N = 64
+  };
+  const double support = mcor_support_factor(kernel), step = support / N;
+  double* offsets = malloc(N * N * N * 3 * sizeof(double));
+  assert_non_null(offsets);
+  for (int i = 0; i < N * N * N; ++i)
+  {
+    offsets[3 * i] = (i % N + 0.5) * step;
+    offsets[3 * i + 1] = (i / N % N + 0.5) * step;
+    offsets[3 * i + 2] = (i / N / N + 0.5) * step;
+  }
+  double* w = evaluate(context, kernel, offsets, N * N * N, 1);
+  double sum = 0;
+  for (int i = 0; i < N * N * N; ++i)
+  {
+    sum += w[5 * i];
+  }
+  sum *= 8 * step * step * step;
+  CORE_CHECK(fabs(sum - 1) < 1e-3, "kernel %s: integral %.6f", mcor_sph_kernel_name(kernel), sum);
+  free(offsets);
+  free(w);
+}
+
+/* Against the twin formula, and the gradient against central differences. */
+static void check_values(mcor_context* context, mcor_sph_kernel kernel)
+{
+  enum
+  {
+    N = 400
+  };
+  const double h = 0.7, step = 1e-6, reach = mcor_support_factor(kernel) * h;
+  double offsets[N * 7 * 3];
+  uint64_t seed = 5;
+  for (int i = 0; i < N; ++i)
+  {
+    for (int k = 0; k < 21; ++k)
+    {
+      double* x = offsets + 21 * i + k;
+      *x = k < 3 ? reach * (2 * random_unit(&seed) - 1) : offsets[21 * i + k % 3];
+      *x += k >= 3 && (k / 3 - 1) / 2 == k % 3 ? (k / 3 % 2 ? -step : step) : 0;
+    }
+  }
+  double* w = evaluate(context, kernel, offsets, N * 7, 1 / h);
+  for (int i = 0; i < N; ++i)
+  {
+    double gradient[3];
+    const double* at = w + 35 * i;
+    const double twin =
+      h * h * h * oracle_kernel_value((oracle_kernel)kernel, h, offsets + 21 * i, gradient);
+    CORE_CHECK(fabs(at[0] - twin) < 1e-12 && fabs(at[1] - twin) < 1e-12,
+      "kernel %s, %g %g %g: W %.17g and %.17g, should be %.17g", mcor_sph_kernel_name(kernel),
+      offsets[21 * i], offsets[21 * i + 1], offsets[21 * i + 2], at[0], at[1], twin);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double difference = (at[5 * (2 * a + 2)] - at[5 * (2 * a + 1)]) / (2 * step);
+      CORE_CHECK(
+        fabs(at[2 + a] - difference) < 1e-5 && fabs(at[2 + a] - h * h * h * gradient[a]) < 1e-10,
+        "kernel %s: slope %g along %d, difference %g, twin %g", mcor_sph_kernel_name(kernel),
+        at[2 + a], a, difference, h * h * h * gradient[a]);
+    }
+  }
+  free(w);
+}
+
+/* Exactly 0 from the support radius on; not 0 just inside; at 0 no slope. */
+static void check_support(mcor_context* context, mcor_sph_kernel kernel)
+{
+  const double support = mcor_support_factor(kernel);
+  const double offsets[6][3] = { { support, 0, 0 }, { 0, -support * 1.5, 0 },
+    { 0, 0, support * 1e6 }, { 0, support * 0.98, 0 }, { 0, 0, 0 }, { -support * 1.0001, 0.1, 0 } };
+  double* w = evaluate(context, kernel, offsets[0], 6, 1);
+  for (int i = 0; i < 6; ++i)
+  {
+    const double* at = w + 5 * i;
+    const int inside = i == 3 || i == 4;
+    CORE_CHECK((at[0] != 0) == inside && (at[1] != 0) == inside,
+      "kernel %s: W %g and %g at point %d", mcor_sph_kernel_name(kernel), at[0], at[1], i);
+    if (i != 3)
+    {
+      CORE_CHECK(at[2] == 0 && at[3] == 0 && at[4] == 0, "kernel %s: slope %g %g %g at point %d",
+        mcor_sph_kernel_name(kernel), at[2], at[3], at[4], i);
+    }
+  }
+  free(w);
+}
+
+static void test_kernels(void** state)
+{
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    check_integral(*state, (mcor_sph_kernel)k);
+    check_values(*state, (mcor_sph_kernel)k);
+    check_support(*state, (mcor_sph_kernel)k);
+  }
+}
+
+static void test_names(void** state)
+{
+  (void)state;
+  static const char* const names[] = { "cubic", "quadratic", "mprime4", "quintic", "wendland" };
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    assert_int_equal(mcor_find_sph_kernel(names[k]), k);
+    assert_string_equal(mcor_sph_kernel_name((mcor_sph_kernel)k), names[k]);
+    CORE_CHECK(mcor_support_factor((mcor_sph_kernel)k) == oracle_support((oracle_kernel)k),
+      "support of %s", names[k]);
+  }
+  assert_int_equal(mcor_find_sph_kernel("cubi"), -1);
+  assert_int_equal(mcor_find_sph_kernel(NULL), -1);
+  assert_null(mcor_sph_kernel_name((mcor_sph_kernel)99));
+}
+
+/* A lone particle: the weight sum is V W, so its free surface is a sphere of known radius. */
+static void test_lone_particle(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_set(1);
+  set.smoothing_length[0] = 0.5;
+  set.volume[0] = 0.125;
+  const mcor_input input = core_input(&set);
+  const double offset[3] = { 0.4, 0, 0 };
+  const double iso = 0.125 * oracle_kernel_value(ORACLE_CUBIC_SPLINE, 0.5, offset, NULL);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.tolerance = 1e-6;
+  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_CHECK(surface.point_count > 50, "%lld points", (long long)surface.point_count);
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    const double* x = surface.points + 3 * i;
+    const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    CORE_CHECK(fabs(r - 0.4) < 1e-5, "radius %.9g of point %lld", r, (long long)i);
+  }
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels), cmocka_unit_test(test_names),
+    cmocka_unit_test(test_lone_particle) };
+  return cmocka_run_group_tests_name("sph_kernel", tests, core_set_up, core_tear_down);
+}

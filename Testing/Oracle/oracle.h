@@ -141,6 +141,7 @@ extern "C"
   {
     double iso;
     double node_threshold;  /* not applied to ORACLE_WEIGHT */
+    double least_weight;    /* fluid weight below which a Shepard mean has no meaning, > 0 */
     double close;           /* |value - iso| up to which a node is excused, in the scalar's unit */
     double margin;          /* |weight - threshold| up to which a node is excused */
   } oracle_limits;

@@ -168,16 +168,16 @@ static void case_check_edges(case_run* run, int pairs)
   }
 }
 
-static void case_check_accuracy(case_run* run)
+static void case_check_accuracy(case_run* run, int trimmed)
 {
   const oracle_comparison* c = &run->comparison;
   const int single = run->options.precision == MCOR_FLOAT32;
   const double residual = single ? 5e-6 : 1e-6;
   case_expect(run, c->residual <= residual, "residual %.3g", c->residual);
-  case_expect(run, c->weight_error <= (single ? 1e-5 : 1e-9), "weight off by %.3g",
+  case_expect(run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g",
     c->weight_error);
-  case_expect(run, c->inverted_components == 0, "%lld components inside out",
-    (long long)c->inverted_components);
+  case_expect(run, c->inverted_triangles == 0, "%lld triangles inside out: %s",
+    (long long)c->inverted_triangles, c->first);
   case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g",
     c->trim_weight_error);
   case_expect(run, c->trim_residual <= residual, "trim vertices: residual %.3g", c->trim_residual);
@@ -185,6 +185,9 @@ static void case_check_accuracy(case_run* run)
     (long long)c->below_threshold);
   if (!run->at->rough)
   {
+    /* Snippets that trimming leaves may be too coarse to judge by the gradient. */
+    case_expect(run, trimmed || c->inverted_components == 0, "%lld components inside out",
+      (long long)c->inverted_components);
     case_expect(run, c->distance <= 1e-4, "distance %.3g cubes", c->distance);
     case_expect(run, c->normal_degrees <= (single ? 0.5 : 0.1), "normal off by %.3g degrees",
       c->normal_degrees);
@@ -224,10 +227,15 @@ static void case_check_measure(case_run* run)
 /* Extracts, checks, prints; the surface and its report stay in *run. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
+  /* Threshold 0 trims nothing, unless the kernel has negative lobes and h is far too small; the
+   * weight could then be 0 or less at vertices, where a Shepard mean has its poles. */
+  const int lobes =
+    run->at->options.sph_kernel == MCOR_M_PRIME_4 && run->at->options.field != MCOR_WEIGHT_SUM;
+  const int cut = trimmed || lobes;
   run->good = 1;
   run->options = run->at->options;
   run->options.seeds = pairs ? MCOR_PAIRS : MCOR_COMPLETE;
-  run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : 0.0;
+  run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : lobes ? 0.05 : 0.0;
   memset(&run->surface, 0, sizeof(run->surface));
   memset(&run->mesh, 0, sizeof(run->mesh));
   memset(&run->comparison, 0, sizeof(run->comparison));
@@ -242,8 +250,8 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   const int enough = mesh_check(run->surface.points, run->surface.point_count,
                        run->surface.triangles, run->surface.triangle_count, &run->mesh) &&
     (run->mesh.faults[MESH_BAD_INDEX] + run->mesh.faults[MESH_BAD_COORDINATE] > 0 ||
-      oracle_compare(run->reference, &run->options, &run->surface, &run->mesh, trimmed,
-        &run->comparison));
+      oracle_compare(
+        run->reference, &run->options, &run->surface, &run->mesh, cut, &run->comparison));
   case_expect(run, enough, "out of memory");
   case_print(run);
   const double cube = run->surface.statistics.cube_size;
@@ -251,7 +259,7 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
     cube);
   case_check_mesh(run, trimmed);
   case_check_edges(run, pairs);
-  case_check_accuracy(run);
+  case_check_accuracy(run, trimmed);
   if (!trimmed && !pairs)
   {
     case_check_measure(run);

@@ -20,16 +20,45 @@ void compare_note(compare_state* state, const char* format, ...)
   }
 }
 
+/* Least trimming weight at the nodes of a cell; NaN outside the lattice. */
+static double compare_least_weight(const oracle_lattice* lattice, const int64_t ijk[3])
+{
+  double least = INFINITY;
+  for (int c = 0; c < 8; ++c)
+  {
+    const int64_t at[3] = { ijk[0] + (c & 1), ijk[1] + (c >> 1 & 1), ijk[2] + (c >> 2) };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (at[axis] < 0 || at[axis] >= lattice->size[axis])
+      {
+        return NAN;
+      }
+    }
+    least = fmin(least, lattice->trim_weight[oracle_node_index(lattice, at[0], at[1], at[2])]);
+  }
+  return least;
+}
+
 void compare_note_edge(compare_state* state, const char* what, int64_t edge)
 {
   const oracle_lattice* lattice = &state->reference->lattice;
   int64_t nodes[2];
+  int64_t cells[4][3];
   double p[3];
+  double w[4];
   oracle_edge_ends(lattice, edge, nodes);
+  oracle_edge_cells(lattice, edge, cells);
   oracle_node_position(lattice, nodes[0], p);
-  compare_note(state, "%s edge at (%.9g, %.9g, %.9g) axis %d, f - iso = %.3g and %.3g", what, p[0],
-    p[1], p[2], (int)(edge % 3), lattice->value[nodes[0]] - state->reference->limits.iso,
-    lattice->value[nodes[1]] - state->reference->limits.iso);
+  for (int c = 0; c < 4; ++c)
+  {
+    w[c] = compare_least_weight(lattice, cells[c]);
+  }
+  compare_note(state,
+    "%s edge at (%.9g, %.9g, %.9g) axis %d, f - iso = %.3g and %.3g, fluid weight %.3g and %.3g,"
+    " least weight of its cells %.4g %.4g %.4g %.4g",
+    what, p[0], p[1], p[2], (int)(edge % 3), lattice->value[nodes[0]] - state->reference->limits.iso,
+    lattice->value[nodes[1]] - state->reference->limits.iso, lattice->weight[nodes[0]],
+    lattice->weight[nodes[1]], w[0], w[1], w[2], w[3]);
 }
 
 /* ---- which lattice edge does a vertex lie on? ----------------------------------------------------- */
@@ -40,7 +69,7 @@ static int64_t compare_locate(const oracle_lattice* lattice, const double point[
   double u[3];
   double off[3];
   int axis = 0;
-  double noise = 1e-9;
+  double noise = 1e-12;
   for (int a = 0; a < 3; ++a)
   {
     u[a] = point[a] / lattice->cube;
@@ -128,8 +157,10 @@ static void compare_assign_on_nodes(compare_state* state)
   {
     if (state->vertex_edge[v] <= COMPARE_ON_NODE)
     {
-      /* No crossed edge is left for it: to be judged as a vertex on an uncrossed edge. */
-      state->vertex_edge[v] = 3 * (COMPARE_ON_NODE - state->vertex_edge[v]);
+      /* No crossed edge is left for it: a cut, or to be judged as a vertex on an uncrossed edge. */
+      const int flagged = state->surface->boundary_flag && state->surface->boundary_flag[v];
+      state->vertex_edge[v] =
+        flagged && state->trimmed ? COMPARE_TRIM_VERTEX : 3 * (COMPARE_ON_NODE - state->vertex_edge[v]);
     }
   }
 }
@@ -143,20 +174,19 @@ static void compare_assign(compare_state* state)
   }
   for (int64_t v = 0; v < surface->point_count; ++v)
   {
-    if (surface->boundary_flag && surface->boundary_flag[v])
-    {
-      state->vertex_edge[v] = COMPARE_TRIM_VERTEX;
-      continue;
-    }
     const int64_t edge = compare_locate(&state->reference->lattice, &surface->points[3 * v]);
-    state->vertex_edge[v] = edge;
-    if (edge == COMPARE_OFF_LATTICE)
+    /* On a crossed edge a flagged vertex is one at the border of invalid cells, else it is a cut. */
+    const int64_t e = edge >= 0 ? oracle_find_edge(&state->reference->surface, edge) : -1;
+    const int flagged = surface->boundary_flag && surface->boundary_flag[v];
+    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && (e < 0 || state->edge_vertex[e] >= 0);
+    state->vertex_edge[v] = cut ? COMPARE_TRIM_VERTEX : edge;
+    if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
     {
       ++state->result->off_lattice;
       compare_note(state, "vertex %lld at (%.17g, %.17g, %.17g) on no lattice edge", (long long)v,
         surface->points[3 * v], surface->points[3 * v + 1], surface->points[3 * v + 2]);
     }
-    else if (edge >= 0)
+    else if (state->vertex_edge[v] >= 0)
     {
       compare_claim(state, v, edge);
     }
@@ -241,7 +271,10 @@ static void compare_missing(compare_state* state, int64_t* present, int64_t* abs
   for (int64_t e = 0; e < reference->surface.edge_count; ++e)
   {
     const int64_t edge = reference->surface.edge[e];
-    const int64_t component = reference->surface.edge_component[e];
+    /* Of no use for components: a pinched edge may be there for the sake of another component. */
+    const int64_t component = compare_pinched(&reference->lattice, edge)
+      ? reference->surface.component_count
+      : reference->surface.edge_component[e];
     if (state->edge_vertex[e] >= 0)
     {
       ++present[component];
@@ -329,10 +362,8 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
     compare_count_pinched(&state);
     compare_count_unsettled(&state);
     compare_boundary(&state);
-    if (!trimmed)
-    {
-      compare_faces(&state);
-    }
+    compare_faces(&state);
+    compare_inverted(&state);
     enough = compare_orientation(&state);
   }
   free(state.vertex_edge);

@@ -22,7 +22,8 @@ extern "C"
     oracle_lattice lattice;
     oracle_surface surface;
     oracle_limits limits;
-    /* Of the scalar over fluid particles; its largest magnitude if all are equal; 1 for the weight. */
+    /* Of the scalar over fluid particles; its largest magnitude if all are equal. Of the
+     * weight: its largest value, at least 1. */
     double range;
     double unit;  /* roundoff of the working precision */
   } oracle_reference;
@@ -55,8 +56,8 @@ extern "C"
     double distance;      /* max distance to the surface f = iso, in cubes */
     double normal_degrees;   /* max angle between normal and -gradient */
     int64_t flat_vertices;   /* gradient too small for a meaningful normal; not in normal_degrees */
-    int64_t inverted_triangles;  /* right-hand normal against -gradient */
-    int64_t inverted_components; /* of the mesh, judged by area */
+    int64_t inverted_triangles;  /* go round a lattice face the wrong way, judged by its nodes */
+    int64_t inverted_components; /* of the mesh, judged by -gradient and area */
 
     int64_t segments_missing; /* faces whose crossings the mesh does not connect as it must */
     int64_t holes;            /* boundary edges that neither trimming nor an invalid cell explains */
@@ -67,7 +68,7 @@ extern "C"
     int64_t near_threshold;                  /* vertices that rounding may keep or cut away */
     int64_t unsettled; /* nodes and cells at the surface whose state depends on rounding */
     double weight_error, gradient_error;     /* of the optional arrays; gradient relative */
-    char first[160];                         /* the first fault of a vertex or edge, in words */
+    char first[240];                         /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 
   /* trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must be

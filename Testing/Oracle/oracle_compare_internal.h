@@ -3,7 +3,8 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* Shared by oracle_compare.c (edges) and oracle_compare_mesh.c (vertices, triangles, faces). */
+/* Shared by oracle_compare.c (edges), oracle_compare_mesh.c (vertices, triangles) and
+ * oracle_compare_faces.c (what the mesh does on the faces of the lattice). */
 
 #include "oracle_compare.h"
 
@@ -36,8 +37,11 @@ int compare_end_flag(const oracle_lattice* lattice, int64_t edge, int flag);
 
 void compare_vertices(compare_state* state);
 int compare_orientation(compare_state* state); /* 0 if memory ran out */
+void compare_inverted(compare_state* state);
 void compare_faces(compare_state* state);
 void compare_boundary(compare_state* state);
+/* 1 if two valid cells touch only in this edge. */
+int compare_pinched(const oracle_lattice* lattice, int64_t edge);
 void compare_count_pinched(compare_state* state);
 void compare_count_unsettled(compare_state* state);
 

@@ -196,12 +196,12 @@ void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_lim
     {
       const double weight = lattice->trim_weight[n];
       const double fluid = lattice->weight[n];
-      if (weight >= limits->node_threshold && (kind == ORACLE_SUM || fluid > 0.0))
+      if (weight >= limits->node_threshold && (kind == ORACLE_SUM || fluid >= limits->least_weight))
       {
         flags |= ORACLE_NODE_VALID;
       }
       if (fabs(weight - limits->node_threshold) <= limits->margin ||
-        (kind == ORACLE_SHEPARD && fluid != 0.0 && fabs(fluid) <= limits->margin))
+        (kind == ORACLE_SHEPARD && fabs(fluid - limits->least_weight) <= limits->margin))
       {
         flags |= ORACLE_NODE_MARGIN;
       }

@@ -139,6 +139,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
   reference->unit = options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON
                                                        : 0.5 * DBL_EPSILON;
   reference->limits.node_threshold = options->node_threshold;
+  reference->limits.least_weight = 1e-5;
   if (!reference_particles(&reference->particles, input, options) ||
     !oracle_create_field(&reference->field, &reference->particles,
       reference_kernel(options->sph_kernel), reference_kind(options->field), options->h_scale))
@@ -162,6 +163,11 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     snprintf(message, 256, "more than %lld nodes, or out of memory", (long long)node_limit);
     oracle_free_reference(reference);
     return 0;
+  }
+  for (int64_t n = 0; options->field == MCOR_WEIGHT_SUM && n < oracle_node_count(&reference->lattice);
+       ++n)
+  {
+    reference->range = fmax(reference->range, reference->lattice.value[n]);
   }
   if (!oracle_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5))
   {

@@ -91,6 +91,7 @@ static void run_matrix(oracle_suite* suite)
     v.field = (mcor_field)(n % 18 / 6);
     v.cube_factor = cube_factors[n % 6 / 3];
     v.h_scale = h_scales[n % 3];
+    v.rough = v.kernel == MCOR_M_PRIME_4 && v.h_scale < 1.0; /* gaps between the particles */
     run_variant(suite, &v, NULL);
   }
 }
@@ -145,7 +146,9 @@ static const variant set_variants[] = {
   { .set = "variable_128", .cube_size = 0.03 },
   { .set = "variable_128", .field = MCOR_WEIGHT_SUM, .cube_size = 0.03 },
   { .set = "single", .field = MCOR_WEIGHT_SUM, .has_euler = 1, .euler = 2 },
-  { .set = "single", .field = MCOR_SUM },
+  { .set = "single", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
+  /* f and w are the same here, so iso and vertex threshold coincide everywhere. */
+  { .set = "single", .field = MCOR_SUM, .rough = 1, .suffix = "/tangent" },
   { .set = "coincident" },
   { .set = "coincident", .field = MCOR_SUM },
   /* Node values equal to iso up to rounding: which edges are crossed is open, but the mesh must be

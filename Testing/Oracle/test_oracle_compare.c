@@ -111,8 +111,8 @@ static void check_right_surface(const char* name)
     (long long)c.matched, (long long)c.edges);
   ORACLE_CHECK(c.missing == 0 && c.extra == 0 && c.excused == 0 && c.rounding == 0 &&
       c.off_lattice == 0 && c.doubled == 0, "%s: %s", name, c.first);
-  ORACLE_CHECK(c.segments_missing == 0 && c.holes == 0 && c.inverted_components == 0, "%s: %s", name,
-    c.first);
+  ORACLE_CHECK(c.segments_missing == 0 && c.holes == 0 && c.inverted_components == 0 &&
+      c.inverted_triangles == 0, "%s: %s", name, c.first);
   ORACLE_CHECK(c.residual < 1e-12 && c.distance < 1e-10 && c.normal_degrees < 1e-4, "%s: %g %g %g",
     name, c.residual, c.distance, c.normal_degrees);
   ORACLE_CHECK(c.weight_error < 1e-6 && c.gradient_error < 1e-12, "%s: %g %g", name, c.weight_error,
@@ -201,7 +201,8 @@ static double damage(fixture* f, int kind)
         f->surface.triangles[3 * t] = f->surface.triangles[3 * t + 1];
         f->surface.triangles[3 * t + 1] = first;
       }
-      return (double)compare(f, 0).inverted_components;
+      c = compare(f, 0);
+      return c.inverted_components == c.components ? (double)c.inverted_triangles : 0.0;
     case 8:
       f->surface.weight_sum[7] += 1e-3F;
       return compare(f, 0).weight_error > 9e-4;
@@ -213,8 +214,9 @@ static double damage(fixture* f, int kind)
       f->options.vertex_threshold = 2.0;
       c = compare(f, 1);
       return (double)(c.below_threshold == c.edges);
-    case 11: /* flagged as trim vertex, but its weight is not the threshold */
+    case 11: /* flagged as trim vertex on no edge, but its weight is not the threshold */
       f->surface.boundary_flag[10] = 1;
+      point[(axis + 1) % 3] += 0.1 * cube;
       return compare(f, 1).trim_weight_error > 0.1;
     default: /* nothing found at all */
       f->surface.point_count = f->surface.triangle_count = 0;

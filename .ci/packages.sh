@@ -78,10 +78,3 @@ mcor_install() { # PACKAGE...
   fi
   rm -f "$log"
 }
-
-# Runs a command with a display of its own, for VTK's rendering; none of the user's is touched.
-# The number is a random one: what listens on a display is shared by all roots of a machine, and
-# xvfb-run sees those of its own root only.
-mcor_with_display() { # COMMAND...
-  xvfb-run -a -n "$((1000 + RANDOM))" "$@"
-}

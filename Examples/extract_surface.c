@@ -118,7 +118,7 @@ static int extract_both(mcor_context* context, const char* free_surface, const c
   int failed = extract(context, &input, &options, free_surface);
   if (!failed)
   {
-    iso = 70.0;
+    iso = 75.0;
     options.field = MCOR_SHEPARD;
     failed = extract(context, &input, &options, isosurface);
   }

@@ -34,7 +34,7 @@ extract() { # NAME OPTIONS...
   shift
   echo
   echo "== $name: marching-correctors Examples/Data/dam_break_45k.vtp $out/$name.vtp $*"
-  mcor_with_display build/bin/marching-correctors Examples/Data/dam_break_45k.vtp "$out/$name.vtp" "$@" \
+  Testing/with-display.sh build/bin/marching-correctors Examples/Data/dam_break_45k.vtp "$out/$name.vtp" "$@" \
     --fluid ParticleType=0 --screenshot "$out/$name.png" --stats "$out/$name.json"
 }
 extract speed --scalar Velocity --component magnitude --iso 1.0

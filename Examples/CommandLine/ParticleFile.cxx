@@ -21,7 +21,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <stdexcept>
 
 #if defined(__unix__)
@@ -136,24 +135,6 @@ vtkSmartPointer<vtkDataObject> ReadAny(const std::string& file)
   throw std::runtime_error(file + " is not a .vtp, .vtu or .vtk file");
 }
 
-/// Lets `write` fill a file of another name in the same directory, which then takes the place of
-/// the old one, so that no half-written file is ever seen under the name asked for.
-void ReplaceFile(
-  const std::string& file, const std::function<std::string(const std::string&)>& write)
-{
-  const std::string part = file + ".part";
-  std::string why = write(part);
-  if (why.empty() && std::rename(part.c_str(), file.c_str()) != 0)
-  {
-    why = std::strerror(errno);
-  }
-  if (!why.empty())
-  {
-    std::remove(part.c_str());
-    throw std::runtime_error(file + " could not be written: " + why);
-  }
-}
-
 }
 
 //------------------------------------------------------------------------------
@@ -197,7 +178,7 @@ void CheckWritable(const std::string& file)
   {
     throw std::runtime_error(file + " could not be written: it is a directory");
   }
-  // The same name as ReplaceFile's: no other file is touched, and none is left.
+  // The same name as in WriteText: no other file is touched, and none is left.
   const std::string part = file + ".part";
   if (!std::ofstream(part, std::ios::binary))
   {
@@ -209,33 +190,33 @@ void CheckWritable(const std::string& file)
 //------------------------------------------------------------------------------
 void WriteSurface(const std::string& file, vtkPolyData* surface, MessageCapture* messages)
 {
-  ReplaceFile(file,
-    [&](const std::string& part) -> std::string
-    {
-      messages->Clear();
-      errno = 0;
-      vtkNew<vtkXMLPolyDataWriter> writer;
-      writer->SetFileName(part.c_str());
-      writer->SetInputData(surface);
-      // Not appended, VTK's default: ParaView 5.11 as Debian 12 has it cannot read that.
-      writer->SetDataModeToBinary();
-      const int written = writer->Write();
-      if (!messages->GetErrors().empty())
-      {
-        return messages->GetErrors().front();
-      }
-      return written ? "" : "the disk may be full";
-    });
+  messages->Clear();
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(surface);
+  // Not appended, VTK's default: ParaView 5.11 as Debian 12 has it cannot read that.
+  writer->SetDataModeToBinary();
+  // Not straight to the file: on a full disk the writer of VTK 9.1 crashes.
+  writer->WriteToOutputStringOn();
+  if (!writer->Write() || !messages->GetErrors().empty())
+  {
+    throw std::runtime_error(file + " could not be written" +
+      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+  }
+  WriteText(file, writer->GetOutputString());
 }
 
 //------------------------------------------------------------------------------
 void WriteText(const std::string& file, const std::string& text)
 {
-  ReplaceFile(file,
-    [&](const std::string& part) -> std::string
-    {
-      std::ofstream stream(part, std::ios::binary);
-      stream << text << std::flush;
-      return stream ? "" : std::strerror(errno);
-    });
+  // Under another name first: no half-written file is ever seen under the one asked for.
+  const std::string part = file + ".part";
+  std::ofstream stream(part, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream || std::rename(part.c_str(), file.c_str()) != 0)
+  {
+    const std::string why = std::strerror(errno);
+    std::remove(part.c_str());
+    throw std::runtime_error(file + " could not be written: " + why);
+  }
 }

@@ -180,22 +180,6 @@ void WriteSeconds(JsonText& json, vtkFieldData* run)
   }
   json.End();
 }
-
-double PeakResidentBytes()
-{
-#if defined(__unix__) || defined(__APPLE__)
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-#ifdef __APPLE__
-  return static_cast<double>(usage.ru_maxrss);
-#else
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-#endif
-#else
-  return 0.0;
-#endif
-}
-
 }
 
 //------------------------------------------------------------------------------
@@ -237,7 +221,8 @@ std::string DescribeRun(vtkFieldData* run)
 
 //------------------------------------------------------------------------------
 std::string StatisticsAsJson(const CommandLineOptions& options,
-  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds)
+  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds,
+  double peakResidentBytes)
 {
   vtkFieldData* last = runs.back();
   JsonText json;
@@ -271,7 +256,23 @@ std::string StatisticsAsJson(const CommandLineOptions& options,
     json.End();
   }
   json.EndList();
-  json.Value("peak_resident_bytes", PeakResidentBytes());
+  json.Value("peak_resident_bytes", peakResidentBytes);
   json.End();
   return json.Get() + "\n";
+}
+
+//------------------------------------------------------------------------------
+double PeakResidentBytes()
+{
+#if defined(__unix__) || defined(__APPLE__)
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return static_cast<double>(usage.ru_maxrss);
+#else
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+#endif
+#else
+  return 0.0;
+#endif
 }

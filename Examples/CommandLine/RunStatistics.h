@@ -20,6 +20,10 @@ std::string DescribeSeconds(vtkFieldData* run);
 /// The statistics of the last of `runs` as JSON, with the seconds of each. wallSeconds has one
 /// entry per run: the time of the filter as a whole, with what VTK adds to the phases.
 std::string StatisticsAsJson(const CommandLineOptions& options,
-  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds);
+  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds,
+  double peakResidentBytes);
+
+/// The most memory that this process has had so far; 0 where the system does not tell.
+double PeakResidentBytes();
 
 #endif

@@ -261,10 +261,12 @@ void Execute(const CommandLineOptions& options)
     }
   }
   WarnIfEmpty(surface, messages);
+  const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
   WriteSurface(options.Output, surface, messages);
   if (!options.StatisticsFile.empty())
   {
-    WriteText(options.StatisticsFile, StatisticsAsJson(options, runs, wallSeconds));
+    WriteText(
+      options.StatisticsFile, StatisticsAsJson(options, runs, wallSeconds, peakResidentBytes));
   }
   if (!options.PictureFile.empty())
   {

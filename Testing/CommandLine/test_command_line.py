@@ -7,7 +7,6 @@ What it computes is tested elsewhere; here it is files, options, sentences and e
 import json
 import os
 import pathlib
-import random
 import resource
 import shutil
 import signal
@@ -19,6 +18,7 @@ import unittest
 import particle_files as files
 
 PROGRAM = ""
+WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh"
 ISO = ["--scalar", "Radius", "--iso", "0.3"]
 
 
@@ -172,29 +172,29 @@ class BadData(CommandLineTest):
     def test_smoothing_length_not_positive(self):
         for value in (0.0, -0.1):
             with self.subTest(value):
-                self.refuse_changed("(?i)smoothing length.* 17 ", self.spoil("SmoothingLength", 17, value))
+                self.refuse_changed("SmoothingLength of particle 17 is", self.spoil("SmoothingLength", 17, value))
 
     def test_volume_not_positive(self):
         for name in ("Mass", "Density"):
             with self.subTest(name):
-                self.refuse_changed(f"(?i){name}.* 5 ", self.spoil(name, 5, 0.0))
+                self.refuse_changed(f"{name} of particle 5 is", self.spoil(name, 5, 0.0))
 
     def test_values_not_finite(self):
         for name in ("SmoothingLength", "Mass", "Density", "Radius"):
             for value in (float("nan"), float("inf")):
                 with self.subTest(name, value=value):
-                    self.refuse_changed(f"(?i) 23 .*'{name}'", self.spoil(name, 23, value))
+                    self.refuse_changed(f"{name} of particle 23 is (not a number|infinite)", self.spoil(name, 23, value))
 
     def test_positions_not_finite(self):
         self.points[11] = (0.0, float("nan"), 0.0)
-        self.refuse_changed("(?i)position.* 11 ", {})
+        self.refuse_changed("(?i)position.* of particle 11 is", {})
 
     def test_lattice_overflow(self):
         self.refuse_with("(?i)cube size", *ISO, "--cube-size", "1e-300")
         self.refuse_with("(?i)cube size", *ISO, "--cube-size", "1e-15")
 
-    def test_too_little_memory(self):
-        self.refuse_with("(?i)memory", *ISO, "--cube-size", "1e-6")
+    def test_surface_too_large(self):
+        self.refuse_with("too large.*larger cube size", *ISO, "--cube-size", "1e-5")
 
     def test_device(self):
         self.refuse_with("(?i)device.*nonesuch", *ISO, "--device", "nonesuch")
@@ -251,10 +251,12 @@ class BadData(CommandLineTest):
         self.refuse(self.run_program(self.input, directory, *ISO), 1, "it is a directory")
 
     def test_full_disk(self):
+        # A limit that OpenCL drivers can live with, which write files too, and the surface cannot.
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
-        self.refuse_with("surface.vtp could not be written", preexec_fn=limit)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2000000, 2000000))
+        self.refuse_with("surface.vtp could not be written", *ISO, "--cube-size", "0.004",
+                         preexec_fn=limit)
 
 
 class Options(CommandLineTest):
@@ -429,9 +431,7 @@ class Picture(CommandLineTest):
 
     def test_picture(self):
         picture = self.directory / "picture.png"
-        number = str(random.randrange(1000, 30000))
-        display = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a", "-n", number]
-        result = subprocess.run([*display, PROGRAM, self.input, self.output, *ISO, "--screenshot",
+        result = subprocess.run([WITH_DISPLAY, PROGRAM, self.input, self.output, *ISO, "--screenshot",
                                  picture], capture_output=True, text=True, timeout=300)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         data = picture.read_bytes()

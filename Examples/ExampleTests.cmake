@@ -1,0 +1,36 @@
+# Every example is run; each exits with a failure if its surface is empty.
+set(particles "${CMAKE_CURRENT_SOURCE_DIR}/Data/dam_break_45k.vtp")
+set(out "${CMAKE_CURRENT_BINARY_DIR}")
+
+function (mcor_add_example_test name label)
+  add_test(NAME "example.${name}" COMMAND ${ARGN})
+  set_tests_properties("example.${name}" PROPERTIES LABELS "${label}" TIMEOUT 600)
+endfunction ()
+
+mcor_add_example_test(c unit $<TARGET_FILE:extract_surface_c>
+  "${out}/free_surface.obj" "${out}/temperature.obj")
+if (NOT MCOR_BUILD_VTK)
+  return ()
+endif ()
+
+mcor_add_example_test(cxx vtk $<TARGET_FILE:ExtractSurface> "${particles}" "${out}/cxx.vtp")
+
+set(with_display "${PROJECT_SOURCE_DIR}/Testing/with-display.sh")
+if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
+  mcor_add_example_test(python vtk "${MCOR_VTK_PYTHON}"
+    "${CMAKE_CURRENT_SOURCE_DIR}/extract_surface.py" "${particles}" "${out}/free.vtp" "${out}/speed.vtp")
+  mcor_add_example_test(pictures vtk "${with_display}" "${MCOR_VTK_PYTHON}"
+    "${CMAKE_CURRENT_SOURCE_DIR}/readme_pictures.py" "${out}")
+  set_tests_properties(example.python example.pictures PROPERTIES
+    ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
+endif ()
+
+if (MCOR_BUILD_PLUGIN)
+  find_program(MCOR_PVPYTHON pvpython DOC "ParaView's Python interpreter")
+  mark_as_advanced(MCOR_PVPYTHON)
+  if (MCOR_PVPYTHON)
+    mcor_add_example_test(paraview paraview "${with_display}" "${MCOR_PVPYTHON}"
+      "${CMAKE_CURRENT_SOURCE_DIR}/paraview_script.py" $<TARGET_FILE:MarchingCorrectors>
+      "${out}/paraview.png")
+  endif ()
+endif ()

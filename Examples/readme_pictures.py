@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the pictures of README.md.
+
+readme_pictures.py DIRECTORY      (without a display: xvfb-run -a python3 readme_pictures.py ...)
+
+PYTHONPATH must name the directory of the package marchingcorrectors.
+"""
+import os
+import sys
+
+import vtkmodules.vtkInteractionStyle  # noqa: F401
+import vtkmodules.vtkRenderingFreeType  # noqa: F401
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkFiltersCore import vtkThreshold
+from vtkmodules.vtkFiltersSources import vtkOutlineSource
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkLightKit, vtkRenderer,
+                                         vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+
+from marchingcorrectors import vtkMarchingCorrectors
+
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Data", "dam_break_45k.vtp")
+SPEEDS = (0.0, 2.5)  # m/s, of the colours
+
+
+def speed_colors():
+    """Deep blue, cyan, white: slow water to spray."""
+    stops = [(0.0, (0.05, 0.18, 0.45)), (0.45, (0.15, 0.55, 0.80)), (1.0, (0.95, 0.98, 1.0))]
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(256)
+    table.SetTableRange(*SPEEDS)
+    table.SetVectorModeToMagnitude()
+    for i in range(256):
+        t = i / 255
+        (low, a), (high, b) = next((p, q) for p, q in zip(stops, stops[1:]) if t <= q[0])
+        u = (t - low) / (high - low)
+        table.SetTableValue(i, *(x + u * (y - x) for x, y in zip(a, b)), 1.0)
+    return table
+
+
+def colored_by_speed(algorithm):
+    mapper = vtkDataSetMapper()
+    mapper.SetInputConnection(algorithm.GetOutputPort())
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("Velocity")
+    mapper.SetLookupTable(speed_colors())
+    mapper.UseLookupTableScalarRangeOn()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    return actor
+
+
+def particle_actor(reader):
+    fluid = vtkThreshold()
+    fluid.SetInputConnection(reader.GetOutputPort())
+    fluid.SetInputArrayToProcess(0, 0, 0, 0, "ParticleType")
+    fluid.SetLowerThreshold(0)
+    fluid.SetUpperThreshold(0)
+    actor = colored_by_speed(fluid)
+    actor.GetProperty().SetRepresentationToPoints()
+    actor.GetProperty().SetPointSize(4)
+    actor.GetProperty().RenderPointsAsSpheresOn()
+    return actor
+
+
+def surface_filter(reader):
+    surface = vtkMarchingCorrectors()
+    surface.SetInputConnection(reader.GetOutputPort())
+    surface.SetFluidArrayName("ParticleType")
+    surface.SetFluidValue(0)
+    return surface
+
+
+def free_surface_actor(reader, opacity=1.0):
+    surface = surface_filter(reader)
+    surface.FreeSurfaceOn()
+    actor = colored_by_speed(surface)
+    actor.GetProperty().SetOpacity(opacity)
+    actor.GetProperty().SetSpecular(0.35)
+    actor.GetProperty().SetSpecularPower(40)
+    return actor
+
+
+def isosurface_actor(reader):
+    surface = surface_filter(reader)
+    surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")
+    surface.SetValue(0, 1.0)
+    surface.Update()
+    actor = vtkActor()
+    mapper = vtkDataSetMapper()
+    mapper.SetInputConnection(surface.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(0.90, 0.45, 0.20)
+    actor.GetProperty().SetSpecular(0.3)
+    actor.GetProperty().SetSpecularPower(30)
+    return actor
+
+
+def outline_actor(reader):
+    outline = vtkOutlineSource()
+    outline.SetBounds(reader.GetOutput().GetBounds())
+    mapper = vtkDataSetMapper()
+    mapper.SetInputConnection(outline.GetOutputPort())
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(0.6, 0.6, 0.6)
+    actor.GetProperty().LightingOff()
+    return actor
+
+
+def panel(reader, actors, caption, viewport):
+    renderer = vtkRenderer()
+    renderer.SetViewport(*viewport)
+    renderer.SetBackground(1, 1, 1)
+    for actor in (outline_actor(reader), *actors):
+        renderer.AddActor(actor)
+    text = vtkTextActor()
+    text.SetInput(caption)
+    text.GetTextProperty().SetColor(0.1, 0.1, 0.1)
+    text.GetTextProperty().SetFontSize(28)
+    text.SetPosition(24, 474)
+    renderer.AddViewProp(text)
+    lights = vtkLightKit()
+    lights.AddLightsToRenderer(renderer)
+    camera = renderer.GetActiveCamera()
+    camera.SetPosition(-0.35, 2.5, 4.4)
+    camera.SetFocalPoint(1.62, 0.43, 0.0)
+    camera.SetViewUp(0, 1, 0)
+    camera.SetViewAngle(29)
+    renderer.ResetCameraClippingRange()
+    return renderer
+
+
+def save(renderers, size, path):
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(0)
+    window.SetSize(*size)
+    for renderer in renderers:
+        renderer.UseFXAAOn()
+        window.AddRenderer(renderer)
+    window.Render()
+    image = vtkWindowToImageFilter()
+    image.SetInput(window)
+    image.ReadFrontBufferOff()
+    writer = vtkPNGWriter()
+    writer.SetFileName(path)
+    writer.SetInputConnection(image.GetOutputPort())
+    writer.Write()
+    print(path)
+
+
+def main(directory):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(DATA)
+    reader.Update()
+    third = 1 / 3
+    save([
+        panel(reader, [particle_actor(reader)], "particles", (0, 0, third, 1)),
+        panel(reader, [free_surface_actor(reader)], "free surface", (third, 0, 2 * third, 1)),
+        panel(reader, [isosurface_actor(reader), free_surface_actor(reader, 0.2)],
+              "isosurface of the speed, 1 m/s", (2 * third, 0, 1, 1)),
+    ], (1950, 520), os.path.join(directory, "dam_break.png"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])

@@ -1,0 +1,346 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* A context over several calls: reuse, order of the input, cancelling, devices, statistics. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void ask_for_all(mcor_options* options)
+{
+  options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
+  options->boundary_flag = options->iso_value = options->nearest_particle = 1;
+}
+
+static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  mcor_surface surface = core_extract(context, input, options);
+  CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  const uint64_t hash = core_hash(&surface);
+  mcor_free_surface(&surface);
+  return hash;
+}
+
+/* The same as a context that never saw anything else. */
+static uint64_t fresh_hash(const mcor_input* input, const mcor_options* options)
+{
+  mcor_context* context = NULL;
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  mcor_input alone = *input;
+  alone.particles_version = alone.scalar_version = 0;
+  const uint64_t hash = hash_of(context, &alone, options);
+  mcor_free_context(context);
+  return hash;
+}
+
+/* Reuse with every change that invalidates part of what is kept. */
+static void test_reuse_changes_nothing(void** state)
+{
+  core_set set = core_make_block(9, 0.3, 3, core_ball);
+  core_set other = core_make_block(9, 0.2, 4, core_slope);
+  double iso = 0;
+  mcor_input input = core_input(&set);
+  input.particles_version = input.scalar_version = 7;
+  mcor_options options = core_options(&iso);
+  ask_for_all(&options);
+  for (int step = 0; step < 14; ++step)
+  {
+    iso = step == 1 || step == 12 ? 2.5 : 0;
+    options.seeds = step == 2 || step == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
+    options.cube_size_factor = step == 4 ? 0.8 : 0.5;
+    options.h_scale = step == 5 ? 0.8 : 1;
+    options.field = step == 6 ? MCOR_SUM : MCOR_SHEPARD;
+    options.preview = step == 7;
+    input.scalar = core_array(step == 8 ? other.scalar : set.scalar, 1);
+    input.scalar_version = step == 8 ? 8 : 7;
+    input.smoothing_length =
+      step == 9 ? (mcor_array){ .constant = 1.4 } : core_array(set.smoothing_length, 1);
+    input.has_volume = step != 10;
+    options.node_threshold = step == 11 ? 0.9 : 0.1;
+    const uint64_t expected = fresh_hash(&input, &options);
+    for (int again = 0; again < 2; ++again)
+    {
+      CORE_CHECK(hash_of(*state, &input, &options) == expected, "step %d, call %d", step, again);
+    }
+  }
+  core_free_set(&set);
+  core_free_set(&other);
+}
+
+/* Several iso values at once are the surfaces of each. */
+static void test_several_iso_values(void** state)
+{
+  core_set set = core_make_block(9, 0.3, 3, core_ball);
+  const double iso[3] = { 5, 0, 2.5 };
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(iso);
+  ask_for_all(&options);
+  options.iso_count = 3;
+  mcor_surface all = core_extract(*state, &input, &options);
+  int64_t point = 0, triangle = 0;
+  options.iso_count = 1;
+  for (int i = 0; i < 3; ++i)
+  {
+    options.iso_values = iso + i;
+    mcor_surface one = core_extract(*state, &input, &options);
+    CORE_CHECK(point + one.point_count <= all.point_count &&
+        triangle + one.triangle_count <= all.triangle_count,
+      "too few");
+    assert_memory_equal(
+      all.points + 3 * point, one.points, (size_t)one.point_count * 3 * sizeof(double));
+    assert_memory_equal(
+      all.normals + 3 * point, one.normals, (size_t)one.point_count * 3 * sizeof(float));
+    for (int64_t t = 0; t < 3 * one.triangle_count; ++t)
+    {
+      assert_int_equal(all.triangles[3 * triangle + t], one.triangles[t] + point);
+    }
+    for (int64_t p = 0; p < one.point_count; ++p)
+    {
+      CORE_CHECK(all.iso_value[point + p] == iso[i], "iso value %g", all.iso_value[point + p]);
+    }
+    point += one.point_count;
+    triangle += one.triangle_count;
+    mcor_free_surface(&one);
+  }
+  assert_int_equal(point, all.point_count);
+  assert_int_equal(triangle, all.triangle_count);
+  mcor_free_surface(&all);
+  core_free_set(&set);
+}
+
+typedef struct permuted_case
+{
+  const char* name;
+  mcor_field field;
+  mcor_type precision;
+  mcor_seed_mode seeds;
+  int volumes; /* 0 array, 1 mass / density, 2 mass alone, 3 none */
+  int solids, coincident, estimate;
+} permuted_case;
+
+static const permuted_case permuted_cases[] = { { .name = "volume array" },
+  { .name = "pairs", .seeds = MCOR_PAIRS }, { .name = "mass and density", .volumes = 1 },
+  { .name = "mass", .volumes = 2 },
+  { .name = "mass, double", .volumes = 2, .precision = MCOR_FLOAT64 },
+  { .name = "no volume", .volumes = 3 }, { .name = "sum", .field = MCOR_SUM },
+  { .name = "free surface", .field = MCOR_WEIGHT_SUM }, { .name = "solids", .solids = 1 },
+  { .name = "coincident", .coincident = 1 },
+  { .name = "coincident, no volume", .volumes = 3, .coincident = 1 },
+  { .name = "coincident fluid and solid", .solids = 1, .coincident = 1 },
+  { .name = "estimated smoothing length", .estimate = 1 } };
+
+static core_set make_permuted_set(const permuted_case* at)
+{
+  core_set set = core_make_block(9, 0.35, 11, core_ball);
+  uint64_t seed = 17;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] *= 1 + 0.7 * random_unit(&seed);
+    set.volume[i] *= 1 + 0.3 * random_unit(&seed);
+    set.solid[i] = random_bits(&seed) % 7 == 0;
+    const int64_t twin = i - 1 - (int64_t)(random_bits(&seed) % 40);
+    if (at->coincident && twin >= 0 && i % 3 == 0)
+    {
+      memcpy(set.position + 3 * i, set.position + 3 * twin, 3 * sizeof(double));
+      set.smoothing_length[i] = set.smoothing_length[twin];
+      set.volume[i] = set.volume[twin];
+    }
+  }
+  set.has_solids = at->solids;
+  return set;
+}
+
+static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, const core_set* set)
+{
+  const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : 1;
+  mcor_input input = core_input(set);
+  input.mass = input.volume;
+  input.density = input.smoothing_length;
+  input.has_volume = at->volumes == 0;
+  input.has_mass = at->volumes == 1 || at->volumes == 2;
+  input.has_density = at->volumes == 1;
+  input.estimate_smoothing_length = at->estimate;
+  mcor_options options = core_options(&iso);
+  ask_for_all(&options);
+  options.nearest_particle = 0;
+  options.field = at->field;
+  options.precision = at->precision;
+  options.seeds = at->seeds;
+  return hash_of(context, &input, &options);
+}
+
+/* Whether five other orders of the particles give the same bits. */
+static int order_is_irrelevant(mcor_context* context, const permuted_case* at)
+{
+  core_set set = make_permuted_set(at);
+  const uint64_t expected = permuted_hash(context, at, &set);
+  int same = 1;
+  for (uint64_t seed = 1; seed <= 5; ++seed)
+  {
+    int64_t* order = core_make_order(set.count, seed);
+    core_set permuted = core_permute(&set, order);
+    same = same && permuted_hash(context, at, &permuted) == expected;
+    core_free_set(&permuted);
+    free(order);
+  }
+  core_free_set(&set);
+  return same;
+}
+
+static void test_order_of_input(void** state)
+{
+  int different = 0;
+  for (size_t c = 0; c < sizeof permuted_cases / sizeof permuted_cases[0]; ++c)
+  {
+    if (!order_is_irrelevant(*state, permuted_cases + c))
+    {
+      print_error("the order of the input matters: %s\n", permuted_cases[c].name);
+      ++different;
+    }
+  }
+  CORE_CHECK(different == 0, "%d cases", different);
+}
+
+typedef struct cancel_at
+{
+  int calls, stop_at; /* stop_at < 0: never */
+  double last;
+  char phases[200];
+} cancel_at;
+
+static int on_progress(void* user, double fraction, const char* phase)
+{
+  cancel_at* c = user;
+  CORE_CHECK(fraction >= c->last && fraction <= 1, "progress %g after %g", fraction, c->last);
+  c->last = fraction;
+  snprintf(c->phases + strlen(c->phases), sizeof c->phases - strlen(c->phases), "%s;", phase);
+  return c->calls++ == c->stop_at;
+}
+
+static void test_cancel_in_every_phase(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  const double iso = 0;
+  mcor_input input = core_input(&set);
+  input.particles_version = input.scalar_version = 99;
+  mcor_options options = core_options(&iso);
+  const uint64_t expected = hash_of(context, &input, &options);
+  cancel_at never = { .stop_at = -1 };
+  mcor_release_memory(context);
+  options.progress = on_progress;
+  options.progress_user = &never;
+  CORE_CHECK(hash_of(context, &input, &options) == expected, "progress changes the result");
+  for (int p = MCOR_PHASE_SEARCH_GRID; p < MCOR_PHASE_COUNT; ++p)
+  {
+    CORE_CHECK(strstr(never.phases, mcor_phase_name((mcor_phase)p)), "no phase \"%s\" in %s",
+      mcor_phase_name((mcor_phase)p), never.phases);
+  }
+  for (int stop = 0; stop < never.calls; ++stop)
+  {
+    cancel_at at = { .stop_at = stop };
+    options.progress_user = &at;
+    mcor_release_memory(context); /* so that no phase is skipped */
+    mcor_surface surface = { 0 };
+    const mcor_status status = mcor_extract(context, &input, &options, &surface);
+    CORE_CHECK(status == MCOR_CANCELLED, "stop %d: %s", stop, mcor_status_name(status));
+    CORE_CHECK(surface.point_count == 0 && !surface.points && !surface.triangles, "not empty");
+    assert_non_null(strstr(mcor_last_error(context), "cancelled"));
+    cancel_at on = { .stop_at = -1 };
+    options.progress_user = &on;
+    CORE_CHECK(hash_of(context, &input, &options) == expected, "after a stop at call %d", stop);
+  }
+  core_free_set(&set);
+}
+
+static void test_devices(void** state)
+{
+  (void)state;
+  char* list = NULL;
+  assert_int_equal(mcor_list_devices(&list), MCOR_OK);
+  CORE_CHECK(strncmp(list, "0: ", 3) == 0, "list: %s", list);
+  free(list);
+  const char* const unknown[] = { "no such device", "99999", "-1", "1e9" };
+  for (int i = 0; i < 4; ++i)
+  {
+    mcor_context* context = NULL;
+    assert_int_equal(mcor_create_context(unknown[i], &context), MCOR_DEVICE_ERROR);
+    assert_non_null(context);
+    assert_non_null(strstr(mcor_last_error(context), unknown[i]));
+    const mcor_input input = { 0 };
+    const mcor_options options = core_options(NULL);
+    mcor_surface surface = { 0 };
+    assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
+    mcor_free_context(context);
+  }
+  const char* const known[] = { "", "0", NULL };
+  for (int i = 0; i < 3; ++i)
+  {
+    mcor_context* context = NULL;
+    CORE_OK(context, mcor_create_context(known[i], &context));
+    mcor_free_context(context);
+  }
+}
+
+static void test_names(void** state)
+{
+  (void)state;
+  for (int s = 0; s <= MCOR_CANCELLED; ++s)
+  {
+    CORE_CHECK(!strstr(mcor_status_name((mcor_status)s), "unknown"), "status %d", s);
+  }
+  assert_string_equal(mcor_status_name((mcor_status)99), "unknown status");
+  assert_string_equal(mcor_status_name((mcor_status)-1), "unknown status");
+  assert_string_equal(mcor_phase_name((mcor_phase)99), "unknown phase");
+  assert_string_equal(mcor_phase_name(MCOR_PHASE_TRIMMING), "trimming");
+}
+
+/* Statistics that can be told beforehand, and their relations. */
+static void test_statistics(void** state)
+{
+  core_set set = core_make_block(10, 0, 3, core_ball);
+  set.has_solids = 1;
+  for (int64_t i = 0; i < 100; ++i)
+  {
+    set.solid[i] = 1; /* the lowest layer */
+  }
+  const double iso = 0;
+  const mcor_input input = core_input(&set);
+  const mcor_options options = core_options(&iso);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const mcor_statistics* s = &surface.statistics;
+  assert_int_equal(s->fluid_particles, 900);
+  assert_int_equal(s->solid_particles, 100);
+  CORE_CHECK(fabs(s->cube_size - 0.65) < 1e-12, "cube size %g", s->cube_size);
+  CORE_CHECK(s->smoothing_length_min == 1.3 && s->smoothing_length_max == 1.3, "smoothing length");
+  CORE_CHECK(s->virtual_cells == s->lattice_cells[0] * s->lattice_cells[1] * s->lattice_cells[2],
+    "virtual cells");
+  CORE_CHECK(s->cells_used == s->seed_cells - s->seed_cells_not_intersected && s->cells_used > 0,
+    "%lld cells of %lld used", (long long)s->cells_used, (long long)s->seed_cells);
+  CORE_CHECK(s->triangles_before_trimming >= s->cells_used, "triangles before trimming");
+  CORE_CHECK(s->correction_max >= s->correction_mean && s->correction_mean > 0 &&
+      s->correction_max <= s->cube_size,
+    "correction mean %g, max %g", s->correction_mean, s->correction_max);
+  CORE_CHECK(
+    s->iterations_max >= 1 && s->iterations_mean > 0 && s->iterations_mean <= s->iterations_max,
+    "iterations mean %g, max %d", s->iterations_mean, s->iterations_max);
+  CORE_CHECK(s->vertices_above_tolerance == 0,
+    "%lld vertices above the tolerance, worst residual %g", (long long)s->vertices_above_tolerance,
+    s->residual_max);
+  CORE_CHECK(s->device[0] && s->platform[0], "no device");
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_reuse_changes_nothing),
+    cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
+    cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_devices),
+    cmocka_unit_test(test_names), cmocka_unit_test(test_statistics) };
+  return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
+}

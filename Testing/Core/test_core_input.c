@@ -1,0 +1,259 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Bad input of every kind: its status, its sentence, an empty surface, a context that goes on. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A good call, for a test to spoil. */
+typedef struct bad_call
+{
+  core_set set;
+  mcor_input input;
+  mcor_options options;
+  mcor_array attribute;
+  double iso[2];
+  double* vector; /* [count][3] */
+} bad_call;
+
+static bad_call make_call(void)
+{
+  bad_call call = { .set = core_make_block(4, 0, 1, core_slope), .iso = { 0, 0.2 } };
+  call.input = core_input(&call.set);
+  call.vector = core_copy(call.set.position, (size_t)call.set.count * 3 * sizeof(double));
+  call.options = core_options(NULL);
+  return call;
+}
+
+static void free_call(bad_call* call)
+{
+  core_free_set(&call->set);
+  free(call->vector);
+}
+
+/* The call must fail with the status and a sentence that has all the words (separated by '|'). */
+static void expect(
+  mcor_context* context, const bad_call* call, mcor_status status, const char* words)
+{
+  mcor_surface surface;
+  memset(&surface, 0x5a, sizeof surface);
+  const mcor_status got = mcor_extract(context, &call->input, &call->options, &surface);
+  const char* error = mcor_last_error(context);
+  CORE_CHECK(got == status, "status \"%s\", not \"%s\": %s", mcor_status_name(got),
+    mcor_status_name(status), error);
+  const mcor_surface empty = { 0 };
+  CORE_CHECK(memcmp(&surface, &empty, sizeof empty) == 0, "the surface is not empty");
+  char list[200];
+  snprintf(list, sizeof list, "%s", words);
+  for (char* word = strtok(list, "|"); word; word = strtok(NULL, "|"))
+  {
+    CORE_CHECK(strstr(error, word), "no \"%s\" in: %s", word, error);
+  }
+  CORE_CHECK(error[strlen(error) - 1] == '.', "no sentence: %s", error);
+}
+
+/* After all that went wrong a good call works. */
+static void expect_good(mcor_context* context)
+{
+  bad_call call = make_call();
+  call.options.iso_values = call.iso;
+  mcor_surface surface = core_extract(context, &call.input, &call.options);
+  CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  assert_string_equal(mcor_last_error(context), "");
+  mcor_free_surface(&surface);
+  free_call(&call);
+}
+
+#define BAD(context, status, words, ...)   \
+  do                                       \
+  {                                        \
+    bad_call call = make_call();           \
+    call.options.iso_values = call.iso;    \
+    __VA_ARGS__;                           \
+    expect(context, &call, status, words); \
+    free_call(&call);                      \
+  } while (0)
+
+#define ARGUMENT(words, ...) BAD(*state, MCOR_INVALID_ARGUMENT, words, __VA_ARGS__)
+#define DATA(words, ...) BAD(*state, MCOR_INVALID_DATA, words, __VA_ARGS__)
+#define CAPACITY(words, ...) BAD(*state, MCOR_OUT_OF_CAPACITY, words, __VA_ARGS__)
+
+static void test_enumerations(void** state)
+{
+  ARGUMENT("SPH kernel|5", call.options.sph_kernel = (mcor_sph_kernel)5);
+  ARGUMENT("SPH kernel|-1", call.options.sph_kernel = (mcor_sph_kernel)-1);
+  ARGUMENT("field|3", call.options.field = (mcor_field)3);
+  ARGUMENT("seed mode|2", call.options.seeds = (mcor_seed_mode)2);
+  ARGUMENT("precision|2", call.options.precision = (mcor_type)2);
+  ARGUMENT("position|type", call.input.positions.type = (mcor_type)7);
+  ARGUMENT("scalar|type", call.input.scalar.type = (mcor_type)7);
+  expect_good(*state);
+}
+
+static void test_options(void** state)
+{
+  const double bad[] = { 0, -1, NAN, INFINITY };
+  for (int i = 0; i < 4; ++i)
+  {
+    ARGUMENT("h scale factor|above 0", call.options.h_scale = bad[i]);
+    ARGUMENT("cube size factor|above 0", call.options.cube_size_factor = bad[i]);
+    ARGUMENT("tolerance|above 0", call.options.tolerance = bad[i]);
+  }
+  for (int i = 1; i < 4; ++i)
+  {
+    ARGUMENT("cube size", call.options.cube_size = bad[i]);
+    ARGUMENT("node threshold", call.options.node_threshold = bad[i]);
+    ARGUMENT("vertex threshold", call.options.vertex_threshold = bad[i]);
+  }
+  ARGUMENT("iteration limit|-1|255", call.options.iteration_limit = -1);
+  ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);
+  ARGUMENT("-1 iso values", call.options.iso_count = -1);
+  ARGUMENT("1 iso values", call.options.iso_values = NULL);
+  ARGUMENT("so value 1|finite", call.options.iso_count = 2; call.iso[1] = NAN);
+  ARGUMENT("so value 0|finite", call.iso[0] = -INFINITY);
+  ARGUMENT("free surface|above 0|0.5", call.options.field = MCOR_WEIGHT_SUM);
+  expect_good(*state);
+}
+
+static void test_missing_arrays(void** state)
+{
+  ARGUMENT("no particle positions", call.input.positions.data = NULL);
+  ARGUMENT(
+    "no smoothing length|estimate", call.input.smoothing_length = (mcor_array){ .data = NULL });
+  ARGUMENT("no scalar|free surface", call.input.scalar.data = NULL);
+  CAPACITY("-1 particles|limit", call.input.count = -1);
+  CAPACITY("particles|limit", call.input.count = INT64_C(1) << 31);
+  expect_good(*state);
+}
+
+static void test_components(void** state)
+{
+  ARGUMENT("Component 3|flow|0 to 2", call.input.scalar = core_array(call.vector, 3);
+           call.input.scalar.name = "flow"; call.input.scalar_component = 3);
+  ARGUMENT("Component -2|0 to 2", call.input.scalar = core_array(call.vector, 3);
+           call.input.scalar_component = -2);
+  ARGUMENT("dot product|as many|3|1", call.input.scalar = core_array(call.vector, 3);
+           call.input.scalar_dot = core_array(call.set.scalar, 1));
+  expect_good(*state);
+}
+
+/* One bad element: the sentence names array and particle. */
+static void test_bad_elements(void** state)
+{
+  const double bad[] = { NAN, INFINITY, -INFINITY, 0, -1 };
+  const char* const how[] = { "(NaN)", "infinite", "infinite", "not above 0", "not above 0" };
+  for (int i = 0; i < 5; ++i)
+  {
+    char words[80];
+    snprintf(words, sizeof words, "smoothing length|hsml|particle 63|%s", how[i]);
+    DATA(words, call.set.smoothing_length[63] = bad[i]; call.input.smoothing_length.name = "hsml");
+    snprintf(words, sizeof words, "volume|particle 7|%s", how[i]);
+    DATA(words, call.set.volume[7] = bad[i]);
+    snprintf(words, sizeof words, "mass|particle 8|%s", how[i]);
+    DATA(words, call.input.has_volume = 0; call.input.has_mass = 1;
+         call.input.mass = call.input.volume; call.set.volume[8] = bad[i]);
+    snprintf(words, sizeof words, "density|particle 9|%s", how[i]);
+    DATA(words, call.input.has_volume = 0; call.input.has_mass = call.input.has_density = 1;
+         call.input.mass = core_array(call.set.smoothing_length, 1);
+         call.input.density = call.input.volume; call.set.volume[9] = bad[i]);
+    snprintf(words, sizeof words, "smoothing length|%s", how[i]);
+    if (bad[i] != 0)
+    {
+      DATA(words, call.input.smoothing_length = (mcor_array){ .constant = bad[i] });
+    }
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    char words[80];
+    snprintf(words, sizeof words, "position|particle 63|%s", how[i]);
+    DATA(words, call.set.position[191] = bad[i]);
+    snprintf(words, sizeof words, "scalar|p|particle 0|%s", how[i]);
+    DATA(words, call.set.scalar[0] = bad[i]; call.input.scalar.name = "p");
+    snprintf(words, sizeof words, "attribute|speed|particle 21|%s", how[i]);
+    DATA(words, call.vector[65] = bad[i]; call.attribute = core_array(call.vector, 3);
+         call.attribute.name = "speed"; call.input.attributes = &call.attribute;
+         call.input.attribute_count = 1);
+    snprintf(words, sizeof words, "particle 1|%s", how[i]);
+    DATA(words, call.vector[5] = bad[i]; call.input.scalar = core_array(call.vector, 3);
+         call.input.scalar_dot = core_array(call.vector, 3));
+  }
+  expect_good(*state);
+}
+
+static void test_particles(void** state)
+{
+  DATA("None of the 64|fluid", call.set.has_solids = 1; memset(call.set.solid, 1, 64);
+       call.input.solid = call.set.solid);
+  DATA("cannot be estimated", call.input.estimate_smoothing_length = 1;
+       memset(call.set.position, 0, 64 * 3 * sizeof(double)));
+  expect_good(*state);
+}
+
+/* Lattices that do not fit; the sentence says what to do. */
+static void test_lattice_limits(void** state)
+{
+  CAPACITY("cube size|axis 0|larger", call.set.position[0] = 1e9);
+  CAPACITY("cube size|axis 2|larger", call.set.position[2] = -1e300);
+  CAPACITY("cube size 1e-09|larger", call.options.cube_size = 1e-9);
+  CAPACITY("cube size", call.options.cube_size_factor = 1e-300);
+  CAPACITY("cube size", call.set.smoothing_length[5] = 1e-30);
+  CAPACITY("cube size", call.set.smoothing_length[5] = 1e300);
+  CAPACITY("cube size", call.options.h_scale = 1e30);
+  expect_good(*state);
+}
+
+static void test_null_arguments(void** state)
+{
+  mcor_context* context = *state;
+  bad_call call = make_call();
+  mcor_surface surface = { .point_count = 3 };
+  assert_int_equal(mcor_extract(NULL, &call.input, &call.options, &surface), MCOR_INVALID_ARGUMENT);
+  assert_int_equal(mcor_extract(context, &call.input, &call.options, NULL), MCOR_INVALID_ARGUMENT);
+  assert_int_equal(mcor_extract(context, NULL, &call.options, &surface), MCOR_INVALID_ARGUMENT);
+  assert_int_equal(surface.point_count, 0);
+  assert_int_equal(mcor_extract(context, &call.input, NULL, &surface), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(context), "NULL"));
+  assert_int_equal(mcor_create_context(NULL, NULL), MCOR_INVALID_ARGUMENT);
+  assert_int_equal(mcor_list_devices(NULL), MCOR_INVALID_ARGUMENT);
+  assert_true(strlen(mcor_last_error(NULL)) > 0);
+  mcor_free_context(NULL);
+  mcor_free_surface(NULL);
+  mcor_release_memory(NULL);
+  free_call(&call);
+  expect_good(context);
+}
+
+/* Not errors: no particles, no iso value, an iso value outside of the range, one particle. */
+static void test_empty_results(void** state)
+{
+  for (int kind = 0; kind < 5; ++kind)
+  {
+    bad_call call = make_call();
+    call.options.iso_values = call.iso;
+    call.iso[0] = kind == 2 ? 1e30 : kind == 3 ? -100 : call.set.scalar[0];
+    call.options.iso_count = kind != 1;
+    call.input.count = kind == 0 ? 0 : kind == 4 ? 1 : call.input.count;
+    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_CHECK(surface.point_count == 0 && surface.triangle_count == 0, "kind %d: %lld triangles",
+      kind, (long long)surface.triangle_count);
+    mcor_free_surface(&surface);
+    mcor_free_surface(&surface);
+    free_call(&call);
+  }
+  expect_good(*state);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
+    cmocka_unit_test(test_options), cmocka_unit_test(test_missing_arrays),
+    cmocka_unit_test(test_components), cmocka_unit_test(test_bad_elements),
+    cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
+    cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results) };
+  return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
+}

@@ -210,7 +210,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options, bool nearestParti
   options.field = this->FreeSurface ? MCOR_WEIGHT_SUM
     : this->ShepardNormalization    ? MCOR_SHEPARD
                                     : MCOR_SUM;
-  options.seeds = this->SeedMode == PAIRS ? MCOR_PAIRS : MCOR_COMPLETE;
+  options.seeds = this->SeedMode == PAIRS && !this->FreeSurface ? MCOR_PAIRS : MCOR_COMPLETE;
   options.h_scale = this->HScaleFactor;
   options.cube_size_factor = this->CubeSizeFactor;
   options.cube_size = this->CubeSize;
@@ -288,12 +288,7 @@ int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyDat
   {
     return 1;
   }
-  std::string message = mcor_last_error(this->Internals->Context);
-  if (status == MCOR_INVALID_DATA)
-  {
-    message += " (" + input.DescribeArrays() + ")";
-  }
-  return this->Fail(message);
+  return this->Fail(mcor_last_error(this->Internals->Context));
 }
 
 //------------------------------------------------------------------------------

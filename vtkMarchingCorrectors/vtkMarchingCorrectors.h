@@ -177,6 +177,15 @@ public:
   void SetScalarComponentToMagnitude() { this->SetScalarComponent(MAGNITUDE); }
   ///@}
 
+  /**
+   * ScalarComponent for ParaView's panel, where 3 stands for the magnitude of a vector: its range
+   * domains know no other number for it.
+   */
+  void SetPanelComponent(int component)
+  {
+    this->SetScalarComponent(component >= 3 ? static_cast<int>(MAGNITUDE) : component);
+  }
+
   ///@{
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
@@ -344,7 +353,8 @@ public:
   ///@{
   /**
    * How the march is seeded, see SeedModeType; COMPLETE by default, which misses nothing that
-   * Marching Cubes on the full lattice would find.
+   * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
+   * pair of particles lies on both sides of the fluid's surface.
    */
   vtkSetClampMacro(SeedMode, int, COMPLETE, PAIRS);
   vtkGetMacro(SeedMode, int);
@@ -462,7 +472,7 @@ public:
   ///@{
   /**
    * Compute "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
-   * vertex stayed at the linear cut. Off by default.
+   * vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded. Off by default.
    */
   vtkSetMacro(ComputeBoundaryFlag, vtkTypeBool);
   vtkGetMacro(ComputeBoundaryFlag, vtkTypeBool);
@@ -536,7 +546,7 @@ public:
   /**
    * Most iterations of the correction per vertex, >= 1, 30 by default.
    */
-  vtkSetMacro(IterationLimit, int);
+  vtkSetClampMacro(IterationLimit, int, 1, VTK_INT_MAX);
   vtkGetMacro(IterationLimit, int);
   ///@}
 

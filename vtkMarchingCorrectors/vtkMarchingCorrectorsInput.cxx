@@ -86,6 +86,7 @@ bool vtkMarchingCorrectorsInput::Collect(
 {
   this->Core.count = this->Points->GetNumberOfPoints();
   this->Core.positions = this->View(this->Points->GetPoints()->GetData());
+  this->Core.positions.name = nullptr; // VTK's "Points" says no more than "position"
   if ((!this->Filter->GetFreeSurface() && !this->CollectScalar(scalar, dot)) ||
     !this->CollectSmoothingLength() || !this->CollectVolume() || !this->CollectSolids())
   {
@@ -354,6 +355,7 @@ void vtkMarchingCorrectorsInput::Sign()
 mcor_array vtkMarchingCorrectorsInput::View(vtkDataArray* array)
 {
   mcor_array view = {};
+  view.name = array->GetName();
   view.components = array->GetNumberOfComponents();
   if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array))
   {
@@ -436,23 +438,4 @@ std::string vtkMarchingCorrectorsInput::ListPointArrays() const
     list += (i ? ", " : "") + NameOf(pointData->GetAbstractArray(i));
   }
   return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
-}
-
-//------------------------------------------------------------------------------
-std::string vtkMarchingCorrectorsInput::DescribeArrays() const
-{
-  std::string text;
-  const auto add = [&text](const char* role, vtkAbstractArray* array) {
-    if (array)
-    {
-      text += (text.empty() ? "" : ", ") + std::string(role) + " " + Quote(NameOf(array));
-    }
-  };
-  add("scalar", this->Scalar);
-  add("dot product with", this->ScalarDot);
-  add("smoothing length", this->SmoothingLength);
-  add("volume", this->Volume);
-  add("mass", this->Mass);
-  add("density", this->Density);
-  return text;
 }

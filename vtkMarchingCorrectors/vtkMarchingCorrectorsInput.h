@@ -40,11 +40,6 @@ public:
   bool Collect(
     const vtkMarchingCorrectorsRequest& scalar, const vtkMarchingCorrectorsRequest& dot);
 
-  /**
-   * The names of the arrays in use, for messages of the core, which knows no names.
-   */
-  std::string DescribeArrays() const;
-
   mcor_input Core = {};
   std::string Error;
 

@@ -23,12 +23,17 @@ namespace test
 inline int CompareImage(vtkMarchingCorrectors* filter, const char* colorBy, double low,
   double high, int argc, char* argv[])
 {
+  vtkNew<vtkLookupTable> colors;
+  colors->SetVectorModeToMagnitude();
+  colors->SetHueRange(0.67, 0.0);
+  colors->SetSaturationRange(0.5, 0.7);
+  colors->SetRange(low, high);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(filter->GetOutputPort());
   mapper->SetScalarModeToUsePointFieldData();
   mapper->SelectColorArray(colorBy);
-  mapper->GetLookupTable()->SetRange(low, high);
-  mapper->SetScalarRange(low, high);
+  mapper->SetLookupTable(colors);
+  mapper->UseLookupTableScalarRangeOn();
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   actor->GetProperty()->SetInterpolationToPhong();

@@ -47,15 +47,16 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # Choosing a scalar is enough: the iso value comes from its range.
-    extract.ContourBy = ["POINTS", "Pressure"]
-    extract.ContourBy = ["POINTS", "VorticityMagnitude"]
-    assert len(extract.Isosurfaces) == 1 and extract.Isosurfaces[0] > 0.0
+    # Choosing a scalar is enough: the iso value comes from its range, as the panel does it.
+    extract.ContourBy = ["POINTS", "Velocity"]
+    extract.SMProxy.GetProperty("ContourValues").ResetToDomainDefaults(False)
+    extract.SMProxy.UpdateVTKObjects()
+    low, high = extract.Input.PointData["Velocity"].GetRange(-1)
+    assert list(extract.Isosurfaces) == [0.5 * (low + high)], extract.Isosurfaces
     extract.UpdatePipeline()
     assert extract.GetDataInformation().GetNumberOfCells() > 0
 
     extract.FluidArray = "ParticleType"
-    extract.ContourBy = ["POINTS", "Velocity"]
     extract.Isosurfaces = [1.0]
     extract.UpdatePipeline()
     information = extract.GetDataInformation()
@@ -83,11 +84,8 @@ def check_refusal(extract):
     assert extract.GetDataInformation().GetNumberOfCells() > 0
 
 
-def main():
-    server = None
-    if "--server" in sys.argv:
-        server = connect_to_new_server(sys.argv[sys.argv.index("--server") + 1])
-    LoadPlugin(PLUGIN, remote=server is not None, ns=globals())
+def check_plugin(remote):
+    LoadPlugin(PLUGIN, remote=remote, ns=globals())
     reader = XMLPolyDataReader(FileName=[os.path.join(DATA, "dam_break_45k.vtp")])
     reader.UpdatePipeline()
     extract = MarchingCorrectors(Input=reader)  # noqa: F821, LoadPlugin made it
@@ -103,9 +101,18 @@ def main():
     bare.UpdatePipeline()
     assert bare.GetDataInformation().GetNumberOfCells() > 0
 
-    if server:
-        Disconnect()
-        server.wait(60)
+
+def main():
+    if "--server" not in sys.argv:
+        check_plugin(remote=False)
+    else:
+        server = connect_to_new_server(sys.argv[sys.argv.index("--server") + 1])
+        try:
+            check_plugin(remote=True)
+            Disconnect()
+        finally:
+            server.terminate()
+            server.wait()
     print("plugin works in", servermanager.vtkSMProxyManager.GetParaViewSourceVersion())
 
 

@@ -30,8 +30,8 @@ def draw():
     view.OrientationAxesVisibility = 0
     display = Show(extract, view)
     ColorBy(display, ("POINTS", "Velocity", "Magnitude"))
-    GetColorTransferFunction("Velocity").RescaleTransferFunction(0.0, 2.5)
-    view.CameraPosition = [0.4, 2.0, 4.2]
+    GetColorTransferFunction("Velocity").RescaleTransferFunction(0.0, 3.0)
+    view.CameraPosition = [0.6, 1.6, 3.2]
     view.CameraFocalPoint = [1.6, 0.3, 0.0]
     view.CameraViewUp = [0.0, 1.0, 0.0]
     Render(view)
@@ -42,7 +42,7 @@ def read(name):
     reader = vtkPNGReader()
     reader.SetFileName(name)
     reader.Update()
-    return reader
+    return reader.GetOutput()
 
 
 def main():
@@ -50,8 +50,8 @@ def main():
     if not os.path.exists(BASELINE):
         sys.exit("there is no baseline; the picture is " + OUTPUT)
     difference = vtkImageDifference()
-    difference.SetInputConnection(read(OUTPUT).GetOutputPort())
-    difference.SetImageConnection(read(BASELINE).GetOutputPort())
+    difference.SetInputData(read(OUTPUT))
+    difference.SetImageData(read(BASELINE))
     difference.Update()
     error = difference.GetThresholdedError()
     print("picture differs by %g (at most %g)" % (error, THRESHOLD))

@@ -1,0 +1,314 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Search grid: queries against all particles one by one, volumes against double sums. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PARTICLES 600
+
+/* Lists the particles that may reach each box; boxes: low, high. */
+static const char source[] =
+  "__kernel void test_query(MCOR_GRID_PARAMS, const int box_count, const real radius,\n"
+  "  __global const fix* boxes, __global int* counts, __global int* lists)\n"
+  "{\n"
+  "  const int i = get_global_id(0);\n"
+  "  if (i >= box_count)\n"
+  "    return;\n"
+  "  const mcor_grid grid = MCOR_GRID;\n"
+  "  mcor_query query;\n"
+  "  query.radius = radius;\n"
+  "  for (int a = 0; a < 3; ++a)\n"
+  "  {\n"
+  "    query.low[a] = boxes[6 * i + a];\n"
+  "    query.high[a] = boxes[6 * i + 3 + a];\n"
+  "  }\n"
+  "  int count = 0;\n"
+  "  mcor_tile tile;\n"
+  "  mcor_tile_init(&tile);\n"
+  "  for (int round = 0; round < 2; ++round)\n"
+  "    for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)\n"
+  "      for (int k = 0; k < tile.count; ++k)\n"
+  "        if (count < 2 * particle_count)\n"
+  "          lists[2 * i * particle_count + count++] = tile.list[k];\n"
+  "  counts[i] = count;\n"
+  "}\n";
+
+/* The grid's particles, read back. */
+typedef struct grid_copy
+{
+  int32_t x[3][PARTICLES];
+  float inv_h[PARTICLES];
+  double unit;
+} grid_copy;
+
+static grid_copy* copy_grid(mcor_context* context)
+{
+  grid_copy* copy = calloc(1, sizeof *copy);
+  assert_non_null(copy);
+  assert_int_equal(context->grid.count, PARTICLES);
+  const mcor_buffer* axes[3] = { &context->grid.px, &context->grid.py, &context->grid.pz };
+  for (int a = 0; a < 3; ++a)
+  {
+    CORE_OK(context, mcor_read(context, axes[a], 0, copy->x[a], sizeof copy->x[a]));
+  }
+  CORE_OK(context, mcor_read(context, &context->grid.inv_h, 0, copy->inv_h, sizeof copy->inv_h));
+  copy->unit = ldexp(1, -context->lattice.fix_bits);
+  return copy;
+}
+
+/* Distance of particle j to a box over its support (or the radius). */
+static double reach_of(
+  const grid_copy* g, int j, const int32_t* box, double support, double radius, int tensor)
+{
+  double sum = 0, most = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double below = (double)box[a] - g->x[a][j], above = (double)g->x[a][j] - box[3 + a];
+    const double d = fmax(fmax(below, above), 0) * g->unit;
+    sum += d * d;
+    most = fmax(most, d);
+  }
+  return (tensor ? most : sqrt(sum)) / (radius >= 0 ? radius : support / (double)g->inv_h[j]);
+}
+
+static void check_box(const grid_copy* g, const int32_t* box, const int* list, int count,
+  double support, double radius, int tensor)
+{
+  int listed[PARTICLES] = { 0 };
+  CORE_CHECK(count % 2 == 0, "the second loop over the tiles differs: %d in all", count);
+  for (int i = 0; i < count; ++i)
+  {
+    CORE_CHECK(list[i] >= 0 && list[i] < PARTICLES, "particle %d", list[i]);
+    CORE_CHECK(list[i] == list[i % (count / 2)], "the second loop differs");
+    ++listed[list[i]];
+    CORE_CHECK(i == 0 || i == count / 2 || list[i - 1] < list[i], "out of order");
+  }
+  for (int j = 0; j < PARTICLES; ++j)
+  {
+    const double reach = reach_of(g, j, box, support, radius, tensor);
+    CORE_CHECK(
+      listed[j] == 2 || reach >= 1, "particle %d at %.9g of its support is missing", j, reach);
+    CORE_CHECK(listed[j] == 0 || reach < 1.001, "particle %d at %.9g is listed", j, reach);
+  }
+}
+
+/* Particles at 0.9999, 1 and 1.0001 of their support around targets, and anywhere. */
+static core_set make_set(double support, double h_ratio)
+{
+  static const double factors[3] = { 0.9999, 1, 1.0001 };
+  core_set set = core_make_random(PARTICLES, 6, 2.0 / h_ratio, 2, 77);
+  uint64_t seed = 78;
+  for (int i = 1; i < PARTICLES * 2 / 3; ++i)
+  {
+    double d[3], length = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      d[a] = i % 7 == 0 ? (a == i % 3) : 2 * random_unit(&seed) - 1;
+      length += d[a] * d[a];
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] =
+        d[a] / sqrt(length) * factors[i % 3] * support * set.smoothing_length[i];
+    }
+  }
+  return set;
+}
+
+static void check_queries(
+  mcor_context* context, mcor_sph_kernel kernel, double h_ratio, double radius)
+{
+  enum
+  {
+    BOXES = 60
+  };
+  const double support = mcor_support_factor(kernel);
+  const int tensor = kernel == MCOR_M_PRIME_4;
+  core_set set = make_set(support, h_ratio);
+  const double iso = 100; /* the grid is all that is wanted */
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.sph_kernel = kernel;
+  mcor_surface surface = core_extract(context, &input, &options);
+  core_extend_program(context, source);
+  grid_copy* g = copy_grid(context);
+  int32_t boxes[BOXES][6];
+  uint64_t seed = 5;
+  for (int b = 0; b < BOXES; ++b)
+  {
+    const int i = (int)(random_bits(&seed) % PARTICLES);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double target = -(double)context->lattice.origin[a] / g->unit;
+      const int size = b % 4 < 2 ? 0 : (int)(random_unit(&seed) * 8 / g->unit);
+      boxes[b][a] = b == 0 || b % 4 == 1 ? (int32_t)target : g->x[a][i];
+      boxes[b][3 + a] = boxes[b][a] + size;
+    }
+  }
+  mcor_buffer box_buffer = { 0 }, counts = { 0 }, lists = { 0 };
+  const size_t list_bytes = BOXES * 2 * PARTICLES * sizeof(int);
+  CORE_OK(context, mcor_write(context, &box_buffer, boxes, sizeof boxes));
+  CORE_OK(context, mcor_reserve(context, &counts, BOXES * sizeof(int)));
+  CORE_OK(context, mcor_reserve(context, &lists, list_bytes));
+  CORE_OK(context,
+    MCOR_LAUNCH(context, "test_query", MCOR_HEAVY, BOXES, MCOR_GRID_ARGS(context), MCOR_INT(BOXES),
+      MCOR_REAL(radius), MCOR_BUFFER(&box_buffer), MCOR_BUFFER(&counts), MCOR_BUFFER(&lists)));
+  int count[BOXES];
+  int* list = malloc(list_bytes);
+  assert_non_null(list);
+  CORE_OK(context, mcor_read(context, &counts, 0, count, sizeof count));
+  CORE_OK(context, mcor_read(context, &lists, 0, list, list_bytes));
+  int some = 0;
+  for (int b = 0; b < BOXES; ++b)
+  {
+    check_box(g, boxes[b], list + b * 2 * PARTICLES, count[b], support, radius, tensor);
+    some += count[b] > 0;
+  }
+  CORE_CHECK(some > BOXES / 2, "only %d boxes are reached", some);
+  mcor_release(context, &box_buffer);
+  mcor_release(context, &counts);
+  mcor_release(context, &lists);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+  free(list);
+  free(g);
+}
+
+static void test_query(void** state)
+{
+  static const double ratios[] = { 1, 3, 100 };
+  for (int r = 0; r < 3; ++r)
+  {
+    check_queries(*state, MCOR_CUBIC_SPLINE, ratios[r], -1);
+    check_queries(*state, MCOR_M_PRIME_4, ratios[r], -1);
+    check_queries(*state, MCOR_CUBIC_SPLINE, ratios[r], 3);
+    check_queries(*state, MCOR_CUBIC_SPLINE, ratios[r], 0.01);
+  }
+}
+
+/* Volumes by the naive double sum. mass: NULL for 1 each. */
+static void naive_volumes(core_set* set, mcor_sph_kernel kernel, const double* mass)
+{
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    double sum = 0;
+    for (int64_t k = 0; k < set->count; ++k)
+    {
+      double d[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        d[a] = set->position[3 * j + a] - set->position[3 * k + a];
+      }
+      sum += (mass ? mass[k] : 1) *
+        oracle_kernel_value((oracle_kernel)kernel, set->smoothing_length[j], d, NULL);
+    }
+    set->volume[j] = (mass ? mass[j] : 1) / sum;
+  }
+}
+
+/* The weight sums at the surface's points against those of `set`, which has its volumes. */
+static void check_weights(mcor_context* context, const core_set* set, const mcor_input* input,
+  const mcor_options* options, const char* rule)
+{
+  const oracle_particles particles = core_oracle(set);
+  oracle_field field;
+  assert_true(oracle_create_field(
+    &field, &particles, (oracle_kernel)options->sph_kernel, ORACLE_WEIGHT, options->h_scale));
+  mcor_surface surface = core_extract(context, input, options);
+  CORE_CHECK(surface.point_count > 50, "%lld points", (long long)surface.point_count);
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    oracle_sample sample;
+    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
+    const double error = fabs((double)surface.weight_sum[i] - sample.trim_weight);
+    CORE_CHECK(error < 1e-5 * (1 + sample.trim_weight), "%s, h scale %g: weight %.9g, not %.9g",
+      rule, options->h_scale, (double)surface.weight_sum[i], sample.trim_weight);
+  }
+  mcor_free_surface(&surface);
+  oracle_free_field(&field);
+}
+
+static void check_volumes(mcor_context* context, double h_scale, double ratio)
+{
+  core_set set = core_make_random(200, 3, 0.8 / ratio, 0.8, 9);
+  double* mass = core_copy(set.volume, 200 * sizeof(double));
+  double* density = core_copy(set.volume, 200 * sizeof(double));
+  const double iso = 0;
+  for (int i = 0; i < 200; ++i)
+  {
+    density[i] = 0.5 + i * 0.01;
+    set.volume[i] *= 0.1;
+  }
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.h_scale = h_scale;
+  options.weight_sum = 1;
+  options.node_threshold = 0;
+  options.vertex_threshold = 0;
+  check_weights(context, &set, &input, &options, "array");
+  input.mass = core_array(mass, 1);
+  input.density = core_array(density, 1);
+  input.has_volume = 0;
+  input.has_mass = input.has_density = 1;
+  for (int i = 0; i < 200; ++i)
+  {
+    set.volume[i] = mass[i] / density[i];
+  }
+  check_weights(context, &set, &input, &options, "mass / density");
+  input.has_density = 0;
+  naive_volumes(&set, MCOR_CUBIC_SPLINE, mass);
+  check_weights(context, &set, &input, &options, "mass alone");
+  input.has_mass = 0;
+  naive_volumes(&set, MCOR_CUBIC_SPLINE, NULL);
+  check_weights(context, &set, &input, &options, "neither");
+  core_free_set(&set);
+  free(mass);
+  free(density);
+}
+
+static void test_volumes(void** state)
+{
+  check_volumes(*state, 1, 1);
+  check_volumes(*state, 1, 20);
+  check_volumes(*state, 0.5, 4);
+  check_volumes(*state, 1.5, 4);
+}
+
+/* A smoothing length given as support radius, and one given as a constant. */
+static void test_smoothing_lengths(void** state)
+{
+  core_set set = core_make_block(8, 0.2, 3, core_ball);
+  const double iso = 1;
+  mcor_input input = core_input(&set);
+  const mcor_options options = core_options(&iso);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const uint64_t expected = core_hash(&surface);
+  mcor_free_surface(&surface);
+  input.smoothing_length = (mcor_array){ .constant = 1.3 };
+  surface = core_extract(*state, &input, &options);
+  CORE_CHECK(core_hash(&surface) == expected, "constant smoothing length");
+  mcor_free_surface(&surface);
+  input.smoothing_length.constant = 2.6;
+  input.smoothing_length_is_support_radius = 1;
+  surface = core_extract(*state, &input, &options);
+  CORE_CHECK(core_hash(&surface) == expected, "support radius");
+  mcor_free_surface(&surface);
+  input.estimate_smoothing_length = 1;
+  surface = core_extract(*state, &input, &options);
+  const double h = surface.statistics.smoothing_length_min;
+  CORE_CHECK(h > 1.3 * 0.8 && h < 1.3 * 1.4, "estimated smoothing length %g", h);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_query), cmocka_unit_test(test_volumes),
+    cmocka_unit_test(test_smoothing_lengths) };
+  return cmocka_run_group_tests_name("grid", tests, core_set_up, core_tear_down);
+}

@@ -173,7 +173,7 @@ static void case_check_accuracy(case_run* run, int trimmed)
   const oracle_comparison* c = &run->comparison;
   const int single = run->options.precision == MCOR_FLOAT32;
   const double residual = single ? 5e-6 : 1e-6;
-  case_expect(run, c->residual <= residual, "residual %.3g", c->residual);
+  case_expect(run, c->residual <= residual, "residual %.3g: %s", c->residual, c->first);
   case_expect(run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g",
     c->weight_error);
   case_expect(run, c->inverted_triangles == 0, "%lld triangles inside out: %s",

@@ -145,6 +145,12 @@ static int compare_edge_vertex(
   if (!(residual <= result->residual))
   {
     result->residual = residual;
+    if (!(residual < 1e-5))
+    {
+      compare_note(state, "vertex %lld at (%.9g, %.9g, %.9g) has residual %.3g; weight %.3g,"
+        " fluid %.3g", (long long)v, point[0], point[1], point[2], residual, sample->trim_weight,
+        sample->weight);
+    }
   }
   result->distance = fmax(result->distance, compare_distance(state, point, axis, sample));
   return 1;

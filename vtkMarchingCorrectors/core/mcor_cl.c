@@ -249,7 +249,7 @@ static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char*
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
   snprintf(text, size,
-    "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_CPU=%d -DMCOR_DOUBLE=%d "
+    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_CPU=%d -DMCOR_DOUBLE=%d "
     "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%d.0%s "
     "-DMCOR_TENSOR=%d -DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
     cl->lanes, cl->is_cpu, is_double, kernels[k].name, kernels[k].name, kernels[k].norm, is_double ? "" : "f",

@@ -7,6 +7,20 @@
 
 #include <stdlib.h>
 
+/* Cuts points [first, first + count) into groups that are evaluated together. */
+mcor_status mcor_make_groups(
+  mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)
+{
+  mcor_buffer* flags = &context->scratch[0];
+  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_LIGHT, count, MCOR_INT(first),
+    MCOR_INT(count), MCOR_BUFFER(node), MCOR_BUFFER(flags)));
+  MCOR_TRY(mcor_scan(context, flags, count, group_count));
+  MCOR_TRY(mcor_reserve(context, &context->groups, ((size_t)*group_count + 1) * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_group_fill", MCOR_LIGHT, count + 1, MCOR_INT(first),
+    MCOR_INT(count), MCOR_BUFFER(flags), MCOR_BUFFER(&context->groups));
+}
+
 /* Vertices get room for those that trimming adds, so that nothing is copied then. */
 mcor_status mcor_reserve_vertices(mcor_context* context, int count)
 {
@@ -46,11 +60,14 @@ mcor_status mcor_correct(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->options;
-  const int lanes = context->cl.lanes, count = mesh->march_count;
+  const int count = mesh->march_count;
+  int groups;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_reserve_vertices(context, count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, (count + lanes - 1) / lanes,
-    MCOR_GRID_ARGS(context), MCOR_INT(count), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends),
+  MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, count, &groups));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups,
+    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->groups),
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends),
     MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
     MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),

@@ -65,7 +65,7 @@ void mcor_release_memory(mcor_context* context)
     &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->triangles,
     &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
     &m->scanned, &context->scan_sums, &context->sort_keys, &context->sort_values,
-    &context->sort_histogram, &context->attributes };
+    &context->sort_histogram, &context->attributes, &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);

@@ -124,6 +124,8 @@ struct mcor_context
   mcor_buffer scratch[6];     /* within one function */
   mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
   mcor_buffer out[8], attributes;
+  mcor_buffer groups; /* see mcor_make_groups */
+  int group_count;
   int32_t* source; /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift; /* A0 */
   bool nodes_valid;   /* bricks hold node values of the current scalar */
@@ -175,6 +177,8 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
+mcor_status mcor_make_groups(
+  mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_correct(mcor_context* context, double iso);

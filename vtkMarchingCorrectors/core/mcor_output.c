@@ -215,7 +215,7 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
   const mcor_component* components, int count, int points, mcor_surface* surface)
 {
   const size_t real = context->cl.real_size;
-  const int stride = context->grid.count, lanes = context->cl.lanes;
+  const int stride = context->grid.count;
   const bool nearest = context->options->nearest_particle && components == NULL;
   const size_t n = (size_t)points;
   mcor_buffer *values = &context->out[5], *indices = &context->out[6];
@@ -227,8 +227,9 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
     MCOR_TRY(mcor_sort_values(context, input, mcor_attribute_at, components + c, 0,
       &context->attributes, c * stride));
   }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_output_attributes", MCOR_HEAVY, (points + lanes - 1) / lanes,
-    MCOR_GRID_ARGS(context), MCOR_INT(points), MCOR_BUFFER(&context->out[0]),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_output_attributes", MCOR_HEAVY, context->group_count,
+    MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
+    MCOR_BUFFER(&context->out[0]),
     MCOR_BUFFER(&context->out[1]), MCOR_INT(count), MCOR_INT(stride),
     MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values), MCOR_INT(nearest),
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
@@ -263,10 +264,11 @@ static mcor_status mcor_add_attributes(
 {
   mcor_component batch[MCOR_ATTRIBUTE_LIMIT];
   int count = 0;
-  if (points == 0)
+  if (points == 0 || (input->attribute_count == 0 && !context->options->nearest_particle))
   {
     return MCOR_OK;
   }
+  MCOR_TRY(mcor_make_groups(context, &context->out[0], 0, points, &context->group_count));
   if (context->options->nearest_particle)
   {
     MCOR_TRY(mcor_evaluate_attributes(context, input, NULL, 0, points, surface));

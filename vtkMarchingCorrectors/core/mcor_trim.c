@@ -55,15 +55,17 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->options;
-  const int lanes = context->cl.lanes, vertices = mesh->march_count;
+  const int vertices = mesh->march_count;
+  int groups;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
     MCOR_BUFFER(&mesh->cut_distinct), MCOR_INT(vertices), MCOR_REAL(options->vertex_threshold),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->vertex_weight)));
-  return MCOR_LAUNCH(context, "mcor_trim_solve", MCOR_HEAVY, (cut_count + lanes - 1) / lanes,
-    MCOR_GRID_ARGS(context), MCOR_INT(vertices), MCOR_INT(cut_count), MCOR_BUFFER(&mesh->node),
+  MCOR_TRY(mcor_make_groups(context, &mesh->node, vertices, cut_count, &groups));
+  return MCOR_LAUNCH(context, "mcor_trim_solve", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
     MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
     MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),

@@ -18,15 +18,59 @@ typedef struct
   realv weight, wx, wy, wz;
 } mcor_field_at;
 
-/* Loads the nodes of points begin.. (the last one repeated beyond `count`) and fits the query. */
-void mcor_points_load(__global const int4* node, int begin, int count, int fix_bits,
+/* Points that are evaluated together should lie close together, as then fewer particles reach them:
+ * a group is up to MCOR_LANES successive points of one brick. Points are sorted by brick. */
+bool mcor_group_starts(__global const int4* node, int i)
+{
+  int before = 0; /* points of the same brick just before this one */
+  while (before < i)
+  {
+    const int4 a = node[i - before - 1], b = node[i];
+    if (a.x >> 2 != b.x >> 2 || a.y >> 2 != b.y >> 2 || a.z >> 2 != b.z >> 2)
+    {
+      break;
+    }
+    ++before;
+  }
+  return before % MCOR_LANES == 0;
+}
+
+/* One work-item = one point, of `count` from `first`. Writes 1 where a group starts. */
+__kernel void mcor_group_count(
+  const int first, const int count, __global const int4* node, __global int* flags)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    flags[i] = mcor_group_starts(node + first, i);
+  }
+}
+
+/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last entry
+ * is the end. */
+__kernel void mcor_group_fill(
+  const int first, const int count, __global const int* scanned, __global int* groups)
+{
+  const int i = get_global_id(0);
+  if (i < count && scanned[i] != scanned[i + 1])
+  {
+    groups[scanned[i]] = first + i;
+  }
+  if (i == count)
+  {
+    groups[scanned[count]] = first + count;
+  }
+}
+
+/* Loads the nodes of points begin.. (the last one repeated beyond `end`) and fits the query. */
+void mcor_points_load(__global const int4* node, int begin, int end, int fix_bits,
   mcor_points* points, mcor_query* query, int* bits)
 {
   fix n[3][MCOR_LANES];
   int low[3] = { INT_MAX, INT_MAX, INT_MAX }, high[3] = { INT_MIN, INT_MIN, INT_MIN };
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const int4 p = node[min(begin + lane, count - 1)];
+    const int4 p = node[min(begin + lane, end - 1)];
     const int c[3] = { p.x, p.y, p.z };
     for (int a = 0; a < 3; ++a)
     {
@@ -60,6 +104,25 @@ void mcor_points_extend(mcor_query* query, int axis, real low, real high, int fi
   query->high[axis] += (fix)ceil(ldexp(high, fix_bits)) + 1;
 }
 
+/* Loads the offsets of the same points, and extends the query by them and by `margin` more. */
+void mcor_points_load_offsets(__global const real4* offset, int begin, int end, real margin,
+  int fix_bits, mcor_points* points, mcor_query* query)
+{
+  real4 low = (real4)INFINITY, high = (real4)-INFINITY;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const real4 o = offset[min(begin + lane, end - 1)];
+    MCOR_SET(points->ox, lane) = o.x;
+    MCOR_SET(points->oy, lane) = o.y;
+    MCOR_SET(points->oz, lane) = o.z;
+    low = fmin(low, o);
+    high = fmax(high, o);
+  }
+  mcor_points_extend(query, 0, low.x - margin, high.x + margin, fix_bits);
+  mcor_points_extend(query, 1, low.y - margin, high.y + margin, fix_bits);
+  mcor_points_extend(query, 2, low.z - margin, high.z + margin, fix_bits);
+}
+
 /* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
 void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, real iso, mcor_field_at* at)
@@ -68,14 +131,18 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
 #if MCOR_SOLIDS
   realv t = 0, tx = 0, ty = 0, tz = 0;
 #endif
+  /* Relative to the query's box: exact in single precision while the support is below 16 cubes. */
+  const realv x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit + points->ox;
+  const realv y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit + points->oy;
+  const realv z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit + points->oz;
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     for (int i = 0; i < tile->count; ++i)
     {
       const int j = tile->list[i];
-      const realv dx = points->ox - MCOR_CONVERT_REALV(grid->px[j] - points->x) * grid->unit;
-      const realv dy = points->oy - MCOR_CONVERT_REALV(grid->py[j] - points->y) * grid->unit;
-      const realv dz = points->oz - MCOR_CONVERT_REALV(grid->pz[j] - points->z) * grid->unit;
+      const realv dx = x - (real)(grid->px[j] - query->low[0]) * grid->unit;
+      const realv dy = y - (real)(grid->py[j] - query->low[1]) * grid->unit;
+      const realv dz = z - (real)(grid->pz[j] - query->low[2]) * grid->unit;
       realv gx, gy, gz;
       const realv k = mcor_weight_gradient(dx, dy, dz, grid->inv_h[j], &gx, &gy, &gz);
       const real m = grid->weight[j];
@@ -158,32 +225,36 @@ realv mcor_correct_cubic(realv v0, realv v1, realv t, realv v, realv slope)
 /* A vertex keeps this distance from the ends of its edge, so that vertices of edges which meet in a
  * node at the iso value stay apart and no triangle loses its area. */
 #define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
+/* Where the gradient is small, a small residual alone may be far from the surface: along the edge, a
+ * vertex is also to come this close. */
+#define MCOR_EDGE_ERROR ((real)2e-5f)
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
-/* One work-item = MCOR_LANES vertices. Reads edges and end values (against iso). Writes position
+/* One work-item = one group of vertices. Reads edges and end values (against iso). Writes position
  * (node, offset), linear position, value, gradient and trimming weight, and how many evaluations
  * were made. limit 0: no correction (preview). */
-__kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int vertex_count,
-  __global const int4* vertex_edge, __global const real* vertex_ends, const real iso,
+__kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends, const real iso,
   const real tolerance, const int limit, __global real4* offset, __global real* linear,
   __global real* value, __global real4* gradient, __global real* weight,
   __global uchar* evaluations)
 {
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= vertex_count)
+  const int group = get_global_id(0);
+  if (group >= group_count)
   {
     return;
   }
+  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   int axis_of[MCOR_LANES];
-  mcor_points_load(vertex_edge, begin, vertex_count, fix_bits, &points, &query, axis_of);
+  mcor_points_load(vertex_edge, begin, end, fix_bits, &points, &query, axis_of);
   realv v0, v1, ax = 0, ay = 0, az = 0;
   int axes = 0;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const int v = min(begin + lane, vertex_count - 1), axis = axis_of[lane] & 3;
+    const int v = min(begin + lane, end - 1), axis = axis_of[lane] & 3;
     MCOR_SET(v0, lane) = vertex_ends[2 * v];
     MCOR_SET(v1, lane) = vertex_ends[2 * v + 1];
     MCOR_SET(ax, lane) = axis == 0;
@@ -210,7 +281,10 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int vertex_count,
     points.oz = t * az;
     mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
     count += active ? (fixv)1 : (fixv)0;
-    active = active && fabs(at.value) > tolerance && high - low > MCOR_EDGE_RESOLUTION;
+    const realv slope = at.gx * ax + at.gy * ay + at.gz * az;
+    const realv error = fabs(at.value);
+    active = active && (error > (real)0.5 * tolerance || error > MCOR_EDGE_ERROR * fabs(slope)) &&
+      high - low > MCOR_EDGE_RESOLUTION;
     if (i >= limit || !MCOR_ANY(active))
     {
       break;
@@ -218,7 +292,6 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int vertex_count,
     const fixv before = rising ? at.value < 0 : at.value >= 0;
     low = before ? t : low;
     high = before ? high : t;
-    const realv slope = at.gx * ax + at.gy * ay + at.gz * az;
     realv next = i == 0 ? mcor_correct_cubic(v0, v1, t, at.value, slope) : t - mcor_correct_ratio(at.value, slope);
     /* Newton may creep where the field has a kink or no slope: from the 6th step on every other
      * step halves the bracket. */
@@ -227,7 +300,7 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int vertex_count,
     active = active && next != t;
     t = active ? next : t;
   }
-  for (int lane = 0; lane < MCOR_LANES && begin + lane < vertex_count; ++lane)
+  for (int lane = 0; begin + lane < end; ++lane)
   {
     const int v = begin + lane;
     offset[v] = (real4)(MCOR_GET(points.ox, lane), MCOR_GET(points.oy, lane), MCOR_GET(points.oz, lane), 0);

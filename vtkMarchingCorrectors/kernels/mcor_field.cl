@@ -81,6 +81,7 @@ typedef struct
   fix low[3], high[3];
   real center[3], half_size[3]; /* cubes, relative to low */
   float radius;                 /* cubes; >= 0: instead of the particles' own support */
+  float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
   int level, first[3], last[3], y, z;
   int begin, end; /* particles left of the current row */
 } mcor_query;
@@ -89,8 +90,11 @@ typedef struct
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   const mcor_level level = grid->levels[query->level];
-  const float radius = query->radius >= 0 ? query->radius : level.support;
-  const fix reach = (fix)ceil(ldexp(radius, grid->fix_bits)) + 1;
+  const float support = query->radius >= 0 ? query->radius : level.support;
+  const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
+  const fix reach = (fix)far;
+  query->cell_size = 1 / level.inv_cell;
+  query->reach2 = far * far;
   bool some = true;
   for (int a = 0; a < 3; ++a)
   {
@@ -98,8 +102,8 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
     query->last[a] = min(mcor_cell_of(query->high[a] + reach, level.inv_cell), level.cells[a] - 1);
     some = some && query->first[a] <= query->last[a];
   }
-  query->y = query->first[1] - 1;
-  query->z = query->first[2];
+  query->y = query->last[1]; /* as if the row before the first one had just ended */
+  query->z = query->first[2] - 1;
   return some;
 }
 
@@ -120,7 +124,35 @@ void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
   }
 }
 
-/* Moves to the next row with particles, [begin, end); false at the end. */
+/* Square of the distance between the box and a cell along an axis, less what rounding may have moved
+ * a particle across the cell's face. */
+float mcor_query_distance2(const mcor_query* query, int axis, int cell)
+{
+  const float low = (float)query->low[axis], high = (float)query->high[axis];
+  const float begin = (float)cell * query->cell_size, end = begin + query->cell_size;
+  const float d = fmax(low - end, begin - high) - 1e-6f * (fabs(low) + fabs(high)) - 1;
+  return d > 0 ? d * d : 0;
+}
+
+/* Particles [begin, end) of the current row that may be in reach. */
+void mcor_query_row(const mcor_grid* grid, mcor_query* query)
+{
+  __global const mcor_level* level = grid->levels + query->level;
+  const ulong row = level->base + ((ulong)query->z * level->cells[1] + query->y) * level->cells[0];
+  int first = query->first[0], last = query->last[0];
+#if !MCOR_TENSOR
+  const float rest = query->reach2 - query->z2 - mcor_query_distance2(query, 1, query->y);
+  if (rest < 0)
+  {
+    query->begin = query->end = 0;
+    return;
+  }
+#endif
+  query->begin = mcor_first_particle(grid, row + first);
+  query->end = mcor_first_particle(grid, row + last + 1);
+}
+
+/* Moves to the next row with particles; false at the end. */
 bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
 {
   while (query->level < grid->level_count)
@@ -139,12 +171,9 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
         }
         continue;
       }
+      query->z2 = MCOR_TENSOR ? 0 : mcor_query_distance2(query, 2, query->z);
     }
-    __global const mcor_level* level = grid->levels + query->level;
-    const ulong row =
-      level->base + ((ulong)query->z * level->cells[1] + query->y) * level->cells[0];
-    query->begin = mcor_first_particle(grid, row + query->first[0]);
-    query->end = mcor_first_particle(grid, row + query->last[0] + 1);
+    mcor_query_row(grid, query);
     if (query->begin < query->end)
     {
       return true;

@@ -21,10 +21,10 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   keys[i] = level.base + (cell[2] * level.cells[1] + cell[1]) * level.cells[0] + cell[0];
 }
 
-/* Order of two particles of one search cell: by position, then by size. Particles equal in all of
- * this are interchangeable but for their scalar, see mcor_grid_order_value. */
+/* Order of two particles of one search cell: by position, then by size and kind. Particles equal in
+ * all of this are interchangeable but for their scalar, see mcor_grid_order_value. */
 bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
-  __global const real* volume, int i, int j)
+  __global const real* volume, __global const uchar* solid, int i, int j)
 {
   for (int a = 2; a >= 0; --a)
   {
@@ -33,22 +33,27 @@ bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
       return xyz[3 * i + a] < xyz[3 * j + a];
     }
   }
-  return inv_h[i] != inv_h[j] ? inv_h[i] < inv_h[j] : volume[i] < volume[j];
+  if (inv_h[i] != inv_h[j])
+  {
+    return inv_h[i] < inv_h[j];
+  }
+  return volume[i] != volume[j] ? volume[i] < volume[j] : solid[i] < solid[j];
 }
 
 /* Heap sort's sift: the child `root` sinks in order[0..count). */
 void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
-  __global const real* volume, __global int* order, int root, int count)
+  __global const real* volume, __global const uchar* solid, __global int* order, int root,
+  int count)
 {
   const int item = order[root];
   for (int child = 2 * root + 1; child < count; child = 2 * root + 1)
   {
     if (child + 1 < count &&
-      mcor_grid_before(xyz, inv_h, volume, order[child], order[child + 1]))
+      mcor_grid_before(xyz, inv_h, volume, solid, order[child], order[child + 1]))
     {
       ++child;
     }
-    if (!mcor_grid_before(xyz, inv_h, volume, item, order[child]))
+    if (!mcor_grid_before(xyz, inv_h, volume, solid, item, order[child]))
     {
       break;
     }
@@ -62,7 +67,7 @@ void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
  * the cell, which then no longer depends on the order of the input. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   __global const fix* xyz, __global const real* inv_h, __global const real* volume,
-  __global int* order)
+  __global const uchar* solid, __global int* order)
 {
   const int begin = get_global_id(0);
   if (begin >= count || (begin > 0 && keys[begin] == keys[begin - 1]))
@@ -82,7 +87,7 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
     {
       const int item = cell[i];
       int to = i;
-      for (; to > 0 && mcor_grid_before(xyz, inv_h, volume, item, cell[to - 1]); --to)
+      for (; to > 0 && mcor_grid_before(xyz, inv_h, volume, solid, item, cell[to - 1]); --to)
       {
         cell[to] = cell[to - 1];
       }
@@ -92,14 +97,14 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   }
   for (int i = size / 2 - 1; i >= 0; --i)
   {
-    mcor_grid_sift(xyz, inv_h, volume, cell, i, size);
+    mcor_grid_sift(xyz, inv_h, volume, solid, cell, i, size);
   }
   for (int last = size - 1; last > 0; --last)
   {
     const int item = cell[last];
     cell[last] = cell[0];
     cell[0] = item;
-    mcor_grid_sift(xyz, inv_h, volume, cell, 0, last);
+    mcor_grid_sift(xyz, inv_h, volume, solid, cell, 0, last);
   }
 }
 
@@ -143,12 +148,13 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
  * the run by scalar, so that not even coincident particles make a result depend on input order. */
 __kernel void mcor_grid_order_value(const int count, __global const fix* px,
   __global const fix* py, __global const fix* pz, __global const real* inv_h,
-  __global const real* weight, __global real* value)
+  __global const real* weight, __global const real* trim_weight, __global real* value,
+  __global int* order)
 {
   const int begin = get_global_id(0);
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] &&                   \
-    weight[i] == weight[j])
+    weight[i] == weight[j] && trim_weight[i] == trim_weight[j])
   if (begin + 1 >= count || !MCOR_SAME(begin, begin + 1) ||
     (begin > 0 && MCOR_SAME(begin, begin - 1)))
   {
@@ -157,12 +163,15 @@ __kernel void mcor_grid_order_value(const int count, __global const fix* px,
   for (int i = begin + 1; i < count && MCOR_SAME(begin, i); ++i)
   {
     const real item = value[i];
+    const int source = order[i];
     int to = i;
     for (; to > begin && item < value[to - 1]; --to)
     {
       value[to] = value[to - 1];
+      order[to] = order[to - 1];
     }
     value[to] = item;
+    order[to] = source;
   }
 #undef MCOR_SAME
 }

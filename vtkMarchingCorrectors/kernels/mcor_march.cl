@@ -241,23 +241,32 @@ int mcor_march_case(const ulong* m, int cell)
   return result;
 }
 
-/* Per edge along x, y, z of a brick: whether one of the 4 cells around it is set. m: masks of a
- * brick and its lower neighbours. */
-void mcor_march_around(const ulong* m, ulong* around)
+/* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below in
+ * the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
+ * neighbours. */
+void mcor_march_around(const ulong* m, int axis, ulong* q)
 {
-  const ulong yz = m[0] | mcor_from_last_y(m[0], m[2]);
-  const ulong yz_low = m[4] | mcor_from_last_y(m[4], m[6]);
-  const ulong xz = m[0] | mcor_from_last_x(m[0], m[1]);
-  const ulong xz_low = m[4] | mcor_from_last_x(m[4], m[5]);
-  const ulong xy_low = m[2] | mcor_from_last_x(m[2], m[3]);
-  around[0] = yz | mcor_from_last_z(yz, yz_low);
-  around[1] = xz | mcor_from_last_z(xz, xz_low);
-  around[2] = xz | mcor_from_last_y(xz, xy_low);
+  q[0] = m[0];
+  if (axis == 0)
+  {
+    q[1] = mcor_from_last_y(m[0], m[2]);
+    q[2] = mcor_from_last_z(m[0], m[4]);
+    q[3] = mcor_from_last_z(q[1], mcor_from_last_y(m[4], m[6]));
+    return;
+  }
+  q[1] = mcor_from_last_x(m[0], m[1]);
+  q[2] = axis == 1 ? mcor_from_last_z(m[0], m[4]) : mcor_from_last_y(m[0], m[2]);
+  q[3] = axis == 1 ? mcor_from_last_z(q[1], mcor_from_last_x(m[4], m[5]))
+                   : mcor_from_last_y(q[1], mcor_from_last_x(m[2], m[3]));
 }
 
-/* One work-item = one brick. Reads used cells and node masks. Writes the crossed edges along x, y
- * and z whose lower node is in the brick and that a used cell has (0..2), and which of them have a
- * cell around them that is not used (3..5); counts vertices and triangles. */
+/* Masks per brick and axis: crossed edges; of these, those next to a cell that is not used; of these,
+ * pinched ones: only two cells are used, opposite to each other. Their triangles form two fans, so
+ * that such an edge has two vertices, the second one for the cell below in the first other axis. */
+#define MCOR_EDGE_MASKS 9
+
+/* One work-item = one brick. Reads used cells and node masks. Writes the edge masks for edges that
+ * have their lower node in the brick and a used cell around them; counts vertices and triangles. */
 __kernel void mcor_march_count(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const uchar* case_table,
   __global ulong* edges, __global int* vertex_count, __global int* triangle_count)
@@ -267,24 +276,24 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
   {
     return;
   }
-  ulong m[8], around[3], unused_around[3];
-  mcor_brick_masks(used, neighbours, slot, 7, m);
-  mcor_march_around(m, around);
-  for (int i = 0; i < 8; ++i)
-  {
-    m[i] = ~m[i];
-  }
-  mcor_march_around(m, unused_around);
+  ulong m[8], lower[8];
+  mcor_brick_masks(used, neighbours, slot, 7, lower);
   mcor_brick_masks(above, neighbours, slot, 0, m);
   const ulong changes[3] = { m[0] ^ mcor_from_next_x(m[0], m[1]),
     m[0] ^ mcor_from_next_y(m[0], m[2]), m[0] ^ mcor_from_next_z(m[0], m[4]) };
+  __global ulong* to = edges + (long)slot * MCOR_EDGE_MASKS;
   int vertices = 0;
   for (int a = 0; a < 3; ++a)
   {
-    const ulong crossed = around[a] & changes[a];
-    edges[slot * 6 + a] = crossed;
-    edges[slot * 6 + 3 + a] = crossed & unused_around[a];
-    vertices += (int)popcount(crossed);
+    ulong q[4];
+    mcor_march_around(lower, a, q);
+    const ulong crossed = changes[a] & (q[0] | q[1] | q[2] | q[3]);
+    const ulong pinched =
+      crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
+    to[a] = crossed;
+    to[3 + a] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
+    to[6 + a] = pinched;
+    vertices += (int)(popcount(crossed) + popcount(pinched));
   }
   vertex_count[slot] = vertices;
   int triangles = 0;
@@ -296,12 +305,16 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
 }
 
 /* Rank of edge (node n, axis) among the vertices of its brick: by node, then axis. */
-int mcor_march_rank(__global const ulong* edges, int slot, int n, int axis)
+int mcor_march_rank(__global const ulong* e, int n, int axis)
 {
   const ulong below = (1UL << n) - 1;
-  const ulong x = edges[slot * 6], y = edges[slot * 6 + 1], z = edges[slot * 6 + 2];
-  return (int)(popcount(x & below) + popcount(y & below) + popcount(z & below)) +
-    (axis > 0 ? (int)(x >> n & 1) : 0) + (axis > 1 ? (int)(y >> n & 1) : 0);
+  int rank = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const ulong counted = a < axis ? below | 1UL << n : below;
+    rank += (int)(popcount(e[a] & counted) + popcount(e[6 + a] & counted));
+  }
+  return rank;
 }
 
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
@@ -316,7 +329,7 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
   {
     return;
   }
-  __global const ulong* e = edges + slot * 6;
+  __global const ulong* e = edges + (long)slot * MCOR_EDGE_MASKS;
   int to = vertex_base[slot];
   for (ulong rest = e[0] | e[1] | e[2]; rest; rest &= rest - 1)
   {
@@ -329,12 +342,16 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
         const bool outside = (n >> (2 * axis) & 3) == 3;
         const int other = outside ? neighbours[slot * 14 + (1 << axis) - 1] : slot;
         const int m = outside ? n - 3 * step : n + step;
-        vertex_edge[to] = (int4)(bricks[slot].x * MCOR_BRICK + (n & 3),
+        const int copies = 1 + (int)(e[6 + axis] >> n & 1);
+        const int4 edge = (int4)(bricks[slot].x * MCOR_BRICK + (n & 3),
           bricks[slot].y * MCOR_BRICK + (n >> 2 & 3), bricks[slot].z * MCOR_BRICK + (n >> 4),
           axis | (int)(e[3 + axis] >> n & 1) << 2);
-        vertex_ends[2 * to] = node_value[slot * 64L + n] - iso;
-        vertex_ends[2 * to + 1] = node_value[other * 64L + m] - iso;
-        ++to;
+        for (int copy = 0; copy < copies; ++copy, ++to)
+        {
+          vertex_edge[to] = edge;
+          vertex_ends[2 * to] = node_value[slot * 64L + n] - iso;
+          vertex_ends[2 * to + 1] = node_value[other * 64L + m] - iso;
+        }
       }
     }
   }
@@ -367,7 +384,10 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
       const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
       const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
       const int n = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
-      triangles[to++] = vertex_base[owner] + mcor_march_rank(edges, owner, n, axis);
+      __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
+      const int first_other = axis == 0 ? 1 : 0;
+      const int second_fan = (int)(e[6 + axis] >> n & 1) & (corner >> first_other & 1);
+      triangles[to++] = vertex_base[owner] + mcor_march_rank(e, n, axis) + second_fan;
     }
   }
 }

@@ -34,41 +34,25 @@ __kernel void mcor_output_vertices(const int vertex_count, const int march_count
 
 #define MCOR_ATTRIBUTE_LIMIT 8
 
-/* One work-item = MCOR_LANES points. Reads `attribute_count` sorted arrays, one after the other.
+/* One work-item = one group of points. Reads `attribute_count` sorted arrays, one after the other.
  * Writes their Shepard means (at most 8) and, if asked for, the nearest fluid particle. */
-__kernel void mcor_output_attributes(MCOR_GRID_PARAMS, const int point_count,
-  __global const int4* node, __global const real4* offset, const int attribute_count,
+__kernel void mcor_output_attributes(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, __global const real4* offset, const int attribute_count,
   const int stride, __global const real* attributes, __global real* out, const int want_nearest,
   __global const int* order, __global int* nearest)
 {
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= point_count)
+  const int group = get_global_id(0);
+  if (group >= group_count)
   {
     return;
   }
+  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   int unused[MCOR_LANES];
-  mcor_points_load(node, begin, point_count, fix_bits, &points, &query, unused);
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const real4 o = offset[min(begin + lane, point_count - 1)];
-    MCOR_SET(points.ox, lane) = o.x;
-    MCOR_SET(points.oy, lane) = o.y;
-    MCOR_SET(points.oz, lane) = o.z;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    const realv o = a == 0 ? points.ox : a == 1 ? points.oy : points.oz;
-    real low = MCOR_GET(o, 0), high = low;
-    for (int lane = 1; lane < MCOR_LANES; ++lane)
-    {
-      low = fmin(low, MCOR_GET(o, lane));
-      high = fmax(high, MCOR_GET(o, lane));
-    }
-    mcor_points_extend(&query, a, low, high, fix_bits);
-  }
+  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
+  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
   realv sums[MCOR_ATTRIBUTE_LIMIT], w = 0, least = MAXFLOAT;
   fixv index = -1;
   for (int c = 0; c < attribute_count; ++c)
@@ -100,7 +84,7 @@ __kernel void mcor_output_attributes(MCOR_GRID_PARAMS, const int point_count,
       least = fmin(least, r2);
     }
   }
-  for (int lane = 0; lane < MCOR_LANES && begin + lane < point_count; ++lane)
+  for (int lane = 0; begin + lane < end; ++lane)
   {
     const int v = begin + lane, j = (int)MCOR_GET_FIX(index, lane);
     for (int c = 0; c < attribute_count; ++c)

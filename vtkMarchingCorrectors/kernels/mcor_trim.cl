@@ -126,50 +126,30 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 #define MCOR_TRIM_REACH ((real)0.5)
 #define MCOR_TRIM_STEPS 12
 
-/* One work-item = MCOR_LANES cut vertices. Moves them to where both field = iso and weight =
+/* One work-item = one group of cut vertices. Moves them to where both field = iso and weight =
  * threshold, by the shortest (least-norm) Newton steps; where that does not converge nearby, the two
  * surfaces being tangent, the linear cut stays and flag becomes 2 instead of 1. */
-__kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int vertex_count, const int cut_count,
-  __global const int4* node, const real iso, const real tolerance, const real threshold,
+__kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, const real iso, const real tolerance, const real threshold,
   const int limit, __global real4* offset, __global real* value, __global real4* gradient,
   __global real* weight, __global uchar* flag)
 {
-  const int begin = vertex_count + get_global_id(0) * MCOR_LANES;
-  const int end = vertex_count + cut_count;
-  if (begin >= end)
+  const int group = get_global_id(0);
+  if (group >= group_count)
   {
     return;
   }
+  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   int unused[MCOR_LANES];
   mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
-  realv x0, y0, z0;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const real4 o = offset[min(begin + lane, end - 1)];
-    MCOR_SET(x0, lane) = o.x;
-    MCOR_SET(y0, lane) = o.y;
-    MCOR_SET(z0, lane) = o.z;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    const realv o = a == 0 ? x0 : a == 1 ? y0 : z0;
-    real low = MCOR_GET(o, 0), high = low;
-    for (int lane = 1; lane < MCOR_LANES; ++lane)
-    {
-      low = fmin(low, MCOR_GET(o, lane));
-      high = fmax(high, MCOR_GET(o, lane));
-    }
-    mcor_points_extend(&query, a, low - MCOR_TRIM_REACH, high + MCOR_TRIM_REACH, fix_bits);
-  }
+  mcor_points_load_offsets(offset, begin, end, MCOR_TRIM_REACH, fix_bits, &points, &query);
+  const realv x0 = points.ox, y0 = points.oy, z0 = points.oz;
   mcor_tile tile;
   mcor_tile_init(&tile);
   mcor_field_at at;
-  points.ox = x0;
-  points.oy = y0;
-  points.oz = z0;
   fixv done = 0, failed = 0;
   for (int i = 0; i <= limit; ++i)
   {
@@ -207,7 +187,7 @@ __kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int vertex_count, const in
     points.oz = back ? z0 : points.oz;
     mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
   }
-  for (int lane = 0; lane < MCOR_LANES && begin + lane < end; ++lane)
+  for (int lane = 0; begin + lane < end; ++lane)
   {
     const int v = begin + lane;
     offset[v] = (real4)(MCOR_GET(points.ox, lane), MCOR_GET(points.oy, lane), MCOR_GET(points.oz, lane), 0);

@@ -28,31 +28,53 @@
 namespace
 {
 
-/// False only where it is certain that an X server is needed and cannot be reached. X is asked for
-/// in the running program, since only VTK's rendering library knows whether it is linked to it.
-bool HasDisplay(vtkRenderWindow* window)
+/// A connection to the X server, where this VTK renders through one. X is asked for in the running
+/// program, since only VTK's rendering library knows whether it is linked to it. The connection is
+/// held until the picture is drawn: a server that loses its last client starts anew (Xvfb does),
+/// and does not answer meanwhile.
+class DisplayConnection
 {
-#if defined(__unix__)
-  if (window->IsA("vtkXOpenGLRenderWindow"))
+public:
+  explicit DisplayConnection(vtkRenderWindow* window)
   {
-    using OpenType = void* (*)(const char*);
-    using CloseType = int (*)(void*);
-    const auto open = reinterpret_cast<OpenType>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
-    const auto close = reinterpret_cast<CloseType>(dlsym(RTLD_DEFAULT, "XCloseDisplay"));
-    if (open && close)
+#if defined(__unix__)
+    if (window->IsA("vtkXOpenGLRenderWindow"))
     {
-      void* display = open(nullptr);
-      if (display)
-      {
-        close(display);
-      }
-      return display != nullptr;
+      const auto open = reinterpret_cast<OpenType>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
+      this->Close = reinterpret_cast<CloseType>(dlsym(RTLD_DEFAULT, "XCloseDisplay"));
+      this->Needed = open && this->Close;
+      this->Display = this->Needed ? open(nullptr) : nullptr;
+    }
+#else
+    (void)window;
+#endif
+  }
+
+  ~DisplayConnection()
+  {
+    if (this->Display)
+    {
+      this->Close(this->Display);
     }
   }
-#endif
-  (void)window;
-  return true;
-}
+
+  DisplayConnection(const DisplayConnection&) = delete;
+  void operator=(const DisplayConnection&) = delete;
+
+  /// True only where it is certain that an X server is needed and cannot be reached.
+  bool IsMissing() const
+  {
+    return this->Needed && !this->Display;
+  }
+
+private:
+  using OpenType = void* (*)(const char*);
+  using CloseType = int (*)(void*);
+
+  bool Needed = false;
+  void* Display = nullptr;
+  CloseType Close = nullptr;
+};
 
 void AddSurface(vtkRenderer* renderer, vtkPolyData* surface)
 {
@@ -96,7 +118,8 @@ void WritePicture(
 {
   messages->Clear();
   vtkNew<vtkRenderWindow> window;
-  if (!HasDisplay(window))
+  const DisplayConnection display(window);
+  if (display.IsMissing())
   {
     throw std::runtime_error(
       file + " could not be written: rendering needs a display; try xvfb-run -a");

@@ -25,7 +25,8 @@ public:
   ~vtkInternals() { mcor_free_context(this->Context); }
 
   mcor_context* Context = nullptr;
-  std::string Device; // what the context was created for
+  std::string Device;          // what the context was created for
+  double DefaultIsoValue = 0.0; // of the last run that was given none
 
   std::vector<std::uint64_t> Particles, Scalar;
   std::uint64_t ParticlesVersion = 0, ScalarVersion = 0;
@@ -202,7 +203,8 @@ bool vtkMarchingCorrectors::PrepareDevice()
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::FillOptions(mcor_options& options, bool nearestParticle)
+void vtkMarchingCorrectors::FillOptions(
+  mcor_options& options, const vtkMarchingCorrectorsInput& input)
 {
   vtkContourValues* values = this->FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
   mcor_set_default_options(&options);
@@ -216,6 +218,12 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options, bool nearestParti
   options.cube_size = this->CubeSize;
   options.iso_values = values->GetValues();
   options.iso_count = static_cast<int>(values->GetNumberOfContours());
+  if (options.iso_count == 0)
+  {
+    this->Internals->DefaultIsoValue = this->FreeSurface ? 0.5 : input.MiddleOfScalarRange();
+    options.iso_values = &this->Internals->DefaultIsoValue;
+    options.iso_count = 1;
+  }
   options.node_threshold = this->NodeThreshold;
   options.vertex_threshold = this->VertexThreshold;
   options.preview = IsOn(this->Preview);
@@ -229,7 +237,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options, bool nearestParti
   options.residual = IsOn(this->ComputeResidual);
   options.boundary_flag = IsOn(this->ComputeBoundaryFlag);
   options.iso_value = IsOn(this->ComputeScalars);
-  options.nearest_particle = nearestParticle ? 1 : 0;
+  options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
   options.progress = ReportProgress;
   options.progress_user = this;
 }
@@ -246,10 +254,6 @@ int vtkMarchingCorrectors::RequestData(
     return 1;
   }
   vtkMarchingCorrectorsInput input(this, particles);
-  if (!this->FreeSurface && this->GetNumberOfContours() == 0)
-  {
-    return this->Fail("No iso value was set: set at least one, or turn the free surface on.");
-  }
   if (!input.Collect(this->FindRequest(0, inputVector), this->FindRequest(1, inputVector)))
   {
     return this->Fail(input.Error);
@@ -273,7 +277,7 @@ int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyDat
 {
   mcor_options options;
   mcor_surface surface = {};
-  this->FillOptions(options, !input.FromNearest.empty());
+  this->FillOptions(options, input);
   this->Internals->SetVersions(input);
   const mcor_status status =
     mcor_extract(this->Internals->Context, &input.Core, &options, &surface);

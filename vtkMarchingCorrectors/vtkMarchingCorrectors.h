@@ -148,8 +148,10 @@ public:
 
   ///@{
   /**
-   * Methods to set/get contour values, in the unit of the scalar. There is none by default: set at
-   * least one unless FreeSurface is on. Several values give several surfaces in one output.
+   * Methods to set/get contour values, in the unit of the scalar. Several values give several
+   * surfaces in one output. By default there is none, and one surface is drawn in the middle of the
+   * fluid's scalar range, the 2 % lowest and highest values left out; where that was is told by
+   * "IsoValues" in the output field data.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
   double GetValue(int i) { return this->ContourValues->GetValue(i); }
@@ -611,7 +613,7 @@ private:
 
   vtkMarchingCorrectorsRequest FindRequest(int index, vtkInformationVector** inputVector);
   bool PrepareDevice();
-  void FillOptions(mcor_options& options, bool nearestParticle);
+  void FillOptions(mcor_options& options, const vtkMarchingCorrectorsInput& input);
   int Extract(vtkMarchingCorrectorsInput& input, vtkPolyData* output);
   void SetUsedNames(const vtkMarchingCorrectorsInput& input);
   int Fail(const std::string& message);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 
 namespace
@@ -438,4 +439,44 @@ std::string vtkMarchingCorrectorsInput::ListPointArrays() const
     list += (i ? ", " : "") + NameOf(pointData->GetAbstractArray(i));
   }
   return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsInput::ScalarOf(vtkIdType particle) const
+{
+  if (this->Core.scalar_component >= 0 && !this->ScalarDot)
+  {
+    return this->Scalar->GetComponent(particle, this->Core.scalar_component);
+  }
+  double sum = 0.0;
+  for (int c = 0; c < this->Scalar->GetNumberOfComponents(); ++c)
+  {
+    const double value = this->Scalar->GetComponent(particle, c);
+    sum += value * (this->ScalarDot ? this->ScalarDot->GetComponent(particle, c) : value);
+  }
+  return this->ScalarDot ? sum : std::sqrt(sum);
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsInput::MiddleOfScalarRange() const
+{
+  std::vector<double> values;
+  values.reserve(static_cast<size_t>(this->FluidCount));
+  for (vtkIdType i = 0; i < this->Core.count; ++i)
+  {
+    const double value = this->ScalarOf(i);
+    if (std::isfinite(value) && (this->Solid.empty() || !this->Solid[static_cast<size_t>(i)]))
+    {
+      values.push_back(value);
+    }
+  }
+  if (values.empty())
+  {
+    return 0.0;
+  }
+  const auto margin = static_cast<std::ptrdiff_t>(values.size() / 50);
+  std::nth_element(values.begin(), values.begin() + margin, values.end());
+  const double low = values[static_cast<size_t>(margin)];
+  std::nth_element(values.begin(), values.end() - 1 - margin, values.end());
+  return 0.5 * (low + *(values.end() - 1 - margin));
 }

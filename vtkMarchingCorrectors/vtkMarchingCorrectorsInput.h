@@ -40,6 +40,12 @@ public:
   bool Collect(
     const vtkMarchingCorrectorsRequest& scalar, const vtkMarchingCorrectorsRequest& dot);
 
+  /**
+   * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest and
+   * highest values are left out, because single particles of a spray have extreme ones.
+   */
+  double MiddleOfScalarRange() const;
+
   mcor_input Core = {};
   std::string Error;
 
@@ -65,6 +71,7 @@ private:
   bool CollectVolume();
   bool CollectSolids();
   void CollectAttributes();
+  double ScalarOf(vtkIdType particle) const;
   void NameScalar();
   void Sign();
 

@@ -191,6 +191,33 @@ void TestSeveralValues()
   }
 }
 
+// Without an iso value: the middle of the fluid's range, not moved by single extreme particles.
+void TestDefaultValue()
+{
+  auto cube = test::MakeCube();
+  vtkDataArray* radius = cube->GetPointData()->GetArray("Radius");
+  auto filter = test::MakeSphereFilter(cube);
+  const auto used = [&filter]() {
+    filter->Update();
+    CHECK(filter->GetOutput()->GetNumberOfCells() > 0);
+    vtkDataArray* values = filter->GetOutput()->GetFieldData()->GetArray("IsoValues");
+    CHECK(values && values->GetNumberOfTuples() == 1);
+    return values ? values->GetComponent(0, 0) : 0.0;
+  };
+  filter->SetNumberOfContours(0);
+  const double middle = used();
+  CHECK(middle > 0.7 && middle < 1.0);
+  for (vtkIdType i = 0; i < 10; ++i)
+  {
+    radius->SetComponent(i, 0, 1e6);
+  }
+  radius->Modified();
+  CHECK(std::fabs(used() - middle) < 0.02);
+  filter->FreeSurfaceOn();
+  filter->SetNumberOfFreeSurfaceValues(0);
+  CHECK(used() == 0.5);
+}
+
 // Preview puts vertices on the same edges, but not on the surface.
 void TestPreview()
 {
@@ -217,6 +244,7 @@ int TestAnalyticField(int, char*[])
   TestSphere(false);
   TestFreeSurface();
   TestSeveralValues();
+  TestDefaultValue();
   TestPreview();
   return failures;
 }

@@ -66,7 +66,6 @@ const double Infinity = std::numeric_limits<double>::infinity();
 std::vector<Case> MissingOrMistyped()
 {
   return {
-    { "no iso value", { "iso value" }, [](Filter* f) { f->SetNumberOfContours(0); }, Nothing },
     { "no scalar", { "scalar", "free surface", "Radius" },
       [](Filter* f) {
         f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");

@@ -22,20 +22,23 @@ sdk=$(mcor_choose_sdk "$sdk")
 # shellcheck disable=SC2046  # the functions print lists of words
 mcor_install $(mcor_common_packages) $(mcor_sdk_packages "$sdk")
 
+# A build tree that is there already keeps its generator.
+export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
 # Debian's VTK and ParaView belong to Debian's python3, whatever other python3 is on the PATH.
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=OFF \
+cmake -Wno-dev -S . -B build -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=OFF \
   -DMCOR_BUILD_EXAMPLES=ON -DPython3_EXECUTABLE=/usr/bin/python3 --log-level=WARNING
-cmake --build build
+echo "Building for ${sdk}"
+cmake --build build -- --quiet
 
 out=build/quickstart
 mkdir -p "$out"
 extract() { # NAME OPTIONS...
   local name=$1
   shift
-  echo
-  echo "== $name: marching-correctors Examples/Data/dam_break_45k.vtp $out/$name.vtp $*"
-  Testing/with-display.sh build/bin/marching-correctors Examples/Data/dam_break_45k.vtp "$out/$name.vtp" "$@" \
+  set -- build/bin/marching-correctors Examples/Data/dam_break_45k.vtp "$out/$name.vtp" "$@" \
     --fluid ParticleType=0 --screenshot "$out/$name.png" --stats "$out/$name.json"
+  printf '\n== %s\n' "$*"
+  Testing/with-display.sh "$@"
 }
 extract speed --scalar Velocity --component magnitude --iso 1.0
 extract free_surface --free-surface

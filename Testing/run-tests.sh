@@ -24,8 +24,10 @@ sdk=$(mcor_choose_sdk "$sdk")
 # shellcheck disable=SC2046  # the functions print lists of words
 mcor_install $(mcor_common_packages) $(mcor_test_packages) $(mcor_sdk_packages "$sdk")
 
+# A build tree that is there already keeps its generator.
+export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
 # Debian's VTK and ParaView belong to Debian's python3, whatever other python3 is on the PATH.
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=ON \
+cmake -Wno-dev -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=ON \
   -DMCOR_BUILD_EXAMPLES=ON -DMCOR_WERROR=ON -DPython3_EXECUTABLE=/usr/bin/python3 --log-level=WARNING
 cmake --build "$build"
 # A virtual display even where there is a real one: pictures then do not depend on its driver.

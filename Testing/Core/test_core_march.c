@@ -1,0 +1,246 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Extraction: bit masks of bricks against naive twins, closed surfaces of known topology. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Masks of a brick and its 7 neighbours -> shifted masks, cells with some / all nodes. */
+static const char source[] =
+  "__kernel void test_masks(const int count, __global const ulong* in, __global ulong* out)\n"
+  "{\n"
+  "  const int i = get_global_id(0);\n"
+  "  if (i >= count)\n"
+  "    return;\n"
+  "  ulong m[8];\n"
+  "  for (int d = 0; d < 8; ++d)\n"
+  "    m[d] = in[8 * i + d];\n"
+  "  __global ulong* o = out + 9 * i;\n"
+  "  o[0] = mcor_from_next_x(m[0], m[1]);\n"
+  "  o[1] = mcor_from_next_y(m[0], m[2]);\n"
+  "  o[2] = mcor_from_next_z(m[0], m[4]);\n"
+  "  o[3] = mcor_from_last_x(m[0], m[1]);\n"
+  "  o[4] = mcor_from_last_y(m[0], m[2]);\n"
+  "  o[5] = mcor_from_last_z(m[0], m[4]);\n"
+  "  o[6] = mcor_cell_some(m);\n"
+  "  for (int d = 0; d < 8; ++d)\n"
+  "    m[d] = in[8 * i + d];\n"
+  "  o[7] = mcor_cell_all(m);\n"
+  "  o[8] = m[0] ? mcor_ctz(in[8 * i] | 1UL << (i & 63)) : 0;\n"
+  "}\n";
+
+/* Node (x, y, z), 0 <= x < 8 and so on, of a brick and its upper neighbours. */
+static int node_at(const uint64_t* m, int x, int y, int z)
+{
+  const int d = x / 4 + y / 4 * 2 + z / 4 * 4;
+  return (int)(m[d] >> (x % 4 + y % 4 * 4 + z % 4 * 16) & 1);
+}
+
+static void check_masks(const uint64_t* m, const uint64_t* out)
+{
+  for (int n = 0; n < 64; ++n)
+  {
+    const int at[3] = { n % 4, n / 4 % 4, n / 16 };
+    for (int a = 0; a < 3; ++a)
+    {
+      int up[3] = { at[0], at[1], at[2] };
+      ++up[a];
+      CORE_CHECK(
+        (int)(out[a] >> n & 1) == node_at(m, up[0], up[1], up[2]), "from_next %d, node %d", a, n);
+      int down[3] = { at[0], at[1], at[2] };
+      down[a] = (at[a] + 3) % 4;
+      const uint64_t from = at[a] == 0 ? m[1 << a] : m[0];
+      CORE_CHECK((out[3 + a] >> n & 1) == (from >> (down[0] + 4 * down[1] + 16 * down[2]) & 1),
+        "from_last %d, node %d", a, n);
+    }
+    int set = 0;
+    for (int c = 0; c < 8; ++c)
+    {
+      set += node_at(m, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2));
+    }
+    CORE_CHECK((out[6] >> n & 1) == (set > 0), "some, cell %d", n);
+    CORE_CHECK((out[7] >> n & 1) == (set == 8), "all, cell %d", n);
+  }
+}
+
+static void test_masks(void** state)
+{
+  enum
+  {
+    N = 256
+  };
+  mcor_context* context = *state;
+  static uint64_t in[N][8], out[N][9];
+  uint64_t seed = 3;
+  for (int i = 0; i < N; ++i)
+  {
+    for (int d = 0; d < 8; ++d)
+    {
+      const uint64_t a = random_bits(&seed), b = random_bits(&seed), c = random_bits(&seed);
+      in[i][d] = i == 0 ? 0 : i == 1 ? ~UINT64_C(0) : i % 3 ? a : i % 2 ? a & b & c : a | b | c;
+    }
+  }
+  mcor_buffer masks = { 0 }, results = { 0 };
+  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
+  core_extend_program(context, source);
+  CORE_OK(context, mcor_write(context, &masks, in, sizeof in));
+  CORE_OK(context, mcor_reserve(context, &results, sizeof out));
+  CORE_OK(context,
+    MCOR_LAUNCH(context, "test_masks", MCOR_LIGHT, N, MCOR_INT(N), MCOR_BUFFER(&masks),
+      MCOR_BUFFER(&results)));
+  CORE_OK(context, mcor_read(context, &results, 0, out, sizeof out));
+  for (int i = 0; i < N; ++i)
+  {
+    check_masks(in[i], out[i]);
+    if (~in[i][0] != 0)
+    {
+      const uint64_t mask = in[i][0] | UINT64_C(1) << (i & 63);
+      uint64_t lowest = 0;
+      while (!(mask >> lowest & 1))
+      {
+        ++lowest;
+      }
+      CORE_CHECK(out[i][8] == lowest, "lowest bit %d", (int)out[i][8]);
+    }
+  }
+  mcor_release(context, &masks);
+  mcor_release(context, &results);
+}
+
+/* Extracts a closed surface and compares its topology. Returns its volume. */
+static double check_closed(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, int64_t components, int64_t euler)
+{
+  mcor_surface surface = core_extract(context, input, options);
+  mesh_report report = core_check_mesh(&surface);
+  CORE_CHECK(report.boundary_edges == 0, "%lld boundary edges", (long long)report.boundary_edges);
+  CORE_CHECK(report.components == components, "%lld components", (long long)report.components);
+  CORE_CHECK(report.euler == euler, "Euler number %lld", (long long)report.euler);
+  const double volume = report.volume;
+  mesh_free_report(&report);
+  mcor_free_surface(&surface);
+  return volume;
+}
+
+/* A sphere, through few and through many bricks and blocks; the volume settles. */
+static void test_sphere(void** state)
+{
+  core_set set = core_make_block(11, 0.2, 2, core_ball);
+  const double iso = 0, factors[] = { 2, 1, 0.5, 0.13 };
+  double volume[4];
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  for (int i = 0; i < 4; ++i)
+  {
+    options.cube_size_factor = factors[i];
+    volume[i] = check_closed(*state, &input, &options, 1, 2);
+  }
+  CORE_CHECK(volume[3] > 70 && volume[3] < 130, "volume %g", volume[3]);
+  CORE_CHECK(
+    fabs(volume[2] - volume[3]) < 0.03 * volume[3], "volumes %g and %g", volume[2], volume[3]);
+  core_free_set(&set);
+}
+
+static double torus(const double x[3])
+{
+  const double r = sqrt(x[0] * x[0] + x[1] * x[1]) - 4;
+  return 4 - r * r - x[2] * x[2];
+}
+
+static double two_balls(const double x[3])
+{
+  const double at[3] = { fabs(x[0]) - 3.6, x[1], x[2] };
+  return core_ball(at) - 4;
+}
+
+static void test_torus_and_two_balls(void** state)
+{
+  const double iso = 0;
+  const mcor_options options = core_options(&iso);
+  core_set set = core_make_block(15, 0.1, 2, torus);
+  mcor_input input = core_input(&set);
+  check_closed(*state, &input, &options, 1, 0);
+  core_free_set(&set);
+  set = core_make_block(15, 0.1, 2, two_balls);
+  input = core_input(&set);
+  check_closed(*state, &input, &options, 2, 4);
+  core_free_set(&set);
+}
+
+/* The free surface of scattered particles is closed whatever its shape, with every kernel. */
+static void test_free_surface_is_closed(void** state)
+{
+  static const mcor_sph_kernel kernels[] = { MCOR_CUBIC_SPLINE, MCOR_M_PRIME_4 };
+  for (uint64_t seed = 1; seed <= 6; ++seed)
+  {
+    core_set set = core_make_random(80, 3, 0.2, seed % 2 ? 0.2 : 0.9, seed);
+    const double iso = 0.1 + 0.05 * (double)seed;
+    const mcor_input input = core_input(&set);
+    mcor_options options = core_options(&iso);
+    options.field = MCOR_WEIGHT_SUM;
+    options.sph_kernel = kernels[seed / 2 % 2];
+    mcor_surface surface = core_extract(*state, &input, &options);
+    mesh_report report = core_check_mesh(&surface);
+    CORE_CHECK(report.triangles > 100 && report.boundary_edges == 0, "seed %d: %lld boundary edges",
+      (int)seed, (long long)report.boundary_edges);
+    mesh_free_report(&report);
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
+}
+
+/* Values exactly at the iso value: they count as above, and nothing tears or degenerates. */
+static void test_nodes_at_iso(void** state)
+{
+  core_set set = core_make_block(9, 0, 1, core_ball);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = set.scalar[i] > 2 ? 1 : 0; /* constant on either side */
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    const double iso = i == 0 ? 1 : i == 1 ? 0.5 : 1e-3;
+    const mcor_input input = core_input(&set);
+    mcor_options options = core_options(&iso);
+    options.vertex_threshold = 0;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    mesh_report report = core_check_mesh(&surface);
+    CORE_CHECK(report.triangles >= 8 && report.boundary_edges == 0,
+      "iso %g: %lld triangles, %lld boundary edges", iso, (long long)report.triangles,
+      (long long)report.boundary_edges);
+    mesh_free_report(&report);
+    mcor_free_surface(&surface);
+  }
+  core_free_set(&set);
+}
+
+/* Triangles face lower values. */
+static void test_orientation(void** state)
+{
+  core_set set = core_make_block(11, 0.2, 2, core_ball);
+  const double iso = 0;
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  const double volume = check_closed(*state, &input, &options, 1, 2);
+  CORE_CHECK(volume > 0, "a ball of high values has volume %g", volume);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = -set.scalar[i];
+  }
+  const double inside_out = check_closed(*state, &input, &options, 1, 2);
+  CORE_CHECK(inside_out < 0, "a ball of low values has volume %g", inside_out);
+  CORE_CHECK(fabs(volume + inside_out) < 1e-4 * volume, "%g and %g", volume, inside_out);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks), cmocka_unit_test(test_sphere),
+    cmocka_unit_test(test_torus_and_two_balls), cmocka_unit_test(test_free_surface_is_closed),
+    cmocka_unit_test(test_nodes_at_iso), cmocka_unit_test(test_orientation) };
+  return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
+}

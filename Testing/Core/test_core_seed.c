@@ -1,0 +1,295 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Seeds: complete ones miss no cell, the digital line misses none between a pair. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Lattice edges that have a point. Where discarded cells leave two cells that touch in an edge
+ * only, the edge has two points, one behind the other. */
+static int64_t count_edges(const mcor_surface* surface)
+{
+  int64_t count = 0;
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    const double* x = surface->points + 3 * i;
+    count += i == 0 || memcmp(x, x - 3, 3 * sizeof *x) != 0;
+  }
+  return count;
+}
+
+/* All nodes, evaluated one by one in double precision: cells and edges of the whole surface. */
+static void check_complete(
+  mcor_context* context, const core_set* set, mcor_options* options, const char* name)
+{
+  const double iso = options->iso_values[0];
+  const mcor_input input = core_input(set);
+  options->precision = MCOR_FLOAT64; /* no node is close enough to the iso value to be excused */
+  options->node_threshold = 0.02;
+  options->vertex_threshold = 0;
+  mcor_surface surface = core_extract(context, &input, options);
+  const oracle_particles particles = core_oracle(set);
+  const oracle_limits limits = { .iso = iso, .node_threshold = 0.02 };
+  oracle_field field;
+  oracle_lattice lattice;
+  oracle_surface expected;
+  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)options->sph_kernel,
+    (oracle_kind)options->field, options->h_scale));
+  assert_true(oracle_create_lattice(&lattice, &field, surface.statistics.cube_size, 10000000));
+  oracle_classify(&lattice, field.kind, &limits);
+  assert_true(oracle_create_surface(&expected, &lattice));
+  CORE_CHECK(expected.cell_count > 10, "%s: a case with %lld cells says little", name,
+    (long long)expected.cell_count);
+  CORE_CHECK(surface.statistics.cells_used == expected.cell_count,
+    "%s, kernel %s, field %d: %lld cells used, %lld by brute force", name,
+    mcor_sph_kernel_name(options->sph_kernel), (int)options->field,
+    (long long)surface.statistics.cells_used, (long long)expected.cell_count);
+  /* M'4 may have weights below 0 between valid nodes; trimming then changes the count. */
+  CORE_CHECK(surface.statistics.trim_vertices > 0 || count_edges(&surface) == expected.edge_count,
+    "%s, kernel %s, field %d: %lld, not %lld edges", name,
+    mcor_sph_kernel_name(options->sph_kernel), (int)options->field,
+    (long long)count_edges(&surface), (long long)expected.edge_count);
+  oracle_free_surface(&expected);
+  oracle_free_lattice(&lattice);
+  oracle_free_field(&field);
+  mcor_free_surface(&surface);
+}
+
+static void test_complete(void** state)
+{
+  static const int fields[][2] = { { MCOR_SHEPARD, 5 }, { MCOR_SUM, 3 },
+    { MCOR_WEIGHT_SUM, 3 } }; /* field, how many kernels of the list */
+  static const mcor_sph_kernel kernels[] = { MCOR_CUBIC_SPLINE, MCOR_M_PRIME_4, MCOR_QUINTIC_SPLINE,
+    MCOR_QUADRATIC, MCOR_WENDLAND_C2 };
+  for (int f = 0; f < 3; ++f)
+  {
+    for (int k = 0; k < fields[f][1]; ++k)
+    {
+      for (uint64_t seed = 1; seed <= 4; ++seed)
+      {
+        core_set set = core_make_random(
+          seed == 4 ? 3 : 60, 4, seed == 3 ? 0.2 : 0.6, seed == 2 ? 0.6 : 1.2, seed);
+        const double iso = f == 2 ? 0.3 : seed == 4 ? 0.05 : 0.1;
+        set.scalar[0] = fabs(set.scalar[0]) + 0.3;
+        set.scalar[1] = -set.scalar[0];
+        mcor_options options = core_options(&iso);
+        options.field = (mcor_field)fields[f][0];
+        options.sph_kernel = kernels[k];
+        options.cube_size = seed == 3 ? 0.17 : 0.23;
+        options.h_scale = seed == 2 ? 0.9 : 1;
+        check_complete(*state, &set, &options, seed == 4 ? "three particles" : "random");
+        core_free_set(&set);
+      }
+    }
+  }
+}
+
+/* The cells marked by the last call with pairs, as one byte per cell of a box of the lattice. */
+typedef struct marked_cells
+{
+  int low[3], size[3];
+  uint8_t* cell;
+  int count;
+} marked_cells;
+
+static uint8_t* find_cell(const marked_cells* m, const int at[3])
+{
+  int64_t index = 0;
+  for (int a = 2; a >= 0; --a)
+  {
+    CORE_CHECK(
+      at[a] >= m->low[a] && at[a] < m->low[a] + m->size[a], "cell %d along axis %d", at[a], a);
+    index = index * m->size[a] + at[a] - m->low[a];
+  }
+  return m->cell + index;
+}
+
+static marked_cells read_cells(mcor_context* context)
+{
+  marked_cells m = { .count = 0 };
+  const int bricks = context->bricks.now.count;
+  cl_int* brick = calloc((size_t)bricks + 1, 4 * sizeof *brick);
+  uint64_t* cells = calloc((size_t)bricks + 1, sizeof *cells);
+  assert_true(brick && cells);
+  CORE_OK(context,
+    mcor_read(context, &context->bricks.now.bricks, 0, brick, (size_t)bricks * 4 * sizeof *brick));
+  CORE_OK(context,
+    mcor_read(context, &context->bricks.now.cells, 0, cells, (size_t)bricks * sizeof *cells));
+  size_t total = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    m.low[a] = (int)context->lattice.origin[a];
+    m.size[a] = 32 * context->lattice.blocks[a];
+    total *= (size_t)m.size[a];
+  }
+  m.cell = calloc(total, 1);
+  assert_non_null(m.cell);
+  for (int b = 0; b < bricks; ++b)
+  {
+    for (int c = 0; c < 64; ++c)
+    {
+      if (cells[b] >> c & 1)
+      {
+        const int at[3] = { m.low[0] + 4 * brick[4 * b] + c % 4,
+          m.low[1] + 4 * brick[4 * b + 1] + c / 4 % 4, m.low[2] + 4 * brick[4 * b + 2] + c / 16 };
+        *find_cell(&m, at) = 1;
+        ++m.count;
+      }
+    }
+  }
+  free(brick);
+  free(cells);
+  return m;
+}
+
+/* Walks a segment (in cubes) in small steps: every cell on it, to within rounding, must be marked;
+ * cells within rounding of it get the value 2. */
+static void check_line(marked_cells* m, const double p[3], const double q[3])
+{
+  enum
+  {
+    STEPS = 40000
+  };
+  for (int i = 0; i <= STEPS; ++i)
+  {
+    int at[3], others[3];
+    int inside = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double x = p[a] + (q[a] - p[a]) * i / STEPS;
+      at[a] = (int)floor(x);
+      const double f = x - at[a];
+      others[a] = f < 1e-3 ? at[a] - 1 : f > 1 - 1e-3 ? at[a] + 1 : at[a];
+      inside = inside && f > 2e-5 && f < 1 - 2e-5;
+    }
+    CORE_CHECK(!inside || *find_cell(m, at), "cell %d %d %d at %d / %d of the line is not marked",
+      at[0], at[1], at[2], i, STEPS);
+    for (int c = 0; c < 8; ++c)
+    {
+      const int near[3] = { c & 1 ? others[0] : at[0], c & 2 ? others[1] : at[1],
+        c & 4 ? others[2] : at[2] };
+      uint8_t* cell = find_cell(m, near);
+      *cell = *cell ? 2 : 0;
+    }
+  }
+}
+
+/* Extracts with pair seeds but without growth (no node is valid), and checks the lines of all pairs
+ * that straddle 0 and are closer than the smoothing length of one of them. */
+static void check_pairs(mcor_context* context, const core_set* set, double cube)
+{
+  const double iso = 0;
+  const mcor_input input = core_input(set);
+  mcor_options options = core_options(&iso);
+  options.seeds = MCOR_PAIRS;
+  options.node_threshold = 1e30;
+  options.cube_size = cube;
+  mcor_surface surface = core_extract(context, &input, &options);
+  marked_cells m = read_cells(context);
+  assert_int_equal(surface.statistics.seed_cells, m.count);
+  assert_int_equal(surface.point_count, 0);
+  int pairs = 0;
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    for (int64_t k = 0; k < j; ++k)
+    {
+      double p[3], q[3], d2 = 0;
+      for (int a = 0; a < 3; ++a)
+      {
+        p[a] = set->position[3 * j + a] / cube;
+        q[a] = set->position[3 * k + a] / cube;
+        d2 += (p[a] - q[a]) * (p[a] - q[a]) * cube * cube;
+      }
+      const double h = fmax(set->smoothing_length[j], set->smoothing_length[k]);
+      if ((set->scalar[j] >= 0) != (set->scalar[k] >= 0) && d2 < h * h)
+      {
+        check_line(&m, p, q);
+        ++pairs;
+      }
+    }
+  }
+  CORE_CHECK(pairs > 0, "no pairs");
+  const int64_t total = (int64_t)m.size[0] * m.size[1] * m.size[2];
+  for (int64_t i = 0; i < total; ++i)
+  {
+    CORE_CHECK(m.cell[i] != 1, "cell %lld is marked, but on no line", (long long)i);
+  }
+  mcor_free_surface(&surface);
+  free(m.cell);
+}
+
+/* One pair: along axes, through edges and corners of cells, within one cell, and at random. */
+static void test_line(void** state)
+{
+  static const double ends[][6] = { { 0.5, 0.5, 0.5, 17.5, 0.5, 0.5 },
+    { 0.25, 7.5, 0.5, 0.25, -9.75, 0.5 }, { 3, 3, 3, 3, 3, 14 }, { 0, 0, 0, 12, 12, 12 },
+    { 11.5, 11.5, 11.5, -3.5, -3.5, -3.5 }, { 0.5, 0.5, 0.25, 9.5, 9.5, 0.25 },
+    { 0.1, 0.2, 0.3, 0.8, 0.7, 0.6 }, { -5, 2, 8, 7, -4, 2 }, { 1, 1, 1, 13, 5, 3 },
+    { -0.001, 4, 4, 0.001, 4, 4 } };
+  uint64_t seed = 6;
+  for (int i = 0; i < 40; ++i)
+  {
+    core_set set = core_make_set(2);
+    double length = 0;
+    for (int c = 0; c < 6; ++c)
+    {
+      const double x = i < 10 ? ends[i][c] : 15 * random_unit(&seed);
+      set.position[c] = 0.125 * x;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      length += pow(set.position[a] - set.position[3 + a], 2);
+    }
+    for (int j = 0; j < 2; ++j)
+    {
+      set.smoothing_length[j] = 1.01 * sqrt(length);
+      set.volume[j] = 1;
+      set.scalar[j] = j ? 1 : -1;
+    }
+    check_pairs(*state, &set, 0.125);
+    core_free_set(&set);
+  }
+}
+
+/* Which pairs count: the smoothing length of either particle reaches the other. */
+static void test_pairs(void** state)
+{
+  for (uint64_t seed = 1; seed <= 4; ++seed)
+  {
+    core_set set = core_make_random(25, 2, 0.15, seed % 2 ? 0.15 : 1.2, seed + 20);
+    set.smoothing_length[7] = 0.8;
+    check_pairs(*state, &set, 0.07);
+    core_free_set(&set);
+  }
+}
+
+/* Where pairs find everything, both modes give the same bits. */
+static void test_modes_agree(void** state)
+{
+  core_set set = core_make_block(9, 0.1, 5, core_ball);
+  const double iso = 1;
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  uint64_t hash[2];
+  for (int mode = 0; mode < 2; ++mode)
+  {
+    options.seeds = mode ? MCOR_PAIRS : MCOR_COMPLETE;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_CHECK(surface.triangle_count > 500, "%lld triangles", (long long)surface.triangle_count);
+    hash[mode] = core_hash(&surface);
+    mcor_free_surface(&surface);
+  }
+  CORE_CHECK(hash[0] == hash[1], "pairs and complete seeds give different surfaces");
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_complete), cmocka_unit_test(test_line),
+    cmocka_unit_test(test_pairs), cmocka_unit_test(test_modes_agree) };
+  return cmocka_run_group_tests_name("seed", tests, core_set_up, core_tear_down);
+}

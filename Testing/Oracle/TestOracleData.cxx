@@ -168,7 +168,8 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
   if (reader->GetOutput()->GetNumberOfPoints() == 0 ||
     !FillInput(one, reader->GetOutput(), solid, at.input))
   {
-    std::printf("  FAILED: %s: the file or one of its arrays is missing\n", at.name);
+    // Debian 12's ParaView 5.11 cannot read appended data; VTK itself, and inline data, are fine.
+    std::printf("  FAILED: %s: the file cannot be read or lacks an array\n", at.name);
     ++suite.failures;
     return;
   }

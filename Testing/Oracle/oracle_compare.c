@@ -98,19 +98,34 @@ static int64_t compare_locate(const oracle_lattice* lattice, const double point[
   return on_node ? COMPARE_ON_NODE - node : 3 * node + axis;
 }
 
+static int compare_takes_second(const compare_state* state, int64_t e)
+{
+  return state->second_vertex[e] < 0 &&
+    compare_pinched(&state->reference->lattice, state->reference->surface.edge[e]);
+}
+
 static void compare_claim(compare_state* state, int64_t vertex, int64_t edge)
 {
   const int64_t e = oracle_find_edge(&state->reference->surface, edge);
   state->vertex_edge[vertex] = edge;
-  if (e >= 0)
+  if (e < 0)
   {
-    state->result->doubled += state->edge_vertex[e] >= 0;
-    if (state->edge_vertex[e] >= 0)
-    {
-      compare_note_edge(state, "two vertices on", edge);
-    }
+    return;
+  }
+  if (state->edge_vertex[e] < 0)
+  {
     state->edge_vertex[e] = vertex;
     ++state->result->matched;
+  }
+  else if (compare_takes_second(state, e))
+  {
+    state->second_vertex[e] = vertex;
+    ++state->result->split;
+  }
+  else
+  {
+    ++state->result->doubled;
+    compare_note_edge(state, "two vertices on", edge);
   }
 }
 
@@ -170,7 +185,7 @@ static void compare_assign(compare_state* state)
   const mcor_surface* surface = state->surface;
   for (int64_t e = 0; e < state->reference->surface.edge_count; ++e)
   {
-    state->edge_vertex[e] = -1;
+    state->edge_vertex[e] = state->second_vertex[e] = -1;
   }
   for (int64_t v = 0; v < surface->point_count; ++v)
   {
@@ -178,7 +193,7 @@ static void compare_assign(compare_state* state)
     /* On a crossed edge a flagged vertex is one at the border of invalid cells, else it is a cut. */
     const int64_t e = edge >= 0 ? oracle_find_edge(&state->reference->surface, edge) : -1;
     const int flagged = surface->boundary_flag && surface->boundary_flag[v];
-    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && (e < 0 || state->edge_vertex[e] >= 0);
+    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && (e < 0 || (state->edge_vertex[e] >= 0 && !compare_takes_second(state, e)));
     state->vertex_edge[v] = cut ? COMPARE_TRIM_VERTEX : edge;
     if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
     {
@@ -348,9 +363,10 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
   compare_state state = { reference, options, surface, mesh, trimmed, comparison,
     malloc(points * sizeof(int64_t)),
     malloc(((size_t)reference->surface.edge_count + 1) * sizeof(int64_t)),
+    malloc(((size_t)reference->surface.edge_count + 1) * sizeof(int64_t)),
     malloc(3 * points * sizeof(double)) };
   int64_t* count = calloc(2 * components, sizeof(int64_t));
-  int enough = state.vertex_edge && state.edge_vertex && state.gradient && count;
+  int enough = state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient && count;
   if (enough)
   {
     comparison->edges = reference->surface.edge_count;
@@ -368,6 +384,7 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
   }
   free(state.vertex_edge);
   free(state.edge_vertex);
+  free(state.second_vertex);
   free(state.gradient);
   free(count);
   return enough;

@@ -46,10 +46,11 @@ extern "C"
     int64_t rounding;     /* missing or extra, excused by the bound on rounding alone */
     int64_t trimmed;      /* edges whose vertex is rightly cut away */
     int64_t off_lattice;  /* unflagged vertices that lie on no lattice edge */
-    int64_t doubled;      /* two vertices on one edge */
+    int64_t doubled;      /* two vertices on one edge that is not pinched */
+    int64_t split;        /* pinched edges with two vertices, as it should be */
     int64_t components;   /* of the oracle */
     int64_t components_missing, components_partial; /* unexcused edges missing: all, some */
-    int64_t pinched_edges; /* valid cells touch only in the edge: its vertex has two fans */
+    int64_t pinched_edges; /* two valid cells touch only in the edge */
 
     double residual;      /* max |f - iso| / range over vertices on edges */
     int64_t jumps;        /* vertices where f jumps over iso; not in residual and normal_degrees */

@@ -135,9 +135,9 @@ static void compare_face_edges(
   edges[3] = 3 * node + v;
 }
 
-/* The vertices on the crossed edges of a face; -1 if one of them has none. */
-static int compare_face_vertices(
-  const compare_state* state, const int64_t edges[4], int32_t vertices[4])
+/* The crossed edges of a face, by number; -1 if one of them has no vertex. */
+static int compare_face_crossings(
+  const compare_state* state, const int64_t edges[4], int64_t crossings[4])
 {
   int count = 0;
   for (int n = 0; n < 4; ++n)
@@ -149,7 +149,23 @@ static int compare_face_vertices(
       {
         return -1;
       }
-      vertices[count++] = (int32_t)state->edge_vertex[e];
+      crossings[count++] = e;
+    }
+  }
+  return count;
+}
+
+/* Triangles with a side between the vertices of two crossed edges. */
+static int64_t compare_count_sides(const compare_state* state, int64_t e0, int64_t e1)
+{
+  const int64_t a[2] = { state->edge_vertex[e0], state->second_vertex[e0] };
+  const int64_t b[2] = { state->edge_vertex[e1], state->second_vertex[e1] };
+  int64_t count = 0;
+  for (int n = 0; n < 4; ++n)
+  {
+    if (a[n & 1] >= 0 && b[n >> 1] >= 0)
+    {
+      count += mesh_count_sides(state->mesh, (int32_t)a[n & 1], (int32_t)b[n >> 1]);
     }
   }
   return count;
@@ -157,16 +173,16 @@ static int compare_face_vertices(
 
 /* Two crossings: connected, once for each valid cell at the face. Four: in either of two ways. */
 static int compare_face_connected(
-  const mesh_report* mesh, const int32_t vertices[4], int count, int64_t cells)
+  const compare_state* state, const int64_t crossings[4], int count, int64_t cells)
 {
   if (count == 2)
   {
-    return mesh_count_sides(mesh, vertices[0], vertices[1]) == cells;
+    return compare_count_sides(state, crossings[0], crossings[1]) == cells;
   }
   for (int way = 0; way < 2; ++way)
   {
-    if (mesh_count_sides(mesh, vertices[way], vertices[way + 1]) == cells &&
-      mesh_count_sides(mesh, vertices[way + 2], vertices[(way + 3) % 4]) == cells)
+    if (compare_count_sides(state, crossings[way], crossings[way + 1]) == cells &&
+      compare_count_sides(state, crossings[way + 2], crossings[(way + 3) % 4]) == cells)
     {
       return 1;
     }
@@ -185,7 +201,7 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
   const int certain = oracle_cell_certain(lattice, ijk[0], ijk[1], ijk[2]) +
     oracle_cell_certain(lattice, other[0], other[1], other[2]);
   int64_t edges[4];
-  int32_t vertices[4];
+  int64_t crossings[4];
   compare_face_edges(lattice, oracle_node_index(lattice, ijk[0], ijk[1], ijk[2]), axis, edges);
   for (int n = 0; n < 4; ++n)
   {
@@ -194,9 +210,9 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
       return;
     }
   }
-  const int count = compare_face_vertices(state, edges, vertices);
+  const int count = compare_face_crossings(state, edges, crossings);
   if (valid > 0 && possible == certain && count >= 2 &&
-    !compare_face_connected(state->mesh, vertices, count, valid))
+    !compare_face_connected(state, crossings, count, valid))
   {
     ++state->result->segments_missing;
     compare_note_edge(state, "not connected on the face of", edges[0]);

@@ -140,7 +140,8 @@ extern "C"
     double cube_size;        /* unit L; > 0 overrides the factor */
     const double* iso_values; /* [iso_count], finite */
     int iso_count;
-    double node_threshold;   /* cells with a node of lower weight are discarded; default 0.1 */
+    double node_threshold;   /* cells with a node of lower weight are discarded; default 0.1. So
+                              * are Shepard cells with a node of a fluid weight below 0.001. */
     double vertex_threshold; /* triangles are trimmed where the weight is lower; default 0.5 */
     int preview;             /* nonzero: vertices by linear interpolation, no correction */
     double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */

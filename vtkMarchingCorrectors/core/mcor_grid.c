@@ -310,15 +310,51 @@ static double mcor_scalar_value(const mcor_input* input, const void* user, int64
   return mcor_scalar_at(input, i);
 }
 
-/* A Shepard mean shifts with its values, so A - A0 with A0 in mid range keeps the digits of a scalar
- * with a large offset. */
+#define MCOR_MEDIAN_BINS 4096
+#define MCOR_MEDIAN_PASSES 3
+
+/* About the median of the scalar of fluid particles: a histogram of its range, then of the bin that
+ * holds the median. Counts do not depend on the order of the particles. */
+static double mcor_scalar_median(const mcor_context* context, const mcor_input* input)
+{
+  double low = context->measure.scalar_min, high = context->measure.scalar_max;
+  int64_t below = 0;
+  for (int pass = 0; pass < MCOR_MEDIAN_PASSES; ++pass)
+  {
+    int64_t bins[MCOR_MEDIAN_BINS] = { 0 };
+    const double width = high / MCOR_MEDIAN_BINS - low / MCOR_MEDIAN_BINS;
+    if (!(width > 0))
+    {
+      break;
+    }
+    for (int64_t i = 0; i < input->count; ++i)
+    {
+      const double v = mcor_scalar_at(input, i);
+      if ((!input->solid || !input->solid[i]) && v >= low && v <= high)
+      {
+        const int bin = (int)((v - low) / width);
+        ++bins[bin < MCOR_MEDIAN_BINS ? bin : MCOR_MEDIAN_BINS - 1];
+      }
+    }
+    int bin = 0;
+    while (bin < MCOR_MEDIAN_BINS - 1 &&
+      2 * (below + bins[bin]) < context->measure.fluid_count)
+    {
+      below += bins[bin++];
+    }
+    low += bin * width;
+    high = low + width;
+  }
+  return 0.5 * low + 0.5 * high;
+}
+
+/* A Shepard mean shifts with its values. A - A0 with A0 where most values are keeps the digits of a
+ * scalar with a large offset, and of one with a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;
   const mcor_field field = context->options->field;
-  const mcor_measure* m = &context->measure;
-  context->value_shift =
-    field == MCOR_SHEPARD ? 0.5 * m->scalar_min + 0.5 * m->scalar_max : 0;
+  context->value_shift = field == MCOR_SHEPARD ? mcor_scalar_median(context, input) : 0;
   if (field == MCOR_WEIGHT_SUM)
   {
     return MCOR_OK;

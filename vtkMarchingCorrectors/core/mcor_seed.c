@@ -47,7 +47,7 @@ static mcor_status mcor_mark_complete(mcor_context* context, double iso)
     bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
     MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_keep), MCOR_REAL(iso),
-    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->marks));
+    MCOR_BUFFER(&bricks->marks));
 }
 
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */

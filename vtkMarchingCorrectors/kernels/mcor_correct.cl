@@ -131,18 +131,19 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
 #if MCOR_SOLIDS
   realv t = 0, tx = 0, ty = 0, tz = 0;
 #endif
-  /* Relative to the query's box: exact in single precision while the support is below 16 cubes. */
-  const realv x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit + points->ox;
-  const realv y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit + points->oy;
-  const realv z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit + points->oz;
+  /* Nodes and particles relative to the query's box: exact in single precision while the support is
+   * below 16 cubes, so that the result does not depend on which points form a group. */
+  const realv x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
+  const realv y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
+  const realv z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     for (int i = 0; i < tile->count; ++i)
     {
       const int j = tile->list[i];
-      const realv dx = x - (real)(grid->px[j] - query->low[0]) * grid->unit;
-      const realv dy = y - (real)(grid->py[j] - query->low[1]) * grid->unit;
-      const realv dz = z - (real)(grid->pz[j] - query->low[2]) * grid->unit;
+      const realv dx = (x - (real)(grid->px[j] - query->low[0]) * grid->unit) + points->ox;
+      const realv dy = (y - (real)(grid->py[j] - query->low[1]) * grid->unit) + points->oy;
+      const realv dz = (z - (real)(grid->pz[j] - query->low[2]) * grid->unit) + points->oz;
       realv gx, gy, gz;
       const realv k = mcor_weight_gradient(dx, dy, dz, grid->inv_h[j], &gx, &gy, &gz);
       const real m = grid->weight[j];
@@ -171,8 +172,11 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
     }
   }
 #if MCOR_FIELD == 0
-  const realv inv_w = (real)1 / (w != 0 ? w : (realv)1);
-  at->value = s * inv_w;
+  /* In a void between fluid particles, which solids keep valid, there is no value: a huge one makes
+   * the iteration look for the void's border. */
+  const fixv none = fabs(w) < (real)1e-12f;
+  const realv inv_w = (real)1 / (none ? (realv)1 : w);
+  at->value = none ? (realv)1e30f : s * inv_w;
   at->gx = (sx - at->value * wx) * inv_w;
   at->gy = (sy - at->value * wy) * inv_w;
   at->gz = (sz - at->value * wz) * inv_w;

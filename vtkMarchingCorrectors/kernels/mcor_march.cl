@@ -4,8 +4,9 @@
 /* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices numbered
  * by lattice edge. */
 
-/* Below this a fluid weight is rounding noise of a kernel's rim, and the Shepard mean undefined. */
-#define MCOR_LEAST_WEIGHT ((real)1e-5)
+/* A Shepard mean needs this fluid weight. Where solids make up the rest, cells would otherwise reach
+ * over voids without any fluid, and rounding noise of a kernel's rim would count as a value. */
+#define MCOR_LEAST_WEIGHT ((real)1e-3)
 
 #define MCOR_NODE_GROUPS (64 / MCOR_LANES)
 #define MCOR_PLANE_GROUPS (MCOR_LANES == 1 ? 16 : 16 / MCOR_LANES)
@@ -62,10 +63,18 @@ void mcor_march_add(const mcor_grid* grid, int j, real x, real y, real z, ulong 
   {
     planar[g] = mcor_planar(x - lane_x[g], y - lane_y[g], inv_h);
   }
+  const real beside_x = fmax(fabs(x - (real)1.5) - (real)1.5, (real)0);
+  const real beside_y = fmax(fabs(y - (real)1.5) - (real)1.5, (real)0);
   for (int plane = 0; plane < 4; ++plane)
   {
     const real dz = z - plane;
-    if ((need >> (16 * plane) & 1) && fabs(dz) * inv_h < MCOR_SUPPORT)
+#if MCOR_TENSOR
+    const bool near = fabs(dz) * inv_h < MCOR_SUPPORT;
+#else
+    const bool near = (beside_x * beside_x + beside_y * beside_y + dz * dz) * inv_h * inv_h <
+      MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001;
+#endif
+    if ((need >> (16 * plane) & 1) && near)
     {
       for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
       {

@@ -34,7 +34,7 @@ void mcor_pair_mark_cell(MCOR_BRICK_PARAMS, int x, int y, int z, __global uint* 
   }
 }
 
-/* All cells on the line from p to q (cubes), beginning in cell c. Where the line passes an edge or a
+/* All cells on the line from p to q (cubes, relative to cell c), beginning in cell c. Where the line passes an edge or a
  * corner of a cell to within rounding, the cells on both sides are marked. */
 void mcor_pair_mark_line(
   MCOR_BRICK_PARAMS, const real* p, const real* q, int* c, const int* end, __global uint* cells)
@@ -46,7 +46,7 @@ void mcor_pair_mark_line(
     const real d = q[a] - p[a];
     step[a] = d < 0 ? -1 : 1;
     gap[a] = fabs(d) > (real)1e-20f ? 1 / fabs(d) : (real)1e20f;
-    next[a] = (d < 0 ? p[a] - c[a] : c[a] + 1 - p[a]) * gap[a];
+    next[a] = (d < 0 ? p[a] : 1 - p[a]) * gap[a];
     steps += abs(end[a] - c[a]);
   }
   mcor_pair_mark_cell(MCOR_BRICK_ARGS, c[0], c[1], c[2], cells);

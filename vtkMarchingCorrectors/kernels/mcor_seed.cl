@@ -7,39 +7,47 @@
 #define MCOR_BOXES 16
 #define MCOR_BOX_GROUPS (MCOR_BOXES / MCOR_LANES)
 
-/* Interval of w(q) for |dx| in [near, far], per axis or for the distance. */
+/* Half sizes of a box along x, y and z. */
+#define MCOR_BOX_XY ((real)1)
+#define MCOR_BOX_Z ((real)0.5)
+
+#if MCOR_TENSOR
+/* Interval of the one-dimensional w over distances [near, far]. */
 void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
 {
   const realv a = MCOR_W(near), b = MCOR_W(far);
-  *low = fmin(a, b);
   *high = fmax(a, b);
-#if MCOR_TENSOR
   *low = (near < mcor_turning_mprime4 && far > mcor_turning_mprime4) ? (realv)mcor_lowest_mprime4
-                                                                     : *low;
-#endif
+                                                                     : fmin(a, b);
 }
 
-/* Smallest and largest w over boxes of half size (1, 1, 1/2) around (dx, dy, dz). */
-void mcor_seed_weight_range(realv dx, realv dy, realv dz, real inv_h, realv* low, realv* high)
+/* Greatest (side -1) or least (side 1) w over boxes around (dx, dy, dz). */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real side, real inv_h)
 {
-  const real half_z = (real)0.5;
-  const realv nx = fmax(fabs(dx) - 1, (realv)0) * inv_h, fx = (fabs(dx) + 1) * inv_h;
-  const realv ny = fmax(fabs(dy) - 1, (realv)0) * inv_h, fy = (fabs(dy) + 1) * inv_h;
-  const realv nz = fmax(fabs(dz) - half_z, (realv)0) * inv_h, fz = (fabs(dz) + half_z) * inv_h;
-#if MCOR_TENSOR
   realv xl, xh, yl, yh, zl, zh;
-  mcor_seed_interval(nx, fx, &xl, &xh);
-  mcor_seed_interval(ny, fy, &yl, &yh);
-  mcor_seed_interval(nz, fz, &zl, &zh);
+  mcor_seed_interval(fmax(fabs(dx) - MCOR_BOX_XY, (realv)0) * inv_h,
+    (fabs(dx) + MCOR_BOX_XY) * inv_h, &xl, &xh);
+  mcor_seed_interval(fmax(fabs(dy) - MCOR_BOX_XY, (realv)0) * inv_h,
+    (fabs(dy) + MCOR_BOX_XY) * inv_h, &yl, &yh);
+  mcor_seed_interval(
+    fmax(fabs(dz) - MCOR_BOX_Z, (realv)0) * inv_h, (fabs(dz) + MCOR_BOX_Z) * inv_h, &zl, &zh);
   const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
   const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
-  *low = fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh));
-  *high = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
-#else
-  const realv near = nx * nx + ny * ny + nz * nz, far = fx * fx + fy * fy + fz * fz;
-  mcor_seed_interval(near * mcor_rsqrt(near), far * mcor_rsqrt(far), low, high);
-#endif
+  return side > 0 ? fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh))
+                  : fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
+#else
+/* Greatest (side -1) or least (side 1) w over boxes around (dx, dy, dz): w falls with the distance,
+ * so that of the nearest or farthest point. */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real side, real inv_h)
+{
+  const realv x = fmax(fabs(dx) + side * MCOR_BOX_XY, (realv)0);
+  const realv y = fmax(fabs(dy) + side * MCOR_BOX_XY, (realv)0);
+  const realv z = fmax(fabs(dz) + side * MCOR_BOX_Z, (realv)0);
+  const realv r2 = x * x + y * y + z * z;
+  return MCOR_W(r2 * mcor_rsqrt(r2) * inv_h);
+}
+#endif
 
 /* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the least
  * and the greatest of its values. */
@@ -88,18 +96,18 @@ __kernel void mcor_seed_block(MCOR_GRID_PARAMS, const int block_count, const int
 }
 
 /* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
- * field's sign against iso in a box is that of F = sum c_j w_j - (0 or iso), and
+ * field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso, and
  *
- *   sum of c_j * (least or greatest w_j in the box, whichever makes it smaller) <= sum c_j w_j,
+ *   F >= sum of c_j * (least w_j in the box where c_j > 0, greatest where c_j < 0) - level,
  *
- * likewise from above: each w_j lies in its interval wherever in the box the point is, whatever the
- * sign of w_j. A box with F > 0 or F < 0 throughout has no crossing; one whose greatest possible
- * trimming weight is below the node threshold has no valid cell. The margin is 1e-5 of the sum of
- * the absolute terms, above the rounding of this sum and of the node values. */
+ * as each w_j lies in its interval wherever in the box the point is, whatever the sign of w_j;
+ * likewise from above. Only one of the two is computed: from below where F is positive in the middle
+ * of the brick, else from above. A box with F of one sign has no crossing. The margin is 1e-5 of the
+ * sum of the absolute terms, above the rounding of this sum and of the node values. */
 typedef struct
 {
   realv x, y, z; /* centres of the boxes */
-  realv low, high, size, weight;
+  realv sum, size;
 } mcor_bound;
 
 void mcor_seed_bound_init(mcor_bound* bounds)
@@ -107,7 +115,7 @@ void mcor_seed_bound_init(mcor_bound* bounds)
   for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
   {
     mcor_bound* b = bounds + g;
-    b->low = b->high = b->size = b->weight = 0;
+    b->sum = b->size = 0;
     for (int lane = 0; lane < MCOR_LANES; ++lane)
     {
       const int box = g * MCOR_LANES + lane;
@@ -118,32 +126,15 @@ void mcor_seed_bound_init(mcor_bound* bounds)
   }
 }
 
-/* Adds a particle at (x, y, z). */
-void mcor_seed_bound_add(
-  mcor_bound* b, real x, real y, real z, real inv_h, real c, real trim_weight)
+/* The boxes of a group that remain, as bits of a mark. below: the bound is one from below. */
+uint mcor_seed_bound_mark(const mcor_bound* b, int group, bool below, real level)
 {
-  realv w_low, w_high;
-  mcor_seed_weight_range(x - b->x, y - b->y, z - b->z, inv_h, &w_low, &w_high);
-  const realv p = c * w_low, q = c * w_high;
-  b->low += fmin(p, q);
-  b->high += fmax(p, q);
-  b->size += fmax(fabs(p), fabs(q));
-  b->weight += trim_weight * w_high;
-}
-
-/* The boxes of a group that remain, as bits of a mark. */
-uint mcor_seed_bound_mark(const mcor_bound* b, int group, real iso, real node_threshold)
-{
-  const real level = MCOR_FIELD == 0 ? (real)0 : iso;
+  const realv margin = (real)1e-5f * (b->size + fabs(level));
+  const fixv keep = below ? b->sum <= level + margin : b->sum >= level - margin;
   uint mark = 0;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const real size = MCOR_GET(b->size, lane), margin = size * (real)1e-5;
-    const bool can = size > 0 && MCOR_GET(b->low, lane) <= level + margin &&
-      MCOR_GET(b->high, lane) >= level - margin;
-    const bool valid =
-      MCOR_FIELD == 2 || MCOR_GET(b->weight, lane) >= node_threshold * (real)0.9999;
-    mark |= (uint)(can && valid) << (group * MCOR_LANES + lane);
+    mark |= (uint)(MCOR_GET_FIX(keep, lane) != 0) << (group * MCOR_LANES + lane);
   }
   return mark;
 }
@@ -158,6 +149,26 @@ real mcor_seed_coefficient(const mcor_grid* grid, int j, real iso)
 #else
   return grid->weight[j];
 #endif
+}
+
+/* Roughly F + level in the middle of the brick, with (1 - (r / support)^2)^3 for every kernel: it only
+ * chooses the bound's side. */
+real mcor_seed_middle(
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
+{
+  const real half_size = (real)0.5 * MCOR_BRICK;
+  real sum = 0;
+  for (int i = 0; i < tile->count; ++i)
+  {
+    const int j = tile->list[i];
+    const real scale = grid->inv_h[j] / MCOR_SUPPORT;
+    const real x = ((real)(grid->px[j] - query->low[0]) * grid->unit - half_size) * scale;
+    const real y = ((real)(grid->py[j] - query->low[1]) * grid->unit - half_size) * scale;
+    const real z = ((real)(grid->pz[j] - query->low[2]) * grid->unit - half_size) * scale;
+    const real near = fmax(1 - x * x - y * y - z * z, (real)0);
+    sum += mcor_seed_coefficient(grid, j, iso) * near * near * near;
+  }
+  return sum / ((real)0.6383 * MCOR_NORM * MCOR_SUPPORT * MCOR_SUPPORT * MCOR_SUPPORT);
 }
 
 /* Whether the particles of the tile have values on both sides; updates above and below. */
@@ -178,7 +189,7 @@ bool mcor_seed_straddles(
  * mark: the boxes in which the bound admits a crossing. */
 __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, __global const uchar* keep, const real iso,
-  const real node_threshold, __global ushort* marks)
+  __global ushort* marks)
 {
   const int m = get_global_id(0);
   if (m >= block_count * MCOR_BLOCK_BRICKS || !keep[m / MCOR_BLOCK_BRICKS])
@@ -186,21 +197,26 @@ __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int
     return;
   }
   const mcor_grid grid = MCOR_GRID;
+  const real level = MCOR_FIELD == 0 ? (real)0 : iso;
   const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
   mcor_query query;
   mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
     MCOR_BRICK, fix_bits);
   mcor_bound bounds[MCOR_BOX_GROUPS];
   mcor_seed_bound_init(bounds);
-  bool above = false, below = false;
+  bool above = false, under = false, below = false;
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
   {
-    const bool straddles = mcor_seed_straddles(&grid, &tile, iso, &above, &below);
-    if (MCOR_RANGE_DECIDES && tile.complete && !straddles)
+    const bool straddles = mcor_seed_straddles(&grid, &tile, iso, &above, &under);
+    if (tile.complete && (tile.count == 0 || (MCOR_RANGE_DECIDES && !straddles)))
     {
       return;
+    }
+    if (first)
+    {
+      below = mcor_seed_middle(&grid, &query, &tile, iso) > level;
     }
     for (int i = 0; i < tile.count; ++i)
     {
@@ -209,18 +225,22 @@ __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int
       const real y = (real)(py[j] - query.low[1]) * grid.unit;
       const real z = (real)(pz[j] - query.low[2]) * grid.unit;
       const real c = mcor_seed_coefficient(&grid, j, iso);
+      const real side = (c > 0) == below ? 1 : -1;
       for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
       {
-        mcor_seed_bound_add(bounds + g, x, y, z, p_inv_h[j], c, p_trim_weight[j]);
+        mcor_bound* b = bounds + g;
+        const realv w = mcor_seed_weight(x - b->x, y - b->y, z - b->z, side, p_inv_h[j]);
+        b->sum += c * w;
+        b->size += fabs(c) * fabs(w);
       }
     }
   }
   uint mark = 0;
   for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
   {
-    mark |= mcor_seed_bound_mark(bounds + g, g, iso, node_threshold);
+    mark |= mcor_seed_bound_mark(bounds + g, g, below, level);
   }
-  marks[m] = (MCOR_RANGE_DECIDES && !(above && below)) ? 0 : (ushort)mark;
+  marks[m] = (MCOR_RANGE_DECIDES && !(above && under)) ? 0 : (ushort)mark;
 }
 
 /* One work-item = one brick slot. Reads its mark. Writes the cells to examine. */

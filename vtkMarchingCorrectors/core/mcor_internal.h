@@ -93,7 +93,7 @@ typedef struct mcor_brick_data
 typedef struct mcor_bricks
 {
   int block_count, block_shift;
-  mcor_buffer block_keys, block_buckets, block_keep;
+  mcor_buffer block_keys, block_buckets, block_keep, region_keep;
   mcor_buffer marks;      /* ushort [block_count][512], of this iso value */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now, last; /* last: the other half of a double buffer */

@@ -33,20 +33,32 @@ mcor_status mcor_make_blocks(mcor_context* context)
   return mcor_zero(context, &bricks->bits, words * sizeof(cl_uint));
 }
 
-/* Marks every brick box that the bound cannot exclude. */
+/* Tests blocks (size 32) or the regions of the blocks that remain (size 8). */
+static mcor_status mcor_test_regions(mcor_context* context, double iso, int size,
+  int regions_per_block, const mcor_buffer* block_keep, mcor_buffer* keep)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int regions = bricks->block_count * regions_per_block;
+  MCOR_TRY(mcor_reserve(context, keep, (size_t)regions));
+  return MCOR_LAUNCH(context, "mcor_seed_region", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
+    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size),
+    MCOR_BUFFER(block_keep), MCOR_REAL(iso), MCOR_BUFFER(keep));
+}
+
+/* Marks every brick box that the bound cannot exclude: blocks, regions, bricks. */
 static mcor_status mcor_mark_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   const int* blocks = context->lattice.blocks;
-  MCOR_TRY(mcor_reserve(context, &bricks->block_keep, (size_t)bricks->block_count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_block", MCOR_HEAVY, bricks->block_count,
-    MCOR_GRID_ARGS(context), MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]),
-    MCOR_INT(blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_REAL(iso),
-    MCOR_BUFFER(&bricks->block_keep)));
+  mcor_buffer *block_keep = &bricks->block_keep, *region_keep = &bricks->region_keep;
+  MCOR_TRY(mcor_reserve(context, block_keep, (size_t)bricks->block_count));
+  MCOR_TRY(mcor_test_regions(context, iso, MCOR_BLOCK_CUBES, 1, block_keep, block_keep));
+  MCOR_TRY(mcor_test_regions(context, iso, 8, 64, block_keep, region_keep));
   return MCOR_LAUNCH(context, "mcor_seed_brick", MCOR_HEAVY,
     bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_keep), MCOR_REAL(iso),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(region_keep), MCOR_REAL(iso),
     MCOR_BUFFER(&bricks->marks));
 }
 

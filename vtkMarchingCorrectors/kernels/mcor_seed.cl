@@ -7,10 +7,6 @@
 #define MCOR_BOXES 16
 #define MCOR_BOX_GROUPS (MCOR_BOXES / MCOR_LANES)
 
-/* Half sizes of a box along x, y and z. */
-#define MCOR_BOX_XY ((real)1)
-#define MCOR_BOX_Z ((real)0.5)
-
 #if MCOR_TENSOR
 /* Interval of the one-dimensional w over distances [near, far]. */
 void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
@@ -21,29 +17,29 @@ void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Greatest (side -1) or least (side 1) w over boxes around (dx, dy, dz). */
-realv mcor_seed_weight(realv dx, realv dy, realv dz, real side, real inv_h)
+/* Greatest (side -1) or least (side 1) w over boxes of half sizes e, e, ez around (dx, dy, dz). */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, real ez, realv side, realv inv_h)
 {
   realv xl, xh, yl, yh, zl, zh;
-  mcor_seed_interval(fmax(fabs(dx) - MCOR_BOX_XY, (realv)0) * inv_h,
-    (fabs(dx) + MCOR_BOX_XY) * inv_h, &xl, &xh);
-  mcor_seed_interval(fmax(fabs(dy) - MCOR_BOX_XY, (realv)0) * inv_h,
-    (fabs(dy) + MCOR_BOX_XY) * inv_h, &yl, &yh);
+  mcor_seed_interval(fmax(fabs(dx) - e, (realv)0) * inv_h,
+    (fabs(dx) + e) * inv_h, &xl, &xh);
+  mcor_seed_interval(fmax(fabs(dy) - e, (realv)0) * inv_h,
+    (fabs(dy) + e) * inv_h, &yl, &yh);
   mcor_seed_interval(
-    fmax(fabs(dz) - MCOR_BOX_Z, (realv)0) * inv_h, (fabs(dz) + MCOR_BOX_Z) * inv_h, &zl, &zh);
+    fmax(fabs(dz) - ez, (realv)0) * inv_h, (fabs(dz) + ez) * inv_h, &zl, &zh);
   const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
   const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
   return side > 0 ? fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh))
                   : fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* Greatest (side -1) or least (side 1) w over boxes around (dx, dy, dz): w falls with the distance,
- * so that of the nearest or farthest point. */
-realv mcor_seed_weight(realv dx, realv dy, realv dz, real side, real inv_h)
+/* Greatest (side -1) or least (side 1) w over boxes of half sizes e, e, ez around (dx, dy, dz): w
+ * falls with the distance, so that of the nearest or farthest point. */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, real ez, realv side, realv inv_h)
 {
-  const realv x = fmax(fabs(dx) + side * MCOR_BOX_XY, (realv)0);
-  const realv y = fmax(fabs(dy) + side * MCOR_BOX_XY, (realv)0);
-  const realv z = fmax(fabs(dz) + side * MCOR_BOX_Z, (realv)0);
+  const realv x = fmax(fabs(dx) + side * e, (realv)0);
+  const realv y = fmax(fabs(dy) + side * e, (realv)0);
+  const realv z = fmax(fabs(dz) + side * ez, (realv)0);
   const realv r2 = x * x + y * y + z * z;
   return MCOR_W(r2 * mcor_rsqrt(r2) * inv_h);
 }
@@ -65,44 +61,14 @@ void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bit
   }
 }
 
-/* One work-item = one block. Reads the particles that reach it. Writes whether the iso value may
- * occur in it. */
-__kernel void mcor_seed_block(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, const real iso, __global uchar* keep)
-{
-  const int block = get_global_id(0);
-  if (block >= block_count)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  const int4 brick =
-    mcor_brick_of_mark(block_keys, blocks_x, blocks_y, block * MCOR_BLOCK_BRICKS);
-  mcor_query query;
-  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-    MCOR_BLOCK_CUBES, fix_bits);
-  mcor_query_begin(&grid, &query);
-  bool above = false, below = false;
-  while (!(above && below) && mcor_query_next_row(&grid, &query))
-  {
-    for (int j = query.begin; j < query.end; ++j)
-    {
-      const bool fluid = !MCOR_SOLIDS || p_weight[j] != 0;
-      above = above || (fluid && p_value[j] >= iso);
-      below = below || (fluid && p_value[j] < iso);
-    }
-  }
-  keep[block] = MCOR_RANGE_DECIDES ? above && below : 1;
-}
-
 /* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
  * field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso, and
  *
  *   F >= sum of c_j * (least w_j in the box where c_j > 0, greatest where c_j < 0) - level,
  *
  * as each w_j lies in its interval wherever in the box the point is, whatever the sign of w_j;
- * likewise from above. Only one of the two is computed: from below where F is positive in the middle
- * of the brick, else from above. A box with F of one sign has no crossing. The margin is 1e-5 of the
+ * likewise from above. Only one of the two is computed: from below where F is positive in the middle,
+ * else from above. A box with F of one sign has no crossing. The margin is 1e-5 of the
  * sum of the absolute terms, above the rounding of this sum and of the node values. */
 typedef struct
 {
@@ -151,12 +117,11 @@ real mcor_seed_coefficient(const mcor_grid* grid, int j, real iso)
 #endif
 }
 
-/* Roughly F + level in the middle of the brick, with (1 - (r / support)^2)^3 for every kernel: it only
+/* Roughly F + level in the middle of a box, with (1 - (r / support)^2)^3 for every kernel: it only
  * chooses the bound's side. */
-real mcor_seed_middle(
-  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
+real mcor_seed_middle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
+  real half_size, real iso)
 {
-  const real half_size = (real)0.5 * MCOR_BRICK;
   real sum = 0;
   for (int i = 0; i < tile->count; ++i)
   {
@@ -185,6 +150,87 @@ bool mcor_seed_straddles(
   return *above && *below;
 }
 
+/* The bound for one box, of `size` cubes, with MCOR_LANES particles at a time: whether F may be 0. */
+bool mcor_seed_region_may_cross(
+  const mcor_grid* grid, mcor_query* query, mcor_tile* tile, real size, real iso)
+{
+  const real level = MCOR_FIELD == 0 ? (real)0 : iso;
+  const real e = (real)0.5 * size;
+  bool above = false, under = false, below = false;
+  realv sum = 0, total = 0;
+  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
+  {
+    mcor_seed_straddles(grid, tile, iso, &above, &under);
+    if (first)
+    {
+      below = mcor_seed_middle(grid, query, tile, e, iso) > level;
+    }
+    for (int i = 0; i < tile->count; i += MCOR_LANES)
+    {
+      realv x, y, z, inv_h, c;
+      for (int lane = 0; lane < MCOR_LANES; ++lane)
+      {
+        const int j = tile->list[min(i + lane, tile->count - 1)];
+        MCOR_SET(x, lane) = (real)(grid->px[j] - query->low[0]) * grid->unit - e;
+        MCOR_SET(y, lane) = (real)(grid->py[j] - query->low[1]) * grid->unit - e;
+        MCOR_SET(z, lane) = (real)(grid->pz[j] - query->low[2]) * grid->unit - e;
+        MCOR_SET(inv_h, lane) = grid->inv_h[j];
+        MCOR_SET(c, lane) =
+          i + lane < tile->count ? mcor_seed_coefficient(grid, j, iso) : (real)0;
+      }
+      const realv side = (c > 0) == (fixv)(below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
+      const realv w = mcor_seed_weight(x, y, z, e, e, side, inv_h);
+      sum += c * w;
+      total += fabs(c) * fabs(w);
+    }
+  }
+  real s = 0, t = 0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    s += MCOR_GET(sum, lane);
+    t += MCOR_GET(total, lane);
+  }
+  const real margin = (real)1e-5f * (t + fabs(level));
+  const bool may = below ? s <= level + margin : s >= level - margin;
+  return may && (!MCOR_RANGE_DECIDES || (above && under));
+}
+
+/* Blocks, and regions of 8^3 cubes in them, come before bricks: where smoothing lengths are many
+ * cubes, a bound on a large box is tight already. */
+#define MCOR_REGION_CUBES 8
+#define MCOR_BLOCK_REGIONS 64
+
+/* One work-item = one region of `size` cubes: a block (32), or one of its 64 regions (8), x fastest.
+ * Reads the particles that reach it, and what is known of the blocks. Writes whether the iso value
+ * may occur in it. */
+__kernel void mcor_seed_region(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+  const int blocks_y, __global const ulong* block_keys, const int size,
+  __global const uchar* block_keep, const real iso, __global uchar* keep)
+{
+  const int i = get_global_id(0);
+  const int regions = size == MCOR_BLOCK_CUBES ? 1 : MCOR_BLOCK_REGIONS;
+  const int block = i / regions, r = i % regions;
+  if (block >= block_count)
+  {
+    return;
+  }
+  if (regions > 1 && !block_keep[block])
+  {
+    keep[i] = 0;
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int4 brick =
+    mcor_brick_of_mark(block_keys, blocks_x, blocks_y, block * MCOR_BLOCK_BRICKS);
+  mcor_query query;
+  mcor_seed_box(&query, brick.x * MCOR_BRICK + (r & 3) * size,
+    brick.y * MCOR_BRICK + (r >> 2 & 3) * size, brick.z * MCOR_BRICK + (r >> 4) * size, size,
+    fix_bits);
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  keep[i] = mcor_seed_region_may_cross(&grid, &query, &tile, (real)size, iso);
+}
+
 /* One work-item = one brick (of all in blocks). Reads the particles that reach its cells. Writes its
  * mark: the boxes in which the bound admits a crossing. */
 __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
@@ -192,7 +238,9 @@ __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int
   __global ushort* marks)
 {
   const int m = get_global_id(0);
-  if (m >= block_count * MCOR_BLOCK_BRICKS || !keep[m / MCOR_BLOCK_BRICKS])
+  const int region = (m >> 1 & 3) | (m >> 4 & 3) << 2 | (m >> 7 & 3) << 4;
+  if (m >= block_count * MCOR_BLOCK_BRICKS ||
+    !keep[m / MCOR_BLOCK_BRICKS * MCOR_BLOCK_REGIONS + region])
   {
     return;
   }
@@ -216,7 +264,7 @@ __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int
     }
     if (first)
     {
-      below = mcor_seed_middle(&grid, &query, &tile, iso) > level;
+      below = mcor_seed_middle(&grid, &query, &tile, (real)0.5 * MCOR_BRICK, iso) > level;
     }
     for (int i = 0; i < tile.count; ++i)
     {
@@ -229,7 +277,8 @@ __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int
       for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
       {
         mcor_bound* b = bounds + g;
-        const realv w = mcor_seed_weight(x - b->x, y - b->y, z - b->z, side, p_inv_h[j]);
+        const realv w = mcor_seed_weight(
+          x - b->x, y - b->y, z - b->z, 1, (real)0.5, (realv)side, (realv)p_inv_h[j]);
         b->sum += c * w;
         b->size += fabs(c) * fabs(w);
       }

@@ -124,7 +124,7 @@ static void check_point(const oracle_reference* reference, const double point[3]
     const double value = p->volume[j] *
       oracle_kernel_value(reference->field.kernel,
         reference->field.h_scale * p->smoothing_length[j], offset, NULL);
-    all += value;
+    all += p->solid[j] && p->ignore_solids ? 0.0 : value;
     w += p->solid[j] ? 0.0 : value;
     fw += p->solid[j] ? 0.0 : value * p->scalar[j];
   }

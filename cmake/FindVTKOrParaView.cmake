@@ -8,6 +8,9 @@ set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersGeneral Filte
   FiltersPoints FiltersModeling IOXML IOLegacy IOImage InteractionStyle RenderingCore RenderingOpenGL2
   RenderingFreeType TestingRendering TestingCore)
 
+# VTK 9.3 passes empty arguments on, which CMake 3.31 warns of unless told what to do.
+set(CMAKE_POLICY_DEFAULT_CMP0174 NEW)
+
 set(MCOR_VTK_PACKAGE "")
 if (MCOR_BUILD_PLUGIN OR NOT DEFINED MCOR_BUILD_PLUGIN)
   find_package(ParaView QUIET)

@@ -25,7 +25,7 @@ public:
   ~vtkInternals() { mcor_free_context(this->Context); }
 
   mcor_context* Context = nullptr;
-  std::string Device;          // what the context was created for
+  std::string Device;           // what the context was created for
   double DefaultIsoValue = 0.0; // of the last run that was given none
 
   std::vector<std::uint64_t> Particles, Scalar;
@@ -155,8 +155,7 @@ vtkMarchingCorrectorsRequest vtkMarchingCorrectors::FindRequest(
   int index, vtkInformationVector** inputVector)
 {
   vtkMarchingCorrectorsRequest request;
-  vtkInformationVector* all =
-    this->GetInformation()->Get(INPUT_ARRAYS_TO_PROCESS());
+  vtkInformationVector* all = this->GetInformation()->Get(INPUT_ARRAYS_TO_PROCESS());
   if (!all || index >= all->GetNumberOfInformationObjects())
   {
     return request;
@@ -298,9 +297,8 @@ int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyDat
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectors::SetUsedNames(const vtkMarchingCorrectorsInput& input)
 {
-  const auto nameOf = [](vtkDataArray* array) {
-    return std::string(array && array->GetName() ? array->GetName() : "");
-  };
+  const auto nameOf = [](vtkDataArray* array)
+  { return std::string(array && array->GetName() ? array->GetName() : ""); };
   this->UsedSmoothingLengthArrayName = nameOf(input.SmoothingLength);
   this->UsedVolumeArrayName = nameOf(input.Volume);
   this->UsedMassArrayName = nameOf(input.Mass);
@@ -319,8 +317,8 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   PrintName(os, indent, "Smoothing Length Array Name", this->SmoothingLengthArrayName);
   os << indent << "Smoothing Length: " << this->SmoothingLength << "\n";
   os << indent << "Estimate Smoothing Length: " << this->EstimateSmoothingLength << "\n";
-  os << indent
-     << "Smoothing Length Is Support Radius: " << this->SmoothingLengthIsSupportRadius << "\n";
+  os << indent << "Smoothing Length Is Support Radius: " << this->SmoothingLengthIsSupportRadius
+     << "\n";
   PrintName(os, indent, "Volume Array Name", this->VolumeArrayName);
   PrintName(os, indent, "Mass Array Name", this->MassArrayName);
   PrintName(os, indent, "Density Array Name", this->DensityArrayName);

@@ -23,10 +23,11 @@
  *    to the device.
  * -# Search grid. The particles are sorted into a regular grid. It is kept for other scalars and
  *    iso values of the same particles. Volumes are computed if no array gives them.
- * -# Seeds. Cells of the virtual grid through which the surface may pass are selected, see SeedMode.
+ * -# Seeds. Cells of the virtual grid through which the surface may pass are selected, see
+ *    SeedMode.
  * -# Extraction. Marching Cubes on the seed cells, continued through intersected faces to their
- *    neighbors until no new cell appears. Each node is evaluated once, each intersected lattice edge
- *    gets one vertex.
+ *    neighbors until no new cell appears. Each node is evaluated once, each intersected lattice
+ *    edge gets one vertex.
  * -# Correction. Newton's method along the lattice edge, with the analytic derivative of the field
  *    and safeguarded by the edge's bracket, until the field is within Tolerance of the iso value.
  *    Normals from the analytic gradient, and all other point arrays, are evaluated at the vertices.
@@ -43,8 +44,8 @@
  * product of the two is contoured. In free-surface mode no scalar is needed.
  *
  * Smoothing lengths, volumes, masses and densities are point arrays, found by their usual names
- * (in this order; case, blanks, "_" and "-" do not matter) unless they are named, given as a constant
- * or DetectArrays is off:
+ * (in this order; case, blanks, "_" and "-" do not matter) unless they are named, given as a
+ * constant or DetectArrays is off:
  *
  *     smoothing length   SmoothingLength SmoothingLengths hsml h
  *     volume             Volume Volumes ParticleVolume vol
@@ -319,8 +320,8 @@ public:
 
   ///@{
   /**
-   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic" or "wendland". Returns false, and
-   * changes nothing, if there is no such kernel.
+   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic" or "wendland". Returns false,
+   * and changes nothing, if there is no such kernel.
    */
   bool SetKernelByName(const char* name);
   const char* GetKernelName() const;
@@ -435,8 +436,8 @@ public:
   /**
    * Add the iso value as a point array. For a scalar array it takes the name of this array; else
    * the name is that of the vector and the component or "Magnitude" ("Velocity_Magnitude"), of both
-   * vectors for a dot product ("A_Dot_B"), or "IsoValue" in free-surface mode. It becomes the active
-   * scalars. On by default.
+   * vectors for a dot product ("A_Dot_B"), or "IsoValue" in free-surface mode. It becomes the
+   * active scalars. On by default.
    */
   vtkSetMacro(ComputeScalars, vtkTypeBool);
   vtkGetMacro(ComputeScalars, vtkTypeBool);
@@ -520,8 +521,8 @@ public:
   ///@}
 
   /**
-   * The sentence that says why the last run failed; empty if it did not. It is also reported as a VTK
-   * error.
+   * The sentence that says why the last run failed; empty if it did not. It is also reported as a
+   * VTK error.
    */
   vtkGetCharFromStdStringMacro(ErrorMessage);
 

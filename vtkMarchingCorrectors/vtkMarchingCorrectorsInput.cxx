@@ -206,7 +206,8 @@ bool vtkMarchingCorrectorsInput::CollectVolume()
 }
 
 //------------------------------------------------------------------------------
-// A constant goes before a name, a name before the usual names. `given` stays 0 if there is nothing.
+// A constant goes before a name, a name before the usual names. `given` stays 0 if there is
+// nothing.
 bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role,
   const std::string& setName, double constant, const std::vector<std::string>& usualNames,
   vtkDataArray*& array, mcor_array& core, int& given)
@@ -380,8 +381,7 @@ mcor_array vtkMarchingCorrectorsInput::View(vtkDataArray* array)
 //------------------------------------------------------------------------------
 vtkDataArray* vtkMarchingCorrectorsInput::Find(const std::string& role, const std::string& name)
 {
-  return this->Check(
-    role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
+  return this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
 }
 
 //------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: finds the point arrays that a run needs and views them as the core's input.
+ * Private to the module: finds the point arrays that a run needs and views them as the core's
+ * input.
  */
 #ifndef vtkMarchingCorrectorsInput_h
 #define vtkMarchingCorrectorsInput_h
@@ -37,12 +38,11 @@ public:
   /**
    * Fills all members below. False if something is missing or not usable; Error then says what.
    */
-  bool Collect(
-    const vtkMarchingCorrectorsRequest& scalar, const vtkMarchingCorrectorsRequest& dot);
+  bool Collect(const vtkMarchingCorrectorsRequest& scalar, const vtkMarchingCorrectorsRequest& dot);
 
   /**
-   * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest and
-   * highest values are left out, because single particles of a spray have extreme ones.
+   * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest
+   * and highest values are left out, because single particles of a spray have extreme ones.
    */
   double MiddleOfScalarRange() const;
 

@@ -148,8 +148,7 @@ void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
   {
     vtkNew<vtkTypeInt64Array> corners;
     corners->SetNumberOfValues(3 * count);
-    std::copy(
-      this->Surface.triangles, this->Surface.triangles + 3 * count, corners->GetPointer(0));
+    std::copy(this->Surface.triangles, this->Surface.triangles + 3 * count, corners->GetPointer(0));
     vtkNew<vtkTypeInt64Array> offsets;
     offsets->SetNumberOfValues(count + 1);
     for (vtkIdType i = 0; i <= count; ++i)
@@ -166,7 +165,8 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 {
   vtkPointData* pointData = output->GetPointData();
   const vtkIdType count = this->Surface.point_count;
-  const auto add = [pointData](vtkAbstractArray* from, vtkAbstractArray* to) {
+  const auto add = [pointData](vtkAbstractArray* from, vtkAbstractArray* to)
+  {
     to->CopyComponentNames(from);
     Add(pointData, from->GetName(), to);
   };
@@ -183,12 +183,12 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
   }
   vtkNew<vtkIdList> nearest;
   nearest->SetNumberOfIds(count);
-  std::copy(this->Surface.nearest_particle, this->Surface.nearest_particle + count,
-    nearest->GetPointer(0));
+  std::copy(
+    this->Surface.nearest_particle, this->Surface.nearest_particle + count, nearest->GetPointer(0));
   for (vtkAbstractArray* from : this->Input.FromNearest)
   {
-    auto to = vtkSmartPointer<vtkAbstractArray>::Take(
-      vtkAbstractArray::CreateArray(from->GetDataType()));
+    auto to =
+      vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(from->GetDataType()));
     to->SetNumberOfComponents(from->GetNumberOfComponents());
     to->SetNumberOfTuples(count);
     from->GetTuples(nearest, to);
@@ -280,12 +280,11 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   const mcor_statistics& s = this->Surface.statistics;
   AddCount(fieldData, "FluidParticles", { s.fluid_particles });
   AddCount(fieldData, "SolidParticles", { s.solid_particles });
-  AddReal(
-    fieldData, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
+  AddReal(fieldData, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
   AddReal(fieldData, "ScalarRange", { s.scalar_min, s.scalar_max });
   AddReal(fieldData, "CubeSize", { s.cube_size });
-  AddCount(fieldData, "LatticeOrigin",
-    { s.lattice_origin[0], s.lattice_origin[1], s.lattice_origin[2] });
+  AddCount(
+    fieldData, "LatticeOrigin", { s.lattice_origin[0], s.lattice_origin[1], s.lattice_origin[2] });
   AddCount(
     fieldData, "LatticeCells", { s.lattice_cells[0], s.lattice_cells[1], s.lattice_cells[2] });
   AddCount(fieldData, "VirtualCells", { s.virtual_cells });

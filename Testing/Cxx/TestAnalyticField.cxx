@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers: the surface of Radius = 0.6 against a brute-force evaluation of the same field, in double
-// precision, and against the sphere it nearly is.
+// Numbers: the surface of Radius = 0.6 against a brute-force evaluation of the same field, in
+// double precision, and against the sphere it nearly is.
 #include "TestParticles.h"
 
 #include "vtkFieldData.h"
@@ -35,10 +35,12 @@ bool IsClosedAndOriented(vtkPolyData* surface)
       ++edges[{ t->GetId(e), t->GetId((e + 1) % 3) }];
     }
   }
-  return std::all_of(edges.begin(), edges.end(), [&edges](const auto& edge) {
-    const auto twin = edges.find({ edge.first.second, edge.first.first });
-    return edge.second == 1 && twin != edges.end() && twin->second == 1;
-  });
+  return std::all_of(edges.begin(), edges.end(),
+    [&edges](const auto& edge)
+    {
+      const auto twin = edges.find({ edge.first.second, edge.first.first });
+      return edge.second == 1 && twin != edges.end() && twin->second == 1;
+    });
 }
 
 // Area, and whether the triangles' normals agree with the vertex normals and point inward.
@@ -125,7 +127,8 @@ void TestSphere(bool shepard)
     worst = i % 13 == 0 ? std::max(worst, Residual(cube, x, 0.6, shepard)) : worst;
   }
   std::cout << (shepard ? "Shepard" : "sum") << ": " << surface->GetNumberOfPoints()
-            << " points, residual " << worst << ", radius " << shortest << " to " << longest << "\n";
+            << " points, residual " << worst << ", radius " << shortest << " to " << longest
+            << "\n";
   CHECK(worst < 1e-5 * std::sqrt(3.0));
   if (shepard) // the sum has a second sheet along the faces of the cube
   {
@@ -149,9 +152,9 @@ void TestFreeSurface()
   {
     double x[3];
     surface->GetPoint(i, x);
-    const double w = test::EvaluateField(
-      cube, cube->GetPointData()->GetArray("Radius"), test::SmoothingLength, x)
-                       .Weight;
+    const double w =
+      test::EvaluateField(cube, cube->GetPointData()->GetArray("Radius"), test::SmoothingLength, x)
+        .Weight;
     worst = std::max(worst, std::fabs(w - 0.5));
   }
   std::cout << "free surface: " << surface->GetNumberOfPoints() << " points, residual " << worst
@@ -197,7 +200,8 @@ void TestDefaultValue()
   auto cube = test::MakeCube();
   vtkDataArray* radius = cube->GetPointData()->GetArray("Radius");
   auto filter = test::MakeSphereFilter(cube);
-  const auto used = [&filter]() {
+  const auto used = [&filter]()
+  {
     filter->Update();
     CHECK(filter->GetOutput()->GetNumberOfCells() > 0);
     vtkDataArray* values = filter->GetOutput()->GetFieldData()->GetArray("IsoValues");

@@ -68,11 +68,14 @@ void TestVectors()
   test::AddArray<vtkSOADataArrayTemplate<double>>(cube, "SoaVector", 3, position);
   test::AddArray<vtkDoubleArray>(
     cube, "Third", 1, [&](vtkIdType i, int) { return position(i, 2); });
-  test::AddArray<vtkDoubleArray>(cube, "Square", 1, [&](vtkIdType i, int) {
-    const double x = position(i, 0), y = position(i, 1), z = position(i, 2);
-    return x * x + y * y + z * z;
-  });
-  const auto extract = [&cube](const char* first, const char* second, int component, double iso) {
+  test::AddArray<vtkDoubleArray>(cube, "Square", 1,
+    [&](vtkIdType i, int)
+    {
+      const double x = position(i, 0), y = position(i, 1), z = position(i, 2);
+      return x * x + y * y + z * z;
+    });
+  const auto extract = [&cube](const char* first, const char* second, int component, double iso)
+  {
     auto filter = test::MakeSphereFilter(cube);
     filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, first);
     if (second)
@@ -185,8 +188,7 @@ void TestInputUnmodified()
   CHECK(test::SameValues(before->GetPoints()->GetData(), cube->GetPoints()->GetData()));
   for (int i = 0; i < arrays; ++i)
   {
-    CHECK(test::SameValues(
-      before->GetPointData()->GetArray(i), cube->GetPointData()->GetArray(i)));
+    CHECK(test::SameValues(before->GetPointData()->GetArray(i), cube->GetPointData()->GetArray(i)));
   }
 }
 }

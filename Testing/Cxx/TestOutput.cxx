@@ -90,8 +90,9 @@ void TestAttributes()
     for (int c = 0; c < 3; ++c)
     {
       vtkNew<vtkDoubleArray> component;
-      cube->GetPointData()->GetArray("Position")->GetData(
-        0, cube->GetNumberOfPoints() - 1, c, c, component);
+      cube->GetPointData()
+        ->GetArray("Position")
+        ->GetData(0, cube->GetNumberOfPoints() - 1, c, c, component);
       const double expected =
         test::EvaluateField(cube, component, test::SmoothingLength, x).Shepard;
       CHECK(std::fabs(position->GetComponent(i, c) - expected) < 1e-5);
@@ -123,8 +124,7 @@ void TestComputedArrays()
   CHECK(data->GetScalars() && data->GetScalars()->GetDataType() == VTK_DOUBLE);
   CHECK(data->GetScalars() && data->GetScalars()->GetRange()[0] == 0.6);
 
-  filter->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Position");
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Position");
   filter->Update();
   data = filter->GetOutput()->GetPointData();
   CHECK(data->HasArray("Position_Magnitude") && data->HasArray("Position"));

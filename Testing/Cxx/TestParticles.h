@@ -24,14 +24,14 @@
 #include <iostream>
 #include <string>
 
-#define CHECK(condition)                                                                           \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      std::cerr << __FILE__ << ":" << __LINE__ << ": failed: " #condition << std::endl;            \
-      ++failures;                                                                                  \
-    }                                                                                              \
+#define CHECK(condition)                                                                \
+  do                                                                                    \
+  {                                                                                     \
+    if (!(condition))                                                                   \
+    {                                                                                   \
+      std::cerr << __FILE__ << ":" << __LINE__ << ": failed: " #condition << std::endl; \
+      ++failures;                                                                       \
+    }                                                                                   \
   } while (0)
 
 namespace test
@@ -67,7 +67,8 @@ inline vtkSmartPointer<vtkPolyData> MakeCube(int pointType = VTK_DOUBLE)
   vtkNew<vtkPoints> points;
   points->SetDataType(pointType);
   unsigned int seed = 1;
-  const auto jitter = [&seed]() {
+  const auto jitter = [&seed]()
+  {
     seed = seed * 1664525u + 1013904223u;
     return (static_cast<double>(seed >> 8) / (1 << 24) - 0.5) * 0.2 * Spacing;
   };
@@ -89,11 +90,13 @@ inline vtkSmartPointer<vtkPolyData> MakeCube(int pointType = VTK_DOUBLE)
     cube, "SmoothingLength", 1, [](vtkIdType, int) { return SmoothingLength; });
   AddArray<vtkDoubleArray>(
     cube, "Volume", 1, [](vtkIdType, int) { return Spacing * Spacing * Spacing; });
-  AddArray<vtkDoubleArray>(cube, "Radius", 1, [&](vtkIdType i, int) {
-    double x[3];
-    points->GetPoint(i, x);
-    return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-  });
+  AddArray<vtkDoubleArray>(cube, "Radius", 1,
+    [&](vtkIdType i, int)
+    {
+      double x[3];
+      points->GetPoint(i, x);
+      return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    });
   return cube;
 }
 
@@ -107,7 +110,8 @@ inline vtkSmartPointer<vtkMarchingCorrectors> MakeSphereFilter(vtkDataObject* in
   return filter;
 }
 
-/** The cubic spline as the textbooks have it, unit h, by brute force: no code shared with the core. */
+/** The cubic spline as the textbooks have it, unit h, by brute force: no code shared with the core.
+ */
 inline double CubicSpline(double q)
 {
   const double pi = 3.14159265358979323846;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is kept on the device between runs never changes a result, and an aborted run leaves an empty
-// output and a filter that works.
+// What is kept on the device between runs never changes a result, and an aborted run leaves an
+// empty output and a filter that works.
 #include "TestParticles.h"
 
 #include "vtkCallbackCommand.h"
@@ -36,9 +36,8 @@ std::vector<Step> Steps()
     { "other iso value", [](Filter* f, vtkPolyData*) { f->SetValue(0, 0.5); } },
     { "two iso values", [](Filter* f, vtkPolyData*) { f->SetValue(1, 0.7); } },
     { "other scalar",
-      [](Filter* f, vtkPolyData*) {
-        f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Other");
-      } },
+      [](Filter* f, vtkPolyData*)
+      { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Other"); } },
     { "other cube size", [](Filter* f, vtkPolyData*) { f->SetCubeSizeFactor(0.7); } },
     { "other scale", [](Filter* f, vtkPolyData*) { f->SetHScaleFactor(0.8); } },
     { "other kernel", [](Filter* f, vtkPolyData*) { f->SetKernelToWendlandC2(); } },
@@ -48,17 +47,20 @@ std::vector<Step> Steps()
     { "free surface", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOn(); } },
     { "scalar again", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOff(); } },
     { "particle moved, data set told",
-      [](Filter*, vtkPolyData* cube) {
+      [](Filter*, vtkPolyData* cube)
+      {
         MoveParticle(cube);
         cube->Modified();
       } },
     { "particle moved, points told",
-      [](Filter*, vtkPolyData* cube) {
+      [](Filter*, vtkPolyData* cube)
+      {
         MoveParticle(cube);
         cube->GetPoints()->Modified();
       } },
     { "scalar changed in place",
-      [](Filter*, vtkPolyData* cube) {
+      [](Filter*, vtkPolyData* cube)
+      {
         vtkDataArray* other = cube->GetPointData()->GetArray("Other");
         for (vtkIdType i = 0; i < other->GetNumberOfTuples(); ++i)
         {
@@ -81,9 +83,8 @@ vtkSmartPointer<vtkPolyData> MakeParticles()
 {
   auto cube = test::MakeCube();
   vtkDataArray* radius = cube->GetPointData()->GetArray("Radius");
-  test::AddArray<vtkFloatArray>(cube, "Other", 1, [&](vtkIdType i, int) {
-    return radius->GetComponent(i, 0) + 0.1 * cube->GetPoint(i)[0];
-  });
+  test::AddArray<vtkFloatArray>(cube, "Other", 1,
+    [&](vtkIdType i, int) { return radius->GetComponent(i, 0) + 0.1 * cube->GetPoint(i)[0]; });
   test::AddArray<vtkFloatArray>(
     cube, "Type", 1, [&](vtkIdType i, int) { return cube->GetPoint(i)[1] > 0.3 ? 1.0 : 0.0; });
   return cube;
@@ -107,8 +108,8 @@ void TestSteps()
     }
     fresh->Update();
     const bool same = test::SameSurface(lasting->GetOutput(), fresh->GetOutput());
-    std::cout << steps[last].Name << ": " << fresh->GetOutput()->GetNumberOfCells()
-              << " triangles" << (same ? "" : ", differs") << "\n";
+    std::cout << steps[last].Name << ": " << fresh->GetOutput()->GetNumberOfCells() << " triangles"
+              << (same ? "" : ", differs") << "\n";
     CHECK(same);
     CHECK(std::strcmp(lasting->GetErrorMessage(), fresh->GetErrorMessage()) == 0);
   }

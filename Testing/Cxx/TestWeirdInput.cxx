@@ -67,30 +67,28 @@ std::vector<Case> MissingOrMistyped()
 {
   return {
     { "no scalar", { "scalar", "free surface", "Radius" },
-      [](Filter* f) {
-        f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
-      },
+      [](Filter* f)
+      { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, ""); },
       Nothing },
-    { "unknown scalar", { "'NoSuch'", "scalar", "Radius" },
-      [](Filter* f) { Scalar(f, "NoSuch"); }, Nothing },
+    { "unknown scalar", { "'NoSuch'", "scalar", "Radius" }, [](Filter* f) { Scalar(f, "NoSuch"); },
+      Nothing },
     { "cell scalar", { "scalar", "point array" },
-      [](Filter* f) {
-        f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Radius");
-      },
+      [](Filter* f)
+      { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Radius"); },
       Nothing },
     { "text scalar", { "'Text'", "numbers" }, [](Filter* f) { Scalar(f, "Text"); }, AddText },
     { "short scalar", { "'Short'", "9261 points" }, [](Filter* f) { Scalar(f, "Short"); },
       AddShort },
     { "no such component", { "'Vector'", "component 7" },
-      [](Filter* f) {
+      [](Filter* f)
+      {
         Scalar(f, "Vector");
         f->SetScalarComponent(7);
       },
       AddVectors },
     { "dot product of unequal arrays", { "dot product", "'Vector'" },
-      [](Filter* f) {
-        f->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Vector");
-      },
+      [](Filter* f)
+      { f->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Vector"); },
       AddVectors },
     { "unknown smoothing length", { "'NoSuch'", "smoothing length", "Point arrays" },
       [](Filter* f) { f->SetSmoothingLengthArrayName("NoSuch"); }, Nothing },
@@ -143,7 +141,8 @@ std::vector<Case> IllegalValues()
 
 bool Contains(const std::string& sentence, const char* word)
 {
-  const auto lower = [](std::string s) {
+  const auto lower = [](std::string s)
+  {
     for (char& c : s)
     {
       c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -93,7 +93,7 @@ typedef struct mcor_brick_data
 typedef struct mcor_bricks
 {
   int block_count, block_shift;
-  mcor_buffer block_keys, block_buckets, block_keep, region_keep;
+  mcor_buffer block_keys, block_buckets, block_keep, region_keep, inside;
   mcor_buffer marks;      /* ushort [block_count][512], of this iso value */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now, last; /* last: the other half of a double buffer */
@@ -197,6 +197,7 @@ extern const char mcor_source_mcor_field_cl[];
 extern const char mcor_source_mcor_scan_cl[];
 extern const char mcor_source_mcor_grid_cl[];
 extern const char mcor_source_mcor_brick_cl[];
+extern const char mcor_source_mcor_node_cl[];
 extern const char mcor_source_mcor_seed_cl[];
 extern const char mcor_source_mcor_march_cl[];
 extern const char mcor_source_mcor_pair_cl[];

@@ -55,11 +55,18 @@ static mcor_status mcor_mark_complete(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, block_keep, (size_t)bricks->block_count));
   MCOR_TRY(mcor_test_regions(context, iso, MCOR_BLOCK_CUBES, 1, block_keep, block_keep));
   MCOR_TRY(mcor_test_regions(context, iso, 8, 64, block_keep, region_keep));
-  return MCOR_LAUNCH(context, "mcor_seed_brick", MCOR_HEAVY,
-    bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_GRID_ARGS(context),
-    MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(region_keep), MCOR_REAL(iso),
-    MCOR_BUFFER(&bricks->marks));
+  const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
+  MCOR_TRY(mcor_reserve(context, &bricks->inside, (size_t)count));
+  if (context->options->field == MCOR_WEIGHT_SUM)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_inside", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+      MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
+      MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(region_keep), MCOR_REAL(iso),
+      MCOR_BUFFER(&bricks->inside)));
+  }
+  return MCOR_LAUNCH(context, "mcor_seed_brick", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(region_keep), MCOR_BUFFER(&bricks->inside),
+    MCOR_REAL(iso), MCOR_BUFFER(&bricks->marks));
 }
 
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */

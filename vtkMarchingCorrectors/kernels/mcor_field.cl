@@ -81,6 +81,7 @@ typedef struct
   fix low[3], high[3];
   real center[3], half_size[3]; /* cubes, relative to low */
   float radius;                 /* cubes; >= 0: instead of the particles' own support */
+  float share;                  /* of the support that is asked for, 1 for all of it */
   float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
   int level, first[3], last[3], y, z;
   int begin, end; /* particles left of the current row */
@@ -90,7 +91,7 @@ typedef struct
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   const mcor_level level = grid->levels[query->level];
-  const float support = query->radius >= 0 ? query->radius : level.support;
+  const float support = query->radius >= 0 ? query->radius : level.support * query->share;
   const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
   const fix reach = (fix)far;
   query->cell_size = 1 / level.inv_cell;
@@ -186,6 +187,7 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
 real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, int count)
 {
   real coarsest = grid->inv_h[begin];
+  query->share = 1;
   for (int a = 0; a < 3; ++a)
   {
     __global const fix* p = a == 0 ? grid->px : a == 1 ? grid->py : grid->pz;
@@ -212,12 +214,13 @@ fixv mcor_reaches(const mcor_grid* grid, const mcor_query* query, fixv x, fixv y
   const realv dz = fmax(
     fabs(MCOR_CONVERT_REALV(z - query->low[2]) * grid->unit - query->center[2]) - query->half_size[2],
     (realv)0);
+  const real reach = MCOR_SUPPORT * query->share;
 #if MCOR_TENSOR
   const realv q = fmax(dx, fmax(dy, dz)) * inv_h;
-  const realv limit = (realv)MCOR_SUPPORT;
+  const real limit = reach;
 #else
   const realv q = (dx * dx + dy * dy + dz * dz) * inv_h * inv_h;
-  const realv limit = (realv)(MCOR_SUPPORT * MCOR_SUPPORT);
+  const real limit = reach * reach;
 #endif
   /* The margin covers rounding: a particle kept in vain adds exactly 0. */
   return q < limit * (real)1.0001;

@@ -8,9 +8,6 @@
  * over voids without any fluid, and rounding noise of a kernel's rim would count as a value. */
 #define MCOR_LEAST_WEIGHT ((real)1e-3)
 
-#define MCOR_NODE_GROUPS (64 / MCOR_LANES)
-#define MCOR_PLANE_GROUPS (MCOR_LANES == 1 ? 16 : 16 / MCOR_LANES)
-
 /* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
  * are not yet known, rounded up to whole planes of 16. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
@@ -38,56 +35,6 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
     planes |= (m[0] >> (16 * z) & MCOR_LOW_Z) ? MCOR_LOW_Z << (16 * z) : 0;
   }
   need[slot] = planes & ~known[slot];
-}
-
-/* Sums at the nodes of a brick: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
-typedef struct
-{
-  realv s[MCOR_NODE_GROUPS], w[MCOR_NODE_GROUPS];
-#if MCOR_SOLIDS
-  realv t[MCOR_NODE_GROUPS];
-#endif
-} mcor_node_sums;
-
-/* Adds particle j to the planes of `need`; its position relative to the brick is (x, y, z). */
-void mcor_march_add(const mcor_grid* grid, int j, real x, real y, real z, ulong need,
-  const realv* lane_x, const realv* lane_y, mcor_node_sums* sums)
-{
-  const real inv_h = grid->inv_h[j];
-#if MCOR_SOLIDS
-  const real trim = grid->trim_weight[j];
-#endif
-  const real weight = grid->weight[j], c = MCOR_FIELD == 2 ? (real)0 : weight * grid->value[j];
-  realv planar[MCOR_PLANE_GROUPS];
-  for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
-  {
-    planar[g] = mcor_planar(x - lane_x[g], y - lane_y[g], inv_h);
-  }
-  const real beside_x = fmax(fabs(x - (real)1.5) - (real)1.5, (real)0);
-  const real beside_y = fmax(fabs(y - (real)1.5) - (real)1.5, (real)0);
-  for (int plane = 0; plane < 4; ++plane)
-  {
-    const real dz = z - plane;
-#if MCOR_TENSOR
-    const bool near = fabs(dz) * inv_h < MCOR_SUPPORT;
-#else
-    const bool near = (beside_x * beside_x + beside_y * beside_y + dz * dz) * inv_h * inv_h <
-      MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001;
-#endif
-    if ((need >> (16 * plane) & 1) && near)
-    {
-      for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
-      {
-        const int n = plane * MCOR_PLANE_GROUPS + g;
-        const realv w = mcor_weight(planar[g], (realv)dz, inv_h);
-        sums->s[n] += c * w;
-        sums->w[n] += weight * w;
-#if MCOR_SOLIDS
-        sums->t[n] += trim * w;
-#endif
-      }
-    }
-  }
 }
 
 /* The field's value and the trimming weight (-1: no valid value) of node n of a brick. */
@@ -127,32 +74,8 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
   const fix origin_z = query.low[2];
   query.low[2] = origin_z + ((fix)low << fix_bits);
   query.high[2] = origin_z + ((fix)high << fix_bits);
-  realv lane_x[MCOR_PLANE_GROUPS], lane_y[MCOR_PLANE_GROUPS];
-  for (int n = 0; n < 16; ++n)
-  {
-    MCOR_SET(lane_x[n / MCOR_LANES], n % MCOR_LANES) = n & 3;
-    MCOR_SET(lane_y[n / MCOR_LANES], n % MCOR_LANES) = n >> 2;
-  }
   mcor_node_sums sums;
-  for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
-  {
-    sums.s[g] = sums.w[g] = 0;
-#if MCOR_SOLIDS
-    sums.t[g] = 0;
-#endif
-  }
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
-  {
-    for (int i = 0; i < tile.count; ++i)
-    {
-      const int j = tile.list[i];
-      mcor_march_add(&grid, j, (real)(px[j] - query.low[0]) * grid.unit,
-        (real)(py[j] - query.low[1]) * grid.unit, (real)(pz[j] - origin_z) * grid.unit, wanted,
-        lane_x, lane_y, &sums);
-    }
-  }
+  mcor_node_sum(&grid, &query, origin_z, wanted, &sums);
   for (int n = 0; n < 64; ++n)
   {
     if (wanted >> n & 1)

@@ -40,6 +40,7 @@ typedef fix fixv; /* also the result of comparing two realv */
 #define MCOR_AS_REALV MCOR_CAT(as_, MCOR_REAL_NAME)
 #define MCOR_AS_FIXV MCOR_CAT(as_, MCOR_FIX_NAME)
 #define MCOR_ANY(mask) ((mask) != 0)
+#define MCOR_ALL(mask) ((mask) != 0)
 #define MCOR_TRUE 1
 #define MCOR_GET(v, lane) (v)
 #define MCOR_SET(v, lane) (v)
@@ -51,6 +52,7 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_AS_REALV MCOR_CAT(as_, MCOR_CAT(MCOR_REAL_NAME, MCOR_LANES))
 #define MCOR_AS_FIXV MCOR_CAT(as_, MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES))
 #define MCOR_ANY(mask) any(mask)
+#define MCOR_ALL(mask) all(mask)
 #define MCOR_TRUE (-1)
 #define MCOR_GET(v, lane) (((const real*)&(v))[lane])
 #define MCOR_SET(v, lane) (((real*)&(v))[lane])

@@ -49,9 +49,13 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, real ez, realv side
  * and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
 
+/* Whether mcor_seed_inside has been run. */
+#define MCOR_INSIDE_DECIDES (MCOR_FIELD == 2 && !MCOR_TENSOR)
+
 void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bits)
 {
   query->radius = -1;
+  query->share = 1;
   query->low[0] = (fix)x << fix_bits;
   query->low[1] = (fix)y << fix_bits;
   query->low[2] = (fix)z << fix_bits;
@@ -200,6 +204,13 @@ bool mcor_seed_region_may_cross(
 #define MCOR_REGION_CUBES 8
 #define MCOR_BLOCK_REGIONS 64
 
+/* Region of the brick with mark m. */
+int mcor_seed_region_of(int m)
+{
+  const int region = (m >> 1 & 3) | (m >> 4 & 3) << 2 | (m >> 7 & 3) << 4;
+  return m / MCOR_BLOCK_BRICKS * MCOR_BLOCK_REGIONS + region;
+}
+
 /* One work-item = one region of `size` cubes: a block (32), or one of its 64 regions (8), x fastest.
  * Reads the particles that reach it, and what is known of the blocks. Writes whether the iso value
  * may occur in it. */
@@ -231,22 +242,73 @@ __kernel void mcor_seed_region(MCOR_GRID_PARAMS, const int block_count, const in
   keep[i] = mcor_seed_region_may_cross(&grid, &query, &tile, (real)size, iso);
 }
 
-/* One work-item = one brick (of all in blocks). Reads the particles that reach its cells. Writes its
- * mark: the boxes in which the bound admits a crossing. */
-__kernel void mcor_seed_brick(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+/* One work-item = one brick (of all in blocks), for the weight sum of a kernel w >= 0. Reads the
+ * particles within half the support of its nodes, an eighth of all, which make up most of the sum
+ * there. Writes whether they alone lift all 64 nodes to the iso value: the rest can only add. The
+ * margin is above rounding. Far inside the fluid, this is all that is ever evaluated. */
+__kernel void mcor_seed_inside(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, __global const uchar* keep, const real iso,
-  __global ushort* marks)
+  __global uchar* inside)
 {
   const int m = get_global_id(0);
-  const int region = (m >> 1 & 3) | (m >> 4 & 3) << 2 | (m >> 7 & 3) << 4;
-  if (m >= block_count * MCOR_BLOCK_BRICKS ||
-    !keep[m / MCOR_BLOCK_BRICKS * MCOR_BLOCK_REGIONS + region])
+  if (m >= block_count * MCOR_BLOCK_BRICKS)
+  {
+    return;
+  }
+  /* A region without the iso value is not examined, whatever is said of it here. */
+  inside[m] = 1;
+  if (!keep[mcor_seed_region_of(m)])
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+  mcor_query query;
+  mcor_seed_box(
+    &query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK, 3, fix_bits);
+  query.share = 0.5f;
+  mcor_node_sums sums;
+  mcor_node_sum(&grid, &query, query.low[2], ~0UL, &sums);
+  fixv lowest_is_above = sums.w[0] > iso * (real)1.0001f;
+  for (int g = 1; g < MCOR_NODE_GROUPS; ++g)
+  {
+    lowest_is_above = lowest_is_above && sums.w[g] > iso * (real)1.0001f;
+  }
+  inside[m] = MCOR_ALL(lowest_is_above) ? 1 : 0;
+}
+
+/* Whether a brick's cells have all their nodes inside: its own, and those of its upper neighbours. */
+bool mcor_seed_is_inside(MCOR_BLOCK_PARAMS, int4 brick, __global const uchar* inside)
+{
+  for (int d = 0; d < 8; ++d)
+  {
+    const int m = mcor_find_mark(
+      MCOR_BLOCK_ARGS, brick.x + (d & 1), brick.y + (d >> 1 & 1), brick.z + (d >> 2));
+    if (m < 0 || !inside[m])
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* One work-item = one brick (of all in blocks). Reads the particles that reach its cells. Writes its
+ * mark: the boxes in which the bound admits a crossing. */
+__kernel void mcor_seed_brick(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* keep,
+  __global const uchar* inside, const real iso, __global ushort* marks)
+{
+  const int m = get_global_id(0);
+  if (m >= block_count * MCOR_BLOCK_BRICKS || !keep[mcor_seed_region_of(m)])
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
   const real level = MCOR_FIELD == 0 ? (real)0 : iso;
   const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+  if (MCOR_INSIDE_DECIDES && mcor_seed_is_inside(MCOR_BLOCK_ARGS, brick, inside))
+  {
+    return;
+  }
   mcor_query query;
   mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
     MCOR_BRICK, fix_bits);

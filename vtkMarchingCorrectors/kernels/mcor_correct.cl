@@ -90,7 +90,6 @@ void mcor_points_load(__global const int4* node, int begin, int end, int fix_bit
   points->z = MCOR_CAT(vload, MCOR_LANES)(0, n[2]);
 #endif
   query->radius = -1;
-  query->share = 1;
   for (int a = 0; a < 3; ++a)
   {
     query->low[a] = (fix)low[a] << fix_bits;

@@ -80,18 +80,37 @@ typedef struct
 {
   fix low[3], high[3];
   real center[3], half_size[3]; /* cubes, relative to low */
-  float radius;                 /* cubes; >= 0: instead of the particles' own support */
-  float share;                  /* of the support that is asked for, 1 for all of it */
+  float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
   float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
   int level, first[3], last[3], y, z;
   int begin, end; /* particles left of the current row */
 } mcor_query;
 
+/* A level whose rows in reach outnumber its particles is taken as one run, so that a coarse particle
+ * does not walk through the empty rows of fine levels. */
+void mcor_query_sparse_level(const mcor_grid* grid, mcor_query* query, const mcor_level* level)
+{
+  const long rows = (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1);
+  if (rows <= 64)
+  {
+    return;
+  }
+  const ulong cells = (ulong)level->cells[0] * level->cells[1] * level->cells[2];
+  const int begin = mcor_first_particle(grid, level->base);
+  const int end = mcor_first_particle(grid, level->base + cells);
+  if (end - begin < rows)
+  {
+    query->begin = begin;
+    query->end = end;
+    query->z = query->last[2];
+  }
+}
+
 /* The part of a query that depends on the level; false where the level has no cell in reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   const mcor_level level = grid->levels[query->level];
-  const float support = query->radius >= 0 ? query->radius : level.support * query->share;
+  const float support = query->radius >= 0 ? query->radius : -query->radius * level.support;
   const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
   const fix reach = (fix)far;
   query->cell_size = 1 / level.inv_cell;
@@ -105,7 +124,26 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
   }
   query->y = query->last[1]; /* as if the row before the first one had just ended */
   query->z = query->first[2] - 1;
+  query->begin = query->end = 0;
+  if (some)
+  {
+    mcor_query_sparse_level(grid, query, &level);
+  }
   return some;
+}
+
+/* Moves to the first level from `level` on that has cells in reach. */
+bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int level)
+{
+  query->begin = query->end = 0;
+  for (query->level = level; query->level < grid->level_count; ++query->level)
+  {
+    if (mcor_query_level(grid, query))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
@@ -115,14 +153,7 @@ void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
     query->half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
     query->center[a] = query->half_size[a];
   }
-  query->begin = query->end = 0;
-  for (query->level = 0; query->level < grid->level_count; ++query->level)
-  {
-    if (mcor_query_level(grid, query))
-    {
-      return;
-    }
-  }
+  mcor_query_next_level(grid, query, 0);
 }
 
 /* Square of the distance between the box and a cell along an axis, less what rounding may have moved
@@ -163,12 +194,9 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
       query->y = query->first[1];
       if (++query->z > query->last[2])
       {
-        for (++query->level; query->level < grid->level_count; ++query->level)
+        if (mcor_query_next_level(grid, query, query->level + 1) && query->begin < query->end)
         {
-          if (mcor_query_level(grid, query))
-          {
-            break;
-          }
+          return true;
         }
         continue;
       }
@@ -187,7 +215,6 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
 real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, int count)
 {
   real coarsest = grid->inv_h[begin];
-  query->share = 1;
   for (int a = 0; a < 3; ++a)
   {
     __global const fix* p = a == 0 ? grid->px : a == 1 ? grid->py : grid->pz;
@@ -214,7 +241,7 @@ fixv mcor_reaches(const mcor_grid* grid, const mcor_query* query, fixv x, fixv y
   const realv dz = fmax(
     fabs(MCOR_CONVERT_REALV(z - query->low[2]) * grid->unit - query->center[2]) - query->half_size[2],
     (realv)0);
-  const real reach = MCOR_SUPPORT * query->share;
+  const real reach = query->radius >= 0 ? MCOR_SUPPORT : -query->radius * MCOR_SUPPORT;
 #if MCOR_TENSOR
   const realv q = fmax(dx, fmax(dy, dz)) * inv_h;
   const real limit = reach;

@@ -55,7 +55,6 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, real ez, realv side
 void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bits)
 {
   query->radius = -1;
-  query->share = 1;
   query->low[0] = (fix)x << fix_bits;
   query->low[1] = (fix)y << fix_bits;
   query->low[2] = (fix)z << fix_bits;
@@ -266,7 +265,7 @@ __kernel void mcor_seed_inside(MCOR_GRID_PARAMS, const int block_count, const in
   mcor_query query;
   mcor_seed_box(
     &query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK, 3, fix_bits);
-  query.share = 0.5f;
+  query.radius = -0.5f;
   mcor_node_sums sums;
   mcor_node_sum(&grid, &query, query.low[2], ~0UL, &sums);
   fixv lowest_is_above = sums.w[0] > iso * (real)1.0001f;

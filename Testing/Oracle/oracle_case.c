@@ -118,7 +118,7 @@ static void case_print(const case_run* run)
   printf("%-44s %-8s edges %lld found %lld missing %lld extra %lld excused %lld+%lld trimmed %lld"
          " comp %lld/-%lld tri %lld residual %.2g jumps %lld dist %.2g normal %.3g (flat %lld) open %lld"
          " holes %lld nonmanifold %lld+%lld clash %lld degenerate %lld coincident %lld trim %lld"
-         " linear %lld w %.2g f %.2g\n",
+         " linear %lld (%lld) w %.2g f %.2g\n",
     run->at->name, run->mode, (long long)c->edges, (long long)c->matched, (long long)c->missing,
     (long long)c->extra, (long long)c->excused, (long long)c->rounding, (long long)c->trimmed,
     (long long)c->components, (long long)c->components_missing,
@@ -128,7 +128,7 @@ static void case_print(const case_run* run)
     (long long)m->faults[MESH_ORIENTATION_CLASH],
     (long long)(m->faults[MESH_ZERO_AREA] + m->faults[MESH_REPEATED_INDEX]),
     (long long)m->faults[MESH_COINCIDENT_POINT], (long long)c->trim_vertices,
-    (long long)c->trim_linear, c->trim_weight_error, c->trim_residual);
+    (long long)c->trim_linear, (long long)c->trim_avoidable, c->trim_weight_error, c->trim_residual);
 }
 
 static void case_check_mesh(case_run* run)
@@ -183,7 +183,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
     (long long)c->inverted_triangles, c->first);
   case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g",
     c->trim_weight_error);
-  case_expect(run, c->trim_residual <= residual, "trim vertices: residual %.3g", c->trim_residual);
+  /* Where kernels with lobes leave gaps, trimming may cut through steep flanks at low weight. */
+  case_expect(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual, "trim vertices: residual %.3g", c->trim_residual);
   case_expect(run, c->below_threshold == 0, "%lld vertices below the vertex threshold",
     (long long)c->below_threshold);
   if (!run->at->rough)

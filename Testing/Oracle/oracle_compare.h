@@ -64,6 +64,7 @@ extern "C"
     int64_t holes;            /* boundary edges that neither trimming nor an invalid cell explains */
 
     int64_t trim_vertices, trim_linear;
+    int64_t trim_avoidable; /* linear cuts with an exact one (f = iso, w = threshold) within a cube */
     double trim_weight_error, trim_residual; /* of exact trim vertices */
     int64_t below_threshold;                 /* vertices kept although their weight is too low */
     int64_t near_threshold;                  /* vertices that rounding may keep or cut away */

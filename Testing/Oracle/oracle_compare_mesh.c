@@ -112,6 +112,56 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
+/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold, within
+ * one cube. */
+static int compare_exact_cut_near(const compare_state* state, const double start[3])
+{
+  const oracle_reference* reference = state->reference;
+  double p[3] = { start[0], start[1], start[2] };
+  for (int step = 0; step < 100; ++step)
+  {
+    oracle_sample s;
+    oracle_evaluate(&reference->field, NULL, p, &s);
+    const double f = s.value - reference->limits.iso;
+    const double w = s.trim_weight - state->options->vertex_threshold;
+    if (fabs(f) <= 1e-7 * reference->range && fabs(w) <= 1e-7)
+    {
+      return 1;
+    }
+    double ff = 0.0;
+    double ww = 0.0;
+    double fw = 0.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      ff += s.gradient[a] * s.gradient[a];
+      ww += s.trim_gradient[a] * s.trim_gradient[a];
+      fw += s.gradient[a] * s.trim_gradient[a];
+    }
+    const double determinant = ff * ww - fw * fw;
+    double distance = 0.0;
+    double length = 0.0;
+    double d[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      d[a] = -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * s.trim_gradient[a]) /
+        determinant;
+      length += d[a] * d[a];
+    }
+    const double most = 0.1 * reference->lattice.cube;
+    const double damping = length > most * most ? most / sqrt(length) : 1.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      p[a] += damping * d[a];
+      distance += (p[a] - start[a]) * (p[a] - start[a]);
+    }
+    if (!(determinant > 1e-6 * ff * ww && sqrt(distance) <= reference->lattice.cube))
+    {
+      return 0;
+    }
+  }
+  return 0;
+}
+
 static void compare_trim_vertex(
   compare_state* state, int64_t v, const oracle_sample* sample, double residual)
 {
@@ -120,6 +170,7 @@ static void compare_trim_vertex(
   if (state->surface->boundary_flag[v] == 2)
   {
     ++result->trim_linear;
+    result->trim_avoidable += compare_exact_cut_near(state, &state->surface->points[3 * v]);
     return;
   }
   result->trim_residual = fmax(result->trim_residual, residual);

@@ -1,0 +1,244 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Normals, gradients, attributes and nearest particles. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double length_of(const double x[3])
+{
+  return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+/* Gradients and normals against double precision; normals look to lower values. */
+static void check_normals(
+  mcor_context* context, mcor_sph_kernel kernel, mcor_field kind, mcor_type precision)
+{
+  core_set set = core_make_block(10, 0.2, 3, core_ball);
+  const double iso = kind == MCOR_WEIGHT_SUM ? 0.5 : 1.5;
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.gradients = 1;
+  options.sph_kernel = kernel;
+  options.field = kind;
+  options.precision = precision;
+  mcor_surface surface = core_extract(context, &input, &options);
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, (oracle_kind)kind, 1));
+  const double degrees = precision == MCOR_FLOAT64 ? 0.001 : 0.5;
+  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    oracle_sample sample;
+    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
+    const double slope = length_of(sample.gradient);
+    double n[3], cross[3], dot = 0, difference = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      n[a] = (double)surface.normals[3 * i + a];
+      dot -= n[a] * sample.gradient[a] / slope;
+      difference = fmax(difference, fabs(surface.gradients[3 * i + a] - sample.gradient[a]));
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const int u = (a + 1) % 3, v = (a + 2) % 3;
+      cross[a] = (n[u] * sample.gradient[v] - n[v] * sample.gradient[u]) / slope;
+    }
+    CORE_CHECK(fabs(length_of(n) - 1) < 1e-5, "length %g of a normal", length_of(n));
+    if (slope > 1e-2 * sample.gradient_scale)
+    {
+      const double angle = asin(fmin(length_of(cross), 1)) * 57.29578;
+      CORE_CHECK(dot > 0 && angle < degrees, "kernel %s, field %d: %g degrees off",
+        mcor_sph_kernel_name(kernel), (int)kind, angle);
+    }
+    CORE_CHECK(difference < 1e-4 * (slope + sample.gradient_scale), "gradient off by %g of %g",
+      difference, slope);
+  }
+  oracle_free_field(&field);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void test_normals(void** state)
+{
+  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
+  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64);
+  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32);
+  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32);
+  check_normals(*state, MCOR_M_PRIME_4, MCOR_SHEPARD, MCOR_FLOAT64);
+  check_normals(*state, MCOR_WENDLAND_C2, MCOR_SHEPARD, MCOR_FLOAT64);
+}
+
+/* Normals by triangles: unit length, on the side of the gradient's. */
+static void test_triangle_normals(void** state)
+{
+  core_set set = core_make_block(10, 0.1, 3, core_ball);
+  const double iso = 1.5;
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  for (int kind = 0; kind < 2; ++kind)
+  {
+    options.preview = kind == 0;
+    options.triangle_normals = kind == 1;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    for (int64_t i = 0; i < surface.point_count; ++i)
+    {
+      double n[3], outwards = 0;
+      for (int a = 0; a < 3; ++a)
+      {
+        n[a] = (double)surface.normals[3 * i + a];
+        outwards += n[a] * surface.points[3 * i + a] / length_of(surface.points + 3 * i);
+      }
+      CORE_CHECK(fabs(length_of(n) - 1) < 1e-5 && outwards > 0.7, "normal %g %g %g, outwards %g",
+        n[0], n[1], n[2], outwards);
+    }
+    mcor_free_surface(&surface);
+  }
+  options.normals = 0;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_CHECK(!surface.normals && !surface.gradients && !surface.weight_sum &&
+      !surface.correction_length && !surface.residual && !surface.boundary_flag &&
+      !surface.iso_value && !surface.nearest_particle,
+    "arrays that nobody asked for");
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Attributes: a constant, a linear function, a vector, more components than one batch holds, and
+ * a single-precision array; all against the double-precision Shepard mean. */
+static void check_attributes(mcor_context* context, int solids)
+{
+  core_set set = core_make_block(10, 0.2, 3, core_ball);
+  const int64_t n = set.count;
+  double* constant = malloc((size_t)n * sizeof(double));
+  double* many = malloc((size_t)n * 9 * sizeof(double));
+  float* single = malloc((size_t)n * sizeof(float));
+  assert_true(constant && many && single);
+  for (int64_t i = 0; i < n; ++i)
+  {
+    constant[i] = 1234.5;
+    single[i] = (float)core_slope(set.position + 3 * i);
+    set.solid[i] = i % 5 == 0;
+    for (int c = 0; c < 9; ++c)
+    {
+      many[9 * i + c] = c + set.position[3 * i + c % 3];
+    }
+  }
+  set.has_solids = solids;
+  const mcor_array attributes[4] = { core_array(constant, 0), core_array(many, 9),
+    { .data = single, .type = MCOR_FLOAT32 }, core_array(set.position, 3) };
+  const double iso = 1.5;
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  input.attributes = attributes;
+  input.attribute_count = 4;
+  mcor_surface surface = core_extract(context, &input, &options);
+  const oracle_particles particles = core_oracle(&set);
+  oracle_particles fluid = particles;
+  uint8_t* none = calloc((size_t)n, 1);
+  assert_non_null(none);
+  fluid.solid = solids ? set.solid : none;
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &fluid, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  double* component = malloc((size_t)n * sizeof(double));
+  assert_non_null(component);
+  assert_int_equal(surface.attribute_count, 4);
+  for (int c = -2; c < 9; ++c)
+  {
+    for (int64_t i = 0; i < n; ++i)
+    {
+      component[i] = c == -2 ? constant[i] : c == -1 ? (double)single[i] : many[9 * i + c];
+    }
+    for (int64_t i = 0; i < surface.point_count; ++i)
+    {
+      oracle_sample sample;
+      oracle_evaluate(&field, component, surface.points + 3 * i, &sample);
+      const double value = c == -2 ? surface.attributes[0][i]
+        : c == -1                  ? surface.attributes[2][i]
+                                   : surface.attributes[1][9 * i + c];
+      CORE_CHECK(fabs(value - sample.value) < 1e-6 * (10 + fabs(sample.value)),
+        "component %d: %.9g, not %.9g", c, value, sample.value);
+      CORE_CHECK(c != -2 || fabs(value - 1234.5) < 1e-3, "a constant becomes %.9g", value);
+      CORE_CHECK(c != -1 || fabs(value - core_slope(surface.points + 3 * i)) < 0.6,
+        "a linear function is off by %g", value - core_slope(surface.points + 3 * i));
+    }
+  }
+  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+  oracle_free_field(&field);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+  free(constant);
+  free(many);
+  free(single);
+  free(none);
+  free(component);
+}
+
+static void test_attributes(void** state)
+{
+  check_attributes(*state, 0);
+  check_attributes(*state, 1);
+}
+
+/* The nearest fluid particle by brute force; h_ratio: largest over smallest smoothing length. */
+static void check_nearest(mcor_context* context, double h_ratio, int solids)
+{
+  core_set set = core_make_random(300, 5, 1.2 / h_ratio, 1.2, 6);
+  const double iso = 0;
+  set.has_solids = solids;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.solid[i] = i % 3 == 0;
+  }
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.nearest_particle = 1;
+  options.node_threshold = 0.01;
+  options.vertex_threshold = 0;
+  options.cube_size = 0.3;
+  mcor_surface surface = core_extract(context, &input, &options);
+  int64_t wrong = 0;
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    const int64_t got = surface.nearest_particle[i];
+    double best = INFINITY, at_got = INFINITY;
+    CORE_CHECK(got >= 0 && got < set.count, "particle %lld", (long long)got);
+    CORE_CHECK(!solids || !set.solid[got], "particle %lld is solid", (long long)got);
+    for (int64_t j = 0; j < set.count; ++j)
+    {
+      double d[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        d[a] = set.position[3 * j + a] - surface.points[3 * i + a];
+      }
+      best = !solids || !set.solid[j] ? fmin(best, length_of(d)) : best;
+      at_got = j == got ? length_of(d) : at_got;
+    }
+    wrong += at_got > best + 1e-5;
+  }
+  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+  CORE_CHECK(wrong == 0, "h ratio %g, solids %d: %lld of %lld are not the nearest", h_ratio, solids,
+    (long long)wrong, (long long)surface.point_count);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void test_nearest(void** state)
+{
+  check_nearest(*state, 1, 0);
+  check_nearest(*state, 1, 1);
+  check_nearest(*state, 4, 0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_normals),
+    cmocka_unit_test(test_triangle_normals), cmocka_unit_test(test_attributes),
+    cmocka_unit_test(test_nearest) };
+  return cmocka_run_group_tests_name("normal", tests, core_set_up, core_tear_down);
+}

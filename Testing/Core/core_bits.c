@@ -1,0 +1,84 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Prints a hash of all bits of a few surfaces, for same_bits.cmake to compare between settings of the
+ * environment. With an argument: small cases only, for tools that slow everything down. */
+
+#include "core_fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct bits_case
+{
+  const char* name;
+  mcor_sph_kernel kernel;
+  mcor_field field;
+  mcor_type precision;
+  mcor_seed_mode seeds;
+  int solids, volumes;
+  double iso;
+} bits_case;
+
+static const bits_case cases[] = { { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32,
+                                     MCOR_COMPLETE, 1, 0, 0.5 },
+  { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, 1, 1, 0.5 },
+  { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, 0, 1, 1.5 },
+  { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE, 0, 0, 0.5 } };
+
+static int run_case(mcor_context* context, const bits_case* at, int size)
+{
+  core_set set = core_make_block(size, 0.3, 8, core_ball);
+  uint64_t seed = 4;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] *= 1 + random_unit(&seed);
+    set.solid[i] = random_bits(&seed) % 8 == 0;
+  }
+  set.has_solids = at->solids;
+  const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
+  mcor_input input = core_input(&set);
+  input.has_volume = at->volumes;
+  input.attributes = attributes;
+  input.attribute_count = 2;
+  mcor_options options = core_options(&at->iso);
+  options.sph_kernel = at->kernel;
+  options.field = at->field;
+  options.precision = at->precision;
+  options.seeds = at->seeds;
+  options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
+  options.boundary_flag = options.nearest_particle = 1;
+  mcor_surface surface = { 0 };
+  const mcor_status status = mcor_extract(context, &input, &options, &surface);
+  if (status != MCOR_OK || surface.triangle_count == 0)
+  {
+    fprintf(stderr, "%s: %lld triangles. %s\n", at->name, (long long)surface.triangle_count,
+      mcor_last_error(context));
+  }
+  const int good = status == MCOR_OK && surface.triangle_count > 0;
+  printf("%s: %lld points, %lld triangles, %016llx\n", at->name, (long long)surface.point_count,
+    (long long)surface.triangle_count, (unsigned long long)core_hash(&surface));
+  fflush(stdout);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+  return good;
+}
+
+int main(int argc, char** argv)
+{
+  (void)argv;
+  mcor_context* context = NULL;
+  if (mcor_create_context(NULL, &context) != MCOR_OK)
+  {
+    fprintf(stderr, "%s\n", mcor_last_error(context));
+    mcor_free_context(context);
+    return 1;
+  }
+  int good = 1;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    good = run_case(context, cases + i, argc > 1 ? 4 : 10) && good;
+  }
+  mcor_free_context(context);
+  return good ? 0 : 1;
+}

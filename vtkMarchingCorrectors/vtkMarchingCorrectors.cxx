@@ -48,6 +48,18 @@ public:
     input.Core.particles_version = this->ParticlesVersion;
     input.Core.scalar_version = this->ScalarVersion;
   }
+
+  // After a failure nothing is assumed about what is on the device, or about the device itself.
+  void Forget(mcor_status status)
+  {
+    this->Particles.clear();
+    this->Scalar.clear();
+    if (status == MCOR_DEVICE_ERROR)
+    {
+      mcor_free_context(this->Context);
+      this->Context = nullptr;
+    }
+  }
 };
 
 namespace
@@ -188,16 +200,14 @@ bool vtkMarchingCorrectors::PrepareDevice()
   {
     return true;
   }
-  mcor_free_context(internals.Context);
-  internals.Context = nullptr;
+  internals.Forget(MCOR_DEVICE_ERROR);
   internals.Device = this->Device;
   if (mcor_create_context(this->Device.c_str(), &internals.Context) == MCOR_OK)
   {
     return true;
   }
   this->Fail(internals.Context ? mcor_last_error(internals.Context) : "Host memory ran out.");
-  mcor_free_context(internals.Context);
-  internals.Context = nullptr;
+  internals.Forget(MCOR_DEVICE_ERROR);
   return false;
 }
 
@@ -287,11 +297,13 @@ int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyDat
     builder.BuildMesh(output);
   }
   mcor_free_surface(&surface);
-  if (status == MCOR_OK || status == MCOR_CANCELLED)
+  if (status == MCOR_OK)
   {
     return 1;
   }
-  return this->Fail(mcor_last_error(this->Internals->Context));
+  const std::string message = mcor_last_error(this->Internals->Context);
+  this->Internals->Forget(status);
+  return status == MCOR_CANCELLED ? 1 : this->Fail(message);
 }
 
 //------------------------------------------------------------------------------

@@ -58,6 +58,12 @@ void AddVectors(vtkPolyData* data)
   test::AddArray<vtkDoubleArray>(data, "Vector", 3, [](vtkIdType, int) { return 1.0; });
 }
 
+void AddNaN(vtkPolyData* data)
+{
+  test::AddArray<vtkFloatArray>(data, "Broken", 1,
+    [](vtkIdType i, int) { return i == 21 ? std::numeric_limits<double>::quiet_NaN() : 1.0; });
+}
+
 void Nothing(vtkPolyData*) {}
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
@@ -125,6 +131,7 @@ std::vector<Case> IllegalValues()
       [](vtkPolyData* d) { SetComponent(d, "Radius", 18, Infinity); } },
     { "volume 0", { "19", "Volume" }, keep,
       [](vtkPolyData* d) { SetComponent(d, "Volume", 19, 0.0); } },
+    { "attribute NaN", { "21", "Broken" }, keep, AddNaN },
     { "position NaN", { "20", "position" }, keep,
       [](vtkPolyData* d) { d->GetPoints()->SetPoint(20, 0.0, NaN, 0.0); } },
     { "constant smoothing length negative", { "smoothing length" },
@@ -159,7 +166,6 @@ void CountError(vtkObject*, unsigned long, void* count, void*)
 
 void Run(const Case& c)
 {
-  auto good = test::MakeCube();
   auto bad = test::MakeCube();
   c.Spoil(bad);
   auto filter = test::MakeSphereFilter(bad);

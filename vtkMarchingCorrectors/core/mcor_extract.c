@@ -214,7 +214,7 @@ static mcor_status mcor_extract_iso(
 }
 
 /* Numbers of SPEC's tables that are known at the end. */
-static void mcor_finish_statistics(mcor_context* context)
+static mcor_status mcor_finish_statistics(mcor_context* context)
 {
   mcor_statistics* s = context->statistics;
   const mcor_measure* m = &context->measure;
@@ -236,6 +236,9 @@ static void mcor_finish_statistics(mcor_context* context)
     s->virtual_cells *= s->lattice_cells[a];
   }
   s->bricks = context->bricks.now.count;
+  int nodes = 0;
+  MCOR_TRY(mcor_count_bits(context, &context->bricks.now.known, context->bricks.now.count, &nodes));
+  s->nodes_evaluated = nodes;
   s->correction_mean = n > 0 ? context->correction_sum / n : 0;
   s->correction_deviation = n > 0
     ? sqrt(fmax(context->correction_squares / n - s->correction_mean * s->correction_mean, 0))
@@ -246,6 +249,7 @@ static void mcor_finish_statistics(mcor_context* context)
   s->device_bytes_peak = context->cl.bytes_peak;
   snprintf(s->device, sizeof s->device, "%s", context->cl.device_name);
   snprintf(s->platform, sizeof s->platform, "%s", context->cl.platform_name);
+  return MCOR_OK;
 }
 
 static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
@@ -270,8 +274,7 @@ static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
     MCOR_TRY(mcor_finish_normals(context, surface));
   }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1));
-  mcor_finish_statistics(context);
-  return MCOR_OK;
+  return mcor_finish_statistics(context);
 }
 
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,

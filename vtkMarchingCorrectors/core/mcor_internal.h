@@ -180,6 +180,8 @@ mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
+mcor_status mcor_count_bits(
+  mcor_context* context, const mcor_buffer* masks, int count, int* total);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_trim(mcor_context* context, double iso);

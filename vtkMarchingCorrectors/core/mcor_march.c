@@ -35,7 +35,7 @@ static mcor_status mcor_sign_nodes(mcor_context* context, double iso)
 }
 
 /* Number of bits set in an array of masks. */
-static mcor_status mcor_count_bits(
+mcor_status mcor_count_bits(
   mcor_context* context, const mcor_buffer* masks, int count, int* total)
 {
   mcor_buffer* counts = &context->scratch[0];

@@ -190,6 +190,20 @@ static int compare_face_connected(
   return 0;
 }
 
+/* With the paper's seeds a component may be missing though the crossings of a face have vertices:
+ * those of another component that it touches in pinched edges. */
+static int compare_cells_left_out(
+  const compare_state* state, const int64_t crossings[4], int count)
+{
+  int left_out = state->options->seeds == MCOR_PAIRS;
+  for (int n = 0; left_out && n < count; ++n)
+  {
+    left_out =
+      compare_pinched(&state->reference->lattice, state->reference->surface.edge[crossings[n]]);
+  }
+  return left_out;
+}
+
 static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
 {
   const oracle_lattice* lattice = &state->reference->lattice;
@@ -211,6 +225,10 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
     }
   }
   const int count = compare_face_crossings(state, edges, crossings);
+  if (count >= 2 && compare_cells_left_out(state, crossings, count))
+  {
+    return;
+  }
   if (valid > 0 && possible == certain && count >= 2 &&
     !compare_face_connected(state, crossings, count, valid))
   {

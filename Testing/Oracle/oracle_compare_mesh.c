@@ -38,9 +38,9 @@ static double compare_distance(
 }
 
 /* Shepard's field jumps where the fluid weight falls to 0: the last particle in reach leaves with a
- * value of its own. Weight of solids can keep the cells there valid. It has poles where kernels with
- * negative lobes make the weight pass 0. No point of the edge then has the value iso; the vertex must
- * be where the side changes. */
+ * value of its own, and beyond is a void without values. Weight of solids can keep the cells there
+ * valid. It has poles where kernels with negative lobes make the weight pass 0. No point of the edge
+ * then has the value iso; the vertex must be where the side changes, or at the void. */
 static int compare_jump(
   const compare_state* state, const double point[3], int axis, double residual)
 {
@@ -57,7 +57,8 @@ static int compare_jump(
   oracle_evaluate(&reference->field, NULL, p, &low);
   p[axis] = point[axis] + step;
   oracle_evaluate(&reference->field, NULL, p, &high);
-  return (low.value >= reference->limits.iso) != (high.value >= reference->limits.iso);
+  return (low.value >= reference->limits.iso) != (high.value >= reference->limits.iso) ||
+    fabs(low.weight) < 1e-9 || fabs(high.weight) < 1e-9;
 }
 
 static void compare_normal(compare_state* state, int64_t v, const oracle_sample* sample)
@@ -88,7 +89,11 @@ static void compare_normal(compare_state* state, int64_t v, const oracle_sample*
     result->normal_degrees = degrees;
     if (!(degrees < 1.0))
     {
-      compare_note(state, "normal of vertex %lld is off by %.3g degrees", (long long)v, degrees);
+      const double* p = &state->surface->points[3 * v];
+      compare_note(state, "normal of vertex %lld at (%.9g, %.9g, %.9g) is off by %.3g degrees,"
+        " weight %.3g, fluid %.3g, slope %.3g of %.3g, residual %.3g", (long long)v, p[0], p[1], p[2],
+        degrees, sample->trim_weight, sample->weight, slope, sample->gradient_scale,
+        (sample->value - state->reference->limits.iso) / state->reference->range);
     }
   }
 }

@@ -73,7 +73,8 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* every cell that a bound cannot exclude is examined; nothing is missed */
-    MCOR_PAIRS = 1     /* the paper's: cells between particle pairs that straddle the iso value */
+    MCOR_PAIRS = 1 /* the paper's: cells between particle pairs that straddle the iso value; the same
+                    * as complete for MCOR_WEIGHT_SUM, which has no values at particles */
   } mcor_seed_mode;
 
   /* A per-particle quantity, or one constant for all particles. */
@@ -145,7 +146,7 @@ extern "C"
     double vertex_threshold; /* triangles are trimmed where the weight is lower; default 0.5 */
     int preview;             /* nonzero: vertices by linear interpolation, no correction */
     double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */
-    int iteration_limit;     /* of the correction, per vertex; default 30 */
+    int iteration_limit;     /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;     /* of the field evaluation on the device; MCOR_FLOAT32 by default */
 
     /* What the surface carries besides points and triangles. */

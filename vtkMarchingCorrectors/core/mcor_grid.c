@@ -19,8 +19,8 @@ typedef struct mcor_staging
 {
   int count;
   void *xyz, *inv_h, *size; /* fix [count][3], real [count]; size: volume, mass, or 1 */
+  double size_scale; /* see mcor_size_scale */
   uint8_t *solid, *level;
-  int32_t* source;
 } mcor_staging;
 
 static void mcor_free_staging(mcor_staging* staging)
@@ -45,25 +45,16 @@ static void mcor_put_real(const mcor_context* context, void* array, int64_t i, d
   }
 }
 
-static void mcor_put_position(
-  const mcor_context* context, const mcor_input* input, int64_t i, void* xyz, int64_t to)
+/* Positions are never below the lattice's origin, so adding 1/2 and truncating rounds them. */
+static void mcor_put_fixed(const mcor_context* context, void* array, int64_t i, double fixed)
 {
-  const mcor_lattice* lattice = &context->lattice;
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  for (int a = 0; a < 3; ++a)
+  if (context->cl.fix_size == sizeof(int32_t))
   {
-    const double cubes =
-      mcor_array_at(&positions, i, a) / lattice->cube - (double)lattice->origin[a];
-    const double fixed = nearbyint(ldexp(cubes, lattice->fix_bits));
-    if (context->cl.fix_size == sizeof(int32_t))
-    {
-      ((int32_t*)xyz)[3 * to + a] = (int32_t)fixed;
-    }
-    else
-    {
-      ((int64_t*)xyz)[3 * to + a] = (int64_t)fixed;
-    }
+    ((int32_t*)array)[i] = (int32_t)(fixed + 0.5);
+  }
+  else
+  {
+    ((int64_t*)array)[i] = (int64_t)(fixed + 0.5);
   }
 }
 
@@ -93,29 +84,73 @@ static bool mcor_needs_density(const mcor_input* input)
   return !input->has_volume && !(input->has_mass && input->has_density);
 }
 
-static double mcor_size_at(const mcor_input* input, int64_t i)
+static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
 {
-  if (input->has_volume)
+  static const mcor_array one = { .constant = 1 };
+  mcor_read_array(input->has_volume ? &input->volume
+      : input->has_mass             ? &input->mass
+                                    : &one,
+    first, count, 0, out);
+  if (!input->has_volume && input->has_mass && input->has_density)
   {
-    return mcor_array_at(&input->volume, i, 0);
+    double density[MCOR_CHUNK];
+    mcor_read_array(&input->density, first, count, 0, density);
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] /= density[i];
+    }
   }
-  const double mass = input->has_mass ? mcor_array_at(&input->mass, i, 0) : 1;
-  return input->has_mass && input->has_density ? mass / mcor_array_at(&input->density, i, 0) : mass;
 }
 
 static int mcor_level_of(double support_max, double support)
 {
-  const int level = ilogb(support_max / support);
+  const int level = support < support_max ? ilogb(support_max / support) : 0;
   return level < 0 ? 0 : level >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : level;
+}
+
+static void mcor_stage_chunk(mcor_context* context, const mcor_input* input, int64_t first,
+  int count, mcor_staging* staging)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const double h_scale = context->options->h_scale;
+  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
+  const double scale = ldexp(1, lattice->fix_bits);
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK];
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_read_array(&positions, first, count, a, x[a]);
+    for (int i = 0; i < count; ++i)
+    {
+      x[a][i] = (x[a][i] / lattice->cube - (double)lattice->origin[a]) * scale;
+    }
+  }
+  mcor_read_smoothing_length(context, input, first, count, h);
+  mcor_read_size(input, first, count, size);
+  for (int i = 0; i < count; ++i)
+  {
+    if (!mcor_is_used(context, input, first + i))
+    {
+      continue;
+    }
+    const int to = staging->count++;
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_put_fixed(context, staging->xyz, 3 * (int64_t)to + a, x[a][i]);
+    }
+    mcor_put_real(context, staging->inv_h, to, lattice->cube / (h_scale * h[i]));
+    mcor_put_real(context, staging->size, to, size[i] * staging->size_scale);
+    staging->solid[to] = input->solid && input->solid[first + i];
+    staging->level[to] = (uint8_t)mcor_level_of(context->measure.support_max, h[i] * reach);
+    context->source[to] = (int32_t)(first + i);
+  }
 }
 
 static mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging)
 {
-  const mcor_measure* m = &context->measure;
   const size_t n = (size_t)input->count;
-  const double reach =
-    mcor_support_factor(context->options->sph_kernel) * context->options->h_scale;
-  const double size_scale = mcor_size_scale(context, input);
+  staging->size_scale = mcor_size_scale(context, input);
   staging->xyz = malloc(n * 3 * context->cl.fix_size);
   staging->inv_h = malloc(n * context->cl.real_size);
   staging->size = malloc(n * context->cl.real_size);
@@ -127,21 +162,10 @@ static mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mc
       !staging->level || !context->source,
     context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld particles could not be allocated.",
     (long long)input->count);
-  for (int64_t i = 0; i < input->count; ++i)
+  for (int64_t first = 0; first < input->count; first += MCOR_CHUNK)
   {
-    if (!mcor_is_used(context, input, i))
-    {
-      continue;
-    }
-    const int to = staging->count++;
-    const double h = mcor_smoothing_length_at(context, input, i);
-    const double scaled = context->options->h_scale * h / context->lattice.cube;
-    mcor_put_position(context, input, i, staging->xyz, to);
-    mcor_put_real(context, staging->inv_h, to, 1 / scaled);
-    mcor_put_real(context, staging->size, to, mcor_size_at(input, i) * size_scale);
-    staging->solid[to] = input->solid && input->solid[i];
-    staging->level[to] = (uint8_t)mcor_level_of(m->support_max, h * reach);
-    context->source[to] = (int32_t)i;
+    const int64_t rest = input->count - first;
+    mcor_stage_chunk(context, input, first, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, staging);
   }
   return MCOR_OK;
 }
@@ -281,10 +305,10 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   return mcor_needs_density(input) ? mcor_compute_volumes(context) : MCOR_OK;
 }
 
-/* One real per particle used, from the caller's order to the sorted one, to element to_offset. */
+/* One component of an array, or the scalar where `array` is NULL, less `shift`: from the caller's order
+ * to the sorted one, to element to_offset. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  double (*at)(const mcor_input* input, const void* user, int64_t i), const void* user,
-  double shift, mcor_buffer* to, int to_offset)
+  const mcor_array* array, int component, double shift, mcor_buffer* to, int to_offset)
 {
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;
@@ -292,22 +316,27 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   void* values = malloc(bytes + 1);
   MCOR_RETURN_IF(!values, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for %d values could not be allocated.", grid->count);
+  double chunk[MCOR_CHUNK];
+  int64_t chunk_end = 0;
   for (int i = 0; i < grid->count; ++i)
   {
-    mcor_put_real(context, values, i, at(input, user, context->source[i]) - shift);
+    const int64_t source = context->source[i];
+    if (source >= chunk_end)
+    {
+      const int64_t first = source / MCOR_CHUNK * MCOR_CHUNK, rest = input->count - first;
+      const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+      array ? mcor_read_array(array, first, count, component, chunk)
+            : mcor_read_scalar(input, first, count, chunk);
+      chunk_end = first + MCOR_CHUNK;
+    }
+    mcor_put_real(context, values, i, chunk[source % MCOR_CHUNK] - shift);
   }
   mcor_status status = mcor_write(context, raw, values, bytes);
   free(values);
   MCOR_TRY(status);
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
-    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw),
-    MCOR_BUFFER(to), MCOR_INT(to_offset));
-}
-
-static double mcor_scalar_value(const mcor_input* input, const void* user, int64_t i)
-{
-  (void)user;
-  return mcor_scalar_at(input, i);
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
+    MCOR_INT(to_offset));
 }
 
 #define MCOR_MEDIAN_BINS 4096
@@ -327,9 +356,15 @@ static double mcor_scalar_median(const mcor_context* context, const mcor_input* 
     {
       break;
     }
+    double chunk[MCOR_CHUNK];
     for (int64_t i = 0; i < input->count; ++i)
     {
-      const double v = mcor_scalar_at(input, i);
+      if (i % MCOR_CHUNK == 0)
+      {
+        const int64_t rest = input->count - i;
+        mcor_read_scalar(input, i, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, chunk);
+      }
+      const double v = chunk[i % MCOR_CHUNK];
       if ((!input->solid || !input->solid[i]) && v >= low && v <= high)
       {
         const int bin = (int)((v - low) / width);
@@ -359,8 +394,7 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_sort_values(
-    context, input, mcor_scalar_value, NULL, context->value_shift, &grid->value, 0));
+  MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, &grid->value, 0));
   return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
     MCOR_BUFFER(&grid->inv_h),

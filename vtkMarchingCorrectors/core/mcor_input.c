@@ -24,6 +24,48 @@ static int mcor_components(const mcor_array* array)
   return array->components > 0 ? array->components : 1;
 }
 
+void mcor_read_array(
+  const mcor_array* array, int64_t first, int count, int component, double* out)
+{
+  const int64_t stride = mcor_components(array), begin = first * stride + component;
+  if (!array->data)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] = array->constant;
+    }
+  }
+  else if (array->type == MCOR_FLOAT64)
+  {
+    const double* data = (const double*)array->data + begin;
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] = data[i * stride];
+    }
+  }
+  else
+  {
+    const float* data = (const float*)array->data + begin;
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] = (double)data[i * stride];
+    }
+  }
+}
+
+void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
+{
+  if (mcor_components(&input->scalar) == 1 && !input->scalar_dot.data)
+  {
+    mcor_read_array(&input->scalar, first, count, 0, out);
+    return;
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    out[i] = mcor_scalar_at(input, first + i);
+  }
+}
+
 double mcor_scalar_at(const mcor_input* input, int64_t i)
 {
   const mcor_array* a = &input->scalar;
@@ -66,8 +108,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     options->node_threshold, options->vertex_threshold);
   MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
     "The tolerance is %g; it must be above 0.", options->tolerance);
-  MCOR_NEED(options->iteration_limit >= 0 && options->iteration_limit <= 255,
-    "The iteration limit is %d; it must be 0 to 255.", options->iteration_limit);
+  MCOR_NEED(options->iteration_limit >= 1 && options->iteration_limit <= 255,
+    "The iteration limit is %d; it must be 1 to 255.", options->iteration_limit);
   MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
     "There are %d iso values.", options->iso_count);
   for (int i = 0; i < options->iso_count; ++i)
@@ -81,6 +123,32 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 #undef MCOR_NEED
 }
 
+/* Index of the first element of a component that is not finite, or not above 0 where it must be; -1
+ * if there is none. */
+static int64_t mcor_find_illegal(
+  const mcor_array* array, int64_t count, int component, bool positive)
+{
+  double chunk[MCOR_CHUNK];
+  for (int64_t first = 0; first < count; first += MCOR_CHUNK)
+  {
+    const int n = count - first < MCOR_CHUNK ? (int)(count - first) : MCOR_CHUNK;
+    int illegal = 0;
+    mcor_read_array(array, first, n, component, chunk);
+    for (int i = 0; i < n; ++i)
+    {
+      illegal |= (chunk[i] - chunk[i] != 0) | (positive & (chunk[i] <= 0));
+    }
+    for (int i = 0; illegal && i < n; ++i)
+    {
+      if (!isfinite(chunk[i]) || (positive && !(chunk[i] > 0)))
+      {
+        return first + i;
+      }
+    }
+  }
+  return -1;
+}
+
 /* Every element that is used is finite, and above 0 where it must be. */
 static mcor_status mcor_check_array(mcor_context* context, const mcor_array* array,
   const char* role, int64_t count, int components, bool positive)
@@ -89,24 +157,21 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_array* arr
   const bool same = strcmp(name, role) == 0;
   MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
     "The %s array %s has an unknown element type.", role, name);
-  const int64_t n = array->data ? count : 1;
-  for (int64_t i = 0; i < n; ++i)
+  for (int c = 0; c < components; ++c)
   {
-    for (int c = 0; c < components; ++c)
+    const int64_t i = mcor_find_illegal(array, array->data ? count : 1, c, positive);
+    if (i < 0)
     {
-      const double v = mcor_array_at(array, i, c);
-      if (isfinite(v) && (!positive || v > 0))
-      {
-        continue;
-      }
-      const char* problem =
-        isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
-      return array->data
-        ? mcor_fail(context, MCOR_INVALID_DATA,
-            "The %s%s%s of particle %lld is %s (%g). Remove such particles or choose another array.",
-            role, same ? "" : " array ", same ? "" : name, (long long)i, problem, v)
-        : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s (%g).", role, problem, v);
+      continue;
     }
+    const double v = mcor_array_at(array, i, c);
+    const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
+    return array->data
+      ? mcor_fail(context, MCOR_INVALID_DATA,
+          "The %s%s%s of particle %lld is %s. Remove such particles or %s.", role,
+          same ? "" : " array ", same ? "" : name, (long long)i, problem,
+          strcmp(role, "attribute") == 0 ? "do not interpolate this array" : "choose another array")
+      : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
   }
   return MCOR_OK;
 }
@@ -279,51 +344,87 @@ static double mcor_estimate_smoothing_length(const mcor_input* input)
   return 1.3 * spacing[count / 2];
 }
 
-double mcor_smoothing_length_at(const mcor_context* context, const mcor_input* input, int64_t i)
+void mcor_read_smoothing_length(
+  const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out)
 {
-  if (input->estimate_smoothing_length)
+  const mcor_array estimate = { .constant = context->measure.h_estimate };
+  const double scale = input->smoothing_length_is_support_radius && !input->estimate_smoothing_length
+    ? 1 / mcor_support_factor(context->options->sph_kernel)
+    : 1;
+  mcor_read_array(
+    input->estimate_smoothing_length ? &estimate : &input->smoothing_length, first, count, 0, out);
+  for (int i = 0; i < count; ++i)
   {
-    return context->measure.h_estimate;
+    out[i] *= scale;
   }
-  const double h = mcor_array_at(&input->smoothing_length, i, 0);
-  return input->smoothing_length_is_support_radius
-    ? h / mcor_support_factor(context->options->sph_kernel)
-    : h;
+}
+
+/* One chunk of the particles, as double. */
+typedef struct mcor_chunk
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], scalar[MCOR_CHUNK];
+} mcor_chunk;
+
+static void mcor_read_chunk(
+  const mcor_context* context, const mcor_input* input, int64_t first, mcor_chunk* chunk)
+{
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  chunk->count =
+    input->count - first < MCOR_CHUNK ? (int)(input->count - first) : MCOR_CHUNK;
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_read_array(&positions, first, chunk->count, a, chunk->x[a]);
+  }
+  mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
+  if (context->options->field != MCOR_WEIGHT_SUM)
+  {
+    mcor_read_scalar(input, first, chunk->count, chunk->scalar);
+  }
+}
+
+static void mcor_measure_particle(
+  mcor_measure* m, const mcor_chunk* chunk, int i, bool solid, bool has_scalar, double reach)
+{
+  const double h = chunk->h[i], support = h * reach;
+  m->support_min = support < m->support_min ? support : m->support_min;
+  m->support_max = support > m->support_max ? support : m->support_max;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = chunk->x[a][i] - support, high = chunk->x[a][i] + support;
+    m->low[a] = low < m->low[a] ? low : m->low[a];
+    m->high[a] = high > m->high[a] ? high : m->high[a];
+  }
+  if (!solid)
+  {
+    m->h_min = h < m->h_min ? h : m->h_min;
+    m->h_max = h > m->h_max ? h : m->h_max;
+  }
+  if (!solid && has_scalar)
+  {
+    m->scalar_min = chunk->scalar[i] < m->scalar_min ? chunk->scalar[i] : m->scalar_min;
+    m->scalar_max = chunk->scalar[i] > m->scalar_max ? chunk->scalar[i] : m->scalar_max;
+  }
 }
 
 static void mcor_measure_particles(mcor_context* context, const mcor_input* input, double reach)
 {
   mcor_measure* m = &context->measure;
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  for (int64_t i = 0; i < input->count; ++i)
+  const bool has_scalar = context->options->field != MCOR_WEIGHT_SUM;
+  mcor_chunk chunk;
+  for (int64_t first = 0; first < input->count; first += MCOR_CHUNK)
   {
-    const bool solid = input->solid && input->solid[i];
-    m->solid_count += solid;
-    m->fluid_count += !solid;
-    if (!mcor_is_used(context, input, i))
+    mcor_read_chunk(context, input, first, &chunk);
+    for (int i = 0; i < chunk.count; ++i)
     {
-      continue;
-    }
-    const double h = mcor_smoothing_length_at(context, input, i), support = h * reach;
-    m->support_min = fmin(m->support_min, support);
-    m->support_max = fmax(m->support_max, support);
-    if (!solid)
-    {
-      m->h_min = fmin(m->h_min, h);
-      m->h_max = fmax(m->h_max, h);
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      const double x = mcor_array_at(&positions, i, a);
-      m->low[a] = fmin(m->low[a], x - support);
-      m->high[a] = fmax(m->high[a], x + support);
-    }
-    if (!solid && context->options->field != MCOR_WEIGHT_SUM)
-    {
-      const double v = mcor_scalar_at(input, i);
-      m->scalar_min = fmin(m->scalar_min, v);
-      m->scalar_max = fmax(m->scalar_max, v);
+      const bool solid = input->solid && input->solid[first + i];
+      m->solid_count += solid;
+      m->fluid_count += !solid;
+      if (mcor_is_used(context, input, first + i))
+      {
+        mcor_measure_particle(m, &chunk, i, solid, has_scalar, reach);
+      }
     }
   }
 }

@@ -3,7 +3,8 @@
 #ifndef mcor_input_h
 #define mcor_input_h
 
-/* Reading the caller's arrays element by element, as double. */
+/* Reading the caller's arrays as double: element by element, or a chunk of one component, which
+ * compilers vectorise. */
 
 #include "mcor_internal.h"
 
@@ -22,9 +23,16 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
     (!input->ignore_solids && context->options->field != MCOR_WEIGHT_SUM);
 }
 
+#define MCOR_CHUNK 1024
+
+void mcor_read_array(
+  const mcor_array* array, int64_t first, int count, int component, double* out);
+void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
+
 /* The scalar A of particle i. */
 double mcor_scalar_at(const mcor_input* input, int64_t i);
-/* Unscaled, unit L. */
-double mcor_smoothing_length_at(const mcor_context* context, const mcor_input* input, int64_t i);
+/* Smoothing lengths, unscaled, unit L. */
+void mcor_read_smoothing_length(
+  const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
 
 #endif

@@ -147,6 +147,12 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
   ;
 double mcor_seconds(void);
 
+/* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
+static inline bool mcor_uses_pairs(const mcor_context* context)
+{
+  return context->options->seeds == MCOR_PAIRS && context->options->field != MCOR_WEIGHT_SUM;
+}
+
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
 
@@ -169,8 +175,7 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  double (*at)(const mcor_input* input, const void* user, int64_t i), const void* user,
-  double shift, mcor_buffer* to, int to_offset);
+  const mcor_array* array, int component, double shift, mcor_buffer* to, int to_offset);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);

@@ -51,7 +51,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* statistics = context->statistics;
-  const bool pairs = context->options->seeds == MCOR_PAIRS;
+  const bool pairs = mcor_uses_pairs(context);
   int seeds = 0, hits, used;
   MCOR_TRY(mcor_count_bits(context, &bricks->now.cells, bricks->now.count, &seeds));
   statistics->seed_cells += seeds;

@@ -3,7 +3,6 @@
 
 /* Output [III-D.4]: compaction, transfer, and what a surface carries besides its geometry. */
 
-#include "mcor_input.h"
 #include "mcor_internal.h"
 
 #include <math.h>
@@ -204,12 +203,6 @@ typedef struct mcor_component
   int attribute, component;
 } mcor_component;
 
-static double mcor_attribute_at(const mcor_input* input, const void* user, int64_t i)
-{
-  const mcor_component* c = user;
-  return mcor_array_at(&input->attributes[c->attribute], i, c->component);
-}
-
 /* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
 static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_input* input,
   const mcor_component* components, int count, int points, mcor_surface* surface)
@@ -224,8 +217,8 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
   MCOR_TRY(mcor_reserve(context, indices, nearest ? n * sizeof(cl_int) : 1));
   for (int c = 0; c < count; ++c)
   {
-    MCOR_TRY(mcor_sort_values(context, input, mcor_attribute_at, components + c, 0,
-      &context->attributes, c * stride));
+    MCOR_TRY(mcor_sort_values(context, input, &input->attributes[components[c].attribute],
+      components[c].component, 0, &context->attributes, c * stride));
   }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_output_attributes", MCOR_HEAVY, context->group_count,
     MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),

@@ -78,7 +78,7 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
     "The virtual grid is too large: %d blocks of 32^3 cells hold particles. Use a larger cube size.",
     bricks->block_count);
   MCOR_TRY(mcor_zero(context, &bricks->marks, marks * sizeof(cl_ushort)));
-  const bool pairs = context->options->seeds == MCOR_PAIRS;
+  const bool pairs = mcor_uses_pairs(context);
   MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_mark_complete(context, iso));
   MCOR_TRY(mcor_place_bricks(context));
   if (pairs)

@@ -130,9 +130,10 @@ static void check_queries(
   const double support = mcor_support_factor(kernel);
   const int tensor = kernel == MCOR_M_PRIME_4;
   core_set set = make_set(support, h_ratio);
-  const double iso = 100; /* the grid is all that is wanted */
+  const double iso = 100; /* no surface: the grid is all that is wanted */
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
+  options.seeds = MCOR_PAIRS;
   options.sph_kernel = kernel;
   mcor_surface surface = core_extract(context, &input, &options);
   core_extend_program(context, source);

@@ -1,0 +1,302 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Bytes -> a call of mcor_extract -> properties that hold for every call: no crash, a status in
+ * range, a sentence with every failure and an empty surface then; otherwise valid indices, finite
+ * numbers, no triangle that names a point twice, and the same bits when the call is repeated. */
+
+#include "mcor.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+#define FUZZ_PARTICLES 48
+#define FUZZ_CHECK(condition)                                                   \
+  do                                                                            \
+  {                                                                             \
+    if (!(condition))                                                           \
+    {                                                                           \
+      fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, __LINE__, #condition); \
+      abort();                                                                  \
+    }                                                                           \
+  } while (0)
+
+typedef struct fuzz_bytes
+{
+  const uint8_t* at;
+  size_t left;
+} fuzz_bytes;
+
+static unsigned fuzz_byte(fuzz_bytes* bytes)
+{
+  if (bytes->left == 0)
+  {
+    return 0;
+  }
+  --bytes->left;
+  return *bytes->at++;
+}
+
+/* Mostly ordinary, now and then a number that no one should use. */
+static double fuzz_scale(fuzz_bytes* bytes)
+{
+  static const double scales[] = { 1e-30, 1e30, 1e-9, 1e9, 1e-300, 1e300, 1e-20, 1e20 };
+  const unsigned b = fuzz_byte(bytes);
+  return b < 248 ? 1 : scales[b - 248];
+}
+
+static double fuzz_positive(fuzz_bytes* bytes)
+{
+  static const double odd[] = { 0, -1, NAN, INFINITY, 1e-40, 1e38, 1e-7, 1e4 };
+  const unsigned b = fuzz_byte(bytes);
+  return b < 248 ? 0.25 + 0.25 * (b % 8) : odd[b - 248];
+}
+
+/* A few values only, so that equal ones are frequent. */
+static double fuzz_value(fuzz_bytes* bytes)
+{
+  static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 0.1, 1e300 };
+  const unsigned b = fuzz_byte(bytes);
+  return b < 248 ? (int)(b % 9) * 0.25 - 1 : odd[b - 248];
+}
+
+static double fuzz_threshold(fuzz_bytes* bytes)
+{
+  static const double values[] = { 0.1, 0.5, 0, 1, 2, 1e-6, 0.3, 0.7 };
+  const unsigned b = fuzz_byte(bytes);
+  return b < 252 ? values[b % 8] : b == 252 ? -1 : b == 253 ? NAN : b == 254 ? 1e30 : INFINITY;
+}
+
+/* One call; every array is a heap block of exactly its size. */
+typedef struct fuzz_call
+{
+  mcor_input input;
+  mcor_options options;
+  mcor_array attributes[2];
+  double iso[2];
+  void* arrays[5];
+} fuzz_call;
+
+static double* fuzz_array(fuzz_call* call, int slot, size_t count)
+{
+  call->arrays[slot] = malloc(count * sizeof(double) + (count == 0));
+  FUZZ_CHECK(call->arrays[slot]);
+  return call->arrays[slot];
+}
+
+static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
+{
+  mcor_input* in = &call->input;
+  const size_t n = fuzz_byte(bytes) % (FUZZ_PARTICLES + 1);
+  const unsigned kind = fuzz_byte(bytes);
+  const double spacing = 0.5 * fuzz_scale(bytes), shift = kind & 1 ? 0 : 1e6 * fuzz_scale(bytes);
+  double* x = fuzz_array(call, 0, 3 * n);
+  double* h = fuzz_array(call, 1, n);
+  double* v = fuzz_array(call, 2, n);
+  double* a = fuzz_array(call, 3, n);
+  uint8_t* solid = call->arrays[4] = malloc(n + (n == 0));
+  const double constant_h = fuzz_positive(bytes);
+  const double h_scale = kind & 2 ? spacing * 2 : 1, a_scale = fuzz_scale(bytes);
+  FUZZ_CHECK(solid);
+  for (size_t i = 0; i < n; ++i)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const unsigned b = fuzz_byte(bytes);
+      x[3 * i + (size_t)c] = (kind & 64 ? shift : 0) +
+        spacing *
+          (b < 250    ? b % 7
+              : b % 2 ? b * 0.1
+                      : 1e5);
+    }
+    const unsigned b = fuzz_byte(bytes);
+    h[i] = h_scale * (b & 1 ? constant_h : fuzz_positive(bytes));
+    v[i] = b & 2 ? h[i] * h[i] * h[i] : fuzz_positive(bytes);
+    a[i] = a_scale * fuzz_value(bytes);
+    solid[i] = (b & 0xc0) == 0xc0;
+  }
+  in->count = (int64_t)n;
+  in->positions = (mcor_array){ .data = x, .type = MCOR_FLOAT64, .components = 3 };
+  in->smoothing_length = (mcor_array){ .data = kind & 4 ? h : NULL, .type = MCOR_FLOAT64 };
+  in->smoothing_length.constant = h_scale * constant_h;
+  in->smoothing_length_is_support_radius = kind >> 3 & 1;
+  in->estimate_smoothing_length = (kind & 0x30) == 0x30;
+  in->scalar = (mcor_array){ .data = a, .type = MCOR_FLOAT64 };
+  in->volume = in->mass = (mcor_array){ .data = v, .type = MCOR_FLOAT64 };
+  in->density = (mcor_array){ .data = kind & 4 ? h : v, .type = MCOR_FLOAT64 };
+  in->solid = kind & 0x80 ? solid : NULL;
+}
+
+/* Which of the arrays play which part. */
+static void fuzz_parts(unsigned rules, fuzz_call* call)
+{
+  mcor_input* in = &call->input;
+  in->has_volume = rules & 1;
+  in->has_mass = rules >> 1 & 1;
+  in->has_density = rules >> 2 & 1;
+  in->ignore_solids = rules >> 3 & 1;
+  call->attributes[0] = in->scalar;
+  call->attributes[1] = in->positions;
+  in->attributes = call->attributes;
+  in->attribute_count = rules >> 4 & 1 ? 2 : 0;
+  if (rules >> 5 & 1)
+  {
+    in->scalar = in->positions;
+    in->scalar_component = (int)(rules >> 6) - 1;
+  }
+}
+
+static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
+{
+  mcor_options* o = &call->options;
+  const unsigned what = fuzz_byte(bytes), modes = fuzz_byte(bytes);
+  mcor_set_default_options(o);
+  /* Few combinations, as each is a device program of its own. */
+  o->sph_kernel = (mcor_sph_kernel)(modes % 16 == 15 ? 7 : modes % 16 > 11 ? MCOR_M_PRIME_4 : 0);
+  o->field = (mcor_field)(modes / 16 == 15 ? 3 : modes / 16 % 3);
+  o->seeds = (mcor_seed_mode)(what & 1);
+  o->preview = (what & 0x0e) == 2;
+  o->gradients = o->weight_sum = o->residual = o->correction_length = what >> 4 & 1;
+  o->boundary_flag = o->nearest_particle = o->iso_value = what >> 5 & 1;
+  o->triangle_normals = (what & 0xc0) == 0xc0;
+  o->node_threshold = fuzz_threshold(bytes);
+  o->vertex_threshold = fuzz_threshold(bytes);
+  o->h_scale = fuzz_scale(bytes) * (fuzz_byte(bytes) & 1 ? 1 : 0.5);
+  const unsigned cube = fuzz_byte(bytes);
+  o->cube_size_factor =
+    cube < 248 ? 0.5 + 0.25 * (cube % 3) : fuzz_positive(bytes) * fuzz_scale(bytes);
+  o->cube_size = cube > 252 ? fuzz_positive(bytes) * fuzz_scale(bytes) : 0;
+  o->tolerance = cube % 16 == 15 ? fuzz_positive(bytes) * 1e-3 : 1e-6;
+  o->iteration_limit = cube % 16 == 14 ? (int)fuzz_byte(bytes) * 2 - 1 : 30;
+  o->iso_count = 1 + (cube % 16 == 13);
+  o->iso_values = call->iso;
+  call->iso[0] = fuzz_value(bytes);
+  call->iso[1] = fuzz_value(bytes);
+}
+
+static int fuzz_finite(const double* values, int64_t count)
+{
+  for (int64_t i = 0; values && i < count; ++i)
+  {
+    if (!isfinite(values[i]))
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+static int fuzz_finite_floats(const float* values, int64_t count)
+{
+  for (int64_t i = 0; values && i < count; ++i)
+  {
+    if (!isfinite(values[i]))
+    {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
+{
+  const int64_t n = s->point_count;
+  FUZZ_CHECK(n >= 0 && s->triangle_count >= 0 && n <= 3 * s->triangle_count);
+  FUZZ_CHECK(fuzz_finite(s->points, 3 * n));
+  FUZZ_CHECK(fuzz_finite(s->gradients, 3 * n));
+  FUZZ_CHECK(fuzz_finite_floats(s->normals, 3 * n));
+  FUZZ_CHECK(fuzz_finite_floats(s->weight_sum, n));
+  FUZZ_CHECK(fuzz_finite_floats(s->residual, n));
+  FUZZ_CHECK(fuzz_finite_floats(s->correction_length, n));
+  for (int a = 0; a < s->attribute_count; ++a)
+  {
+    FUZZ_CHECK(fuzz_finite(s->attributes[a], n * (a ? 3 : 1)));
+  }
+  for (int64_t t = 0; t < s->triangle_count; ++t)
+  {
+    const int32_t* k = s->triangles + 3 * t;
+    for (int c = 0; c < 3; ++c)
+    {
+      FUZZ_CHECK(k[c] >= 0 && k[c] < n);
+    }
+    FUZZ_CHECK(k[0] != k[1] && k[1] != k[2] && k[2] != k[0]);
+  }
+  for (int64_t i = 0; s->nearest_particle && i < n; ++i)
+  {
+    FUZZ_CHECK(s->nearest_particle[i] >= 0 && s->nearest_particle[i] < in->count);
+  }
+}
+
+static void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
+{
+  FUZZ_CHECK(a->point_count == b->point_count && a->triangle_count == b->triangle_count);
+  const size_t n = (size_t)a->point_count, t = (size_t)a->triangle_count;
+  FUZZ_CHECK(n == 0 || memcmp(a->points, b->points, n * 3 * sizeof(double)) == 0);
+  FUZZ_CHECK(t == 0 || memcmp(a->triangles, b->triangles, t * 3 * sizeof(int32_t)) == 0);
+  FUZZ_CHECK(n == 0 || !a->normals || memcmp(a->normals, b->normals, n * 3 * sizeof(float)) == 0);
+}
+
+static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mcor_surface* surface)
+{
+  memset(surface, 0, sizeof *surface);
+  const mcor_status status = mcor_extract(context, &call->input, &call->options, surface);
+  FUZZ_CHECK(status >= MCOR_OK && status <= MCOR_CANCELLED);
+  if (status == MCOR_OK)
+  {
+    FUZZ_CHECK(mcor_last_error(context)[0] == '\0');
+    fuzz_check_surface(surface, &call->input);
+  }
+  else
+  {
+    /* A device error would mean that a kernel or a launch was wrong. */
+    FUZZ_CHECK(status != MCOR_DEVICE_ERROR && mcor_last_error(context)[0] != '\0');
+    FUZZ_CHECK(surface->point_count == 0 && !surface->points && !surface->triangles);
+  }
+  return status;
+}
+
+/* Contexts are kept, one for each device program: to make one takes longer than a call. */
+static mcor_context* fuzz_context(const fuzz_call* call)
+{
+  static mcor_context* contexts[2][3][2];
+  const mcor_options* o = &call->options;
+  mcor_context** context = &contexts[o->sph_kernel == MCOR_M_PRIME_4][o->field < 3 ? o->field : 0]
+                                    [call->input.solid != NULL];
+  if (!*context && mcor_create_context(NULL, context) != MCOR_OK)
+  {
+    fprintf(stderr, "%s\n", mcor_last_error(*context));
+    exit(1);
+  }
+  return *context;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+  fuzz_bytes bytes = { data, size };
+  fuzz_call call = { .iso = { 0, 0 } };
+  fuzz_options(&bytes, &call);
+  const unsigned rules = fuzz_byte(&bytes);
+  fuzz_particles(&bytes, &call);
+  fuzz_parts(rules, &call);
+  mcor_context* context = fuzz_context(&call);
+  mcor_surface first, second;
+  const mcor_status status = fuzz_extract(context, &call, &first);
+  if (size % 4 == 1)
+  {
+    mcor_release_memory(context);
+  }
+  FUZZ_CHECK(fuzz_extract(context, &call, &second) == status);
+  fuzz_check_same(&first, &second);
+  mcor_free_surface(&first);
+  mcor_free_surface(&second);
+  for (size_t i = 0; i < sizeof call.arrays / sizeof call.arrays[0]; ++i)
+  {
+    free(call.arrays[i]);
+  }
+  return 0;
+}

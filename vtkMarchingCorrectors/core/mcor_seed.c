@@ -5,15 +5,33 @@
 
 #include "mcor_internal.h"
 
-/* The blocks that particles reach. They do not depend on scalar or iso value. */
-mcor_status mcor_make_blocks(mcor_context* context)
+/* Up to this many blocks, the lattice's blocks are asked for particles; above, the search cells name
+ * their blocks, which costs nothing for empty space but repeats blocks under coarse particles. */
+#define MCOR_BLOCKS_ASKED (1 << 22)
+
+static mcor_status mcor_ask_blocks(mcor_context* context, int lattice_blocks)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int* blocks = context->lattice.blocks;
+  mcor_buffer* flags = &context->scratch[0];
+  MCOR_TRY(mcor_reserve(context, flags, ((size_t)lattice_blocks + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_reached", MCOR_LIGHT, lattice_blocks,
+    MCOR_GRID_ARGS(context), MCOR_INT(lattice_blocks), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
+    MCOR_BUFFER(flags)));
+  MCOR_TRY(mcor_scan(context, flags, lattice_blocks, &bricks->block_count));
+  MCOR_TRY(mcor_reserve(
+    context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_seed_reached_fill", MCOR_LIGHT, lattice_blocks,
+    MCOR_INT(lattice_blocks), MCOR_BUFFER(flags), MCOR_BUFFER(&bricks->block_keys));
+}
+
+static mcor_status mcor_name_blocks(mcor_context* context, uint64_t key_limit)
 {
   mcor_bricks* bricks = &context->bricks;
   const mcor_grid* grid = &context->grid;
   const int* blocks = context->lattice.blocks;
   mcor_buffer *counts = &context->scratch[0], *keys = &context->scratch[1],
               *index_of = &context->scratch[2];
-  const uint64_t key_limit = (uint64_t)blocks[0] * (uint64_t)blocks[1] * (uint64_t)blocks[2];
   int key_count;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)grid->count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_LIGHT, grid->count,
@@ -24,8 +42,18 @@ mcor_status mcor_make_blocks(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, grid->count,
     MCOR_GRID_ARGS(context), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_INT(blocks[2]),
     MCOR_BUFFER(counts), MCOR_BUFFER(keys)));
-  MCOR_TRY(mcor_unique(
-    context, keys, key_count, key_limit, &bricks->block_keys, index_of, &bricks->block_count));
+  return mcor_unique(
+    context, keys, key_count, key_limit, &bricks->block_keys, index_of, &bricks->block_count);
+}
+
+/* The blocks that particles reach. They do not depend on scalar or iso value. */
+mcor_status mcor_make_blocks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int* blocks = context->lattice.blocks;
+  const uint64_t key_limit = (uint64_t)blocks[0] * (uint64_t)blocks[1] * (uint64_t)blocks[2];
+  MCOR_TRY(key_limit <= MCOR_BLOCKS_ASKED ? mcor_ask_blocks(context, (int)key_limit)
+                                          : mcor_name_blocks(context, key_limit));
   MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, bricks->block_count, key_limit,
     &bricks->block_buckets, &bricks->block_shift));
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;

@@ -64,6 +64,37 @@ void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bit
   }
 }
 
+/* One work-item = one block of the whole lattice. Writes 1 where a particle may reach it or, as cells
+ * need nodes there, the brick before it. */
+__kernel void mcor_seed_reached(MCOR_GRID_PARAMS, const int lattice_blocks, const int blocks_x,
+  const int blocks_y, __global int* flags)
+{
+  const int i = get_global_id(0);
+  if (i >= lattice_blocks)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_query query;
+  mcor_seed_box(&query, i % blocks_x * MCOR_BLOCK_CUBES - MCOR_BRICK,
+    i / blocks_x % blocks_y * MCOR_BLOCK_CUBES - MCOR_BRICK,
+    i / blocks_x / blocks_y * MCOR_BLOCK_CUBES - MCOR_BRICK, MCOR_BLOCK_CUBES + MCOR_BRICK,
+    fix_bits);
+  mcor_query_begin(&grid, &query);
+  flags[i] = query.begin < query.end || mcor_query_next_row(&grid, &query);
+}
+
+/* One work-item = one block of the whole lattice. Reads the scanned flags. Writes the keys. */
+__kernel void mcor_seed_reached_fill(
+  const int lattice_blocks, __global const int* scanned, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  if (i < lattice_blocks && scanned[i] != scanned[i + 1])
+  {
+    keys[scanned[i]] = (ulong)i;
+  }
+}
+
 /* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
  * field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso, and
  *

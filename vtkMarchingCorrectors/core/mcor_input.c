@@ -14,6 +14,10 @@
 /* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-10 cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
 
+/* Support radius in cubes at least: below, no node is likely to see a particle, and search cells would
+ * be too many to number. */
+#define MCOR_LEAST_SUPPORT 1e-3
+
 static const char* mcor_array_name(const mcor_array* array, const char* role)
 {
   return array->name ? array->name : role;
@@ -458,6 +462,10 @@ mcor_status mcor_measure_input(
   mcor_lattice* lattice = &context->lattice;
   const double cube =
     options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
+    "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, or "
+    "remove particles of such a smoothing length.",
+    cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   lattice->cube = m->cube = cube;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)

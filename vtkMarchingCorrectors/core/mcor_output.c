@@ -11,9 +11,6 @@
 
 #define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_output.cl */
 
-/* Gradients below this fraction of range / cube size count as vanishing. */
-#define MCOR_LEAST_GRADIENT 1e-6
-
 /* What the device hands over for the vertices of one iso value. */
 typedef struct mcor_download
 {
@@ -44,7 +41,6 @@ static mcor_status mcor_compact(mcor_context* context, int* count)
   mcor_mesh* mesh = &context->mesh;
   mcor_buffer* out = context->out;
   const int vertices = mesh->vertex_count, corners = 3 * mesh->triangle_count;
-  const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_zero(context, &mesh->scanned, ((size_t)vertices + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, corners,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
@@ -61,7 +57,7 @@ static mcor_status mcor_compact(mcor_context* context, int* count)
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->node),
     MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value),
     MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-    MCOR_REAL(MCOR_LEAST_GRADIENT * range), MCOR_BUFFER(&out[0]), MCOR_BUFFER(&out[1]),
+    MCOR_BUFFER(&out[0]), MCOR_BUFFER(&out[1]),
     MCOR_BUFFER(&out[2]), MCOR_BUFFER(&out[3]), MCOR_BUFFER(&out[4]));
 }
 
@@ -225,6 +221,7 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
     MCOR_BUFFER(&context->out[0]),
     MCOR_BUFFER(&context->out[1]), MCOR_INT(count), MCOR_INT(stride),
     MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values), MCOR_INT(nearest),
+    MCOR_INT(context->measure.support_min == context->measure.support_max),
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
   void* host = malloc(n * ((size_t)count * real + sizeof(cl_int)) + 1);
   MCOR_RETURN_IF(!host, context, MCOR_OUT_OF_CAPACITY,

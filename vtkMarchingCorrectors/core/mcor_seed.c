@@ -71,7 +71,8 @@ static mcor_status mcor_test_regions(mcor_context* context, double iso, int size
   return MCOR_LAUNCH(context, "mcor_seed_region", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size),
-    MCOR_BUFFER(block_keep), MCOR_REAL(iso), MCOR_BUFFER(keep));
+    MCOR_BUFFER(block_keep), MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold),
+    MCOR_BUFFER(keep));
 }
 
 /* Marks every brick box that the bound cannot exclude: blocks, regions, bricks. */

@@ -5,7 +5,7 @@
 
 #include "mcor_internal.h"
 
-#define MCOR_TRIM_STEPS 12
+#define MCOR_TRIM_STEPS 25
 
 /* Counts what remains; ends with scanned counts in mesh->remaining and mesh->cuts. */
 static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int* cuts)

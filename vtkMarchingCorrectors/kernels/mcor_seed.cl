@@ -184,14 +184,15 @@ bool mcor_seed_straddles(
   return *above && *below;
 }
 
-/* The bound for one box, of `size` cubes, with MCOR_LANES particles at a time: whether F may be 0. */
-bool mcor_seed_region_may_cross(
-  const mcor_grid* grid, mcor_query* query, mcor_tile* tile, real size, real iso)
+/* The bound for one box, of `size` cubes, with MCOR_LANES particles at a time: whether F may be 0, and
+ * some node's weight reach the threshold. */
+bool mcor_seed_region_may_cross(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  real size, real iso, real node_threshold)
 {
   const real level = MCOR_FIELD == 0 ? (real)0 : iso;
   const real e = (real)0.5 * size;
   bool above = false, under = false, below = false;
-  realv sum = 0, total = 0;
+  realv sum = 0, total = 0, most_weight = 0;
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     mcor_seed_straddles(grid, tile, iso, &above, &under);
@@ -201,7 +202,7 @@ bool mcor_seed_region_may_cross(
     }
     for (int i = 0; i < tile->count; i += MCOR_LANES)
     {
-      realv x, y, z, inv_h, c;
+      realv x, y, z, inv_h, c, trim;
       for (int lane = 0; lane < MCOR_LANES; ++lane)
       {
         const int j = tile->list[min(i + lane, tile->count - 1)];
@@ -211,22 +212,29 @@ bool mcor_seed_region_may_cross(
         MCOR_SET(inv_h, lane) = grid->inv_h[j];
         MCOR_SET(c, lane) =
           i + lane < tile->count ? mcor_seed_coefficient(grid, j, iso) : (real)0;
+        MCOR_SET(trim, lane) = i + lane < tile->count ? grid->trim_weight[j] : (real)0;
       }
       const realv side = (c > 0) == (fixv)(below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
       const realv w = mcor_seed_weight(x, y, z, e, e, side, inv_h);
       sum += c * w;
       total += fabs(c) * fabs(w);
+      if (MCOR_FIELD != 2)
+      {
+        most_weight += trim * mcor_seed_weight(x, y, z, e, e, (realv)-1, inv_h);
+      }
     }
   }
-  real s = 0, t = 0;
+  real s = 0, t = 0, m = 0;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     s += MCOR_GET(sum, lane);
     t += MCOR_GET(total, lane);
+    m += MCOR_GET(most_weight, lane);
   }
   const real margin = (real)1e-5f * (t + fabs(level));
   const bool may = below ? s <= level + margin : s >= level - margin;
-  return may && (!MCOR_RANGE_DECIDES || (above && under));
+  const bool valid = MCOR_FIELD == 2 || m >= node_threshold * (real)0.9999;
+  return may && valid && (!MCOR_RANGE_DECIDES || (above && under));
 }
 
 /* Blocks, and regions of 8^3 cubes in them, come before bricks: where smoothing lengths are many
@@ -246,7 +254,8 @@ int mcor_seed_region_of(int m)
  * may occur in it. */
 __kernel void mcor_seed_region(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, const int size,
-  __global const uchar* block_keep, const real iso, __global uchar* keep)
+  __global const uchar* block_keep, const real iso, const real node_threshold,
+  __global uchar* keep)
 {
   const int i = get_global_id(0);
   const int regions = size == MCOR_BLOCK_CUBES ? 1 : MCOR_BLOCK_REGIONS;
@@ -269,7 +278,7 @@ __kernel void mcor_seed_region(MCOR_GRID_PARAMS, const int block_count, const in
     fix_bits);
   mcor_tile tile;
   mcor_tile_init(&tile);
-  keep[i] = mcor_seed_region_may_cross(&grid, &query, &tile, (real)size, iso);
+  keep[i] = mcor_seed_region_may_cross(&grid, &query, &tile, (real)size, iso, node_threshold);
 }
 
 /* One work-item = one brick (of all in blocks), for the weight sum of a kernel w >= 0. Reads the

@@ -123,8 +123,8 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 }
 
 /* How far a cut vertex may move from the linear cut, in cubes. */
-#define MCOR_TRIM_REACH ((real)0.5)
-#define MCOR_TRIM_STEPS 12
+#define MCOR_TRIM_REACH ((real)0.75)
+#define MCOR_TRIM_STEP ((real)0.25) /* in one iteration */
 
 /* One work-item = one group of cut vertices. Moves them to where both field = iso and weight =
  * threshold, by the shortest (least-norm) Newton steps; where that does not converge nearby, the two
@@ -168,9 +168,14 @@ __kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count,
     const fixv tangent = det <= (real)1e-6 * ff * ww;
     const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
     const realv lf = (ww * f - fw * w) * inv_det, lw = (ff * w - fw * f) * inv_det;
-    const realv x = points.ox - lf * at.gx - lw * at.wx;
-    const realv y = points.oy - lf * at.gy - lw * at.wy;
-    const realv z = points.oz - lf * at.gz - lw * at.wz;
+    const realv dx = lf * at.gx + lw * at.wx;
+    const realv dy = lf * at.gy + lw * at.wy;
+    const realv dz = lf * at.gz + lw * at.wz;
+    const realv damp = fmin(
+      MCOR_TRIM_STEP * rsqrt(fmax(dx * dx + dy * dy + dz * dz, (realv)1e-30f)), (realv)1);
+    const realv x = points.ox - damp * dx;
+    const realv y = points.oy - damp * dy;
+    const realv z = points.oz - damp * dz;
     const fixv near = fabs(x - x0) <= MCOR_TRIM_REACH && fabs(y - y0) <= MCOR_TRIM_REACH &&
       fabs(z - z0) <= MCOR_TRIM_REACH;
     failed = failed || !(done || (near && !tangent));

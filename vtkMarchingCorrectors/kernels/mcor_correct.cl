@@ -226,22 +226,106 @@ realv mcor_correct_cubic(realv v0, realv v1, realv t, realv v, realv slope)
   return t + d;
 }
 
+/* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight. */
+void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int lane, int v,
+  __global real4* offset, __global real* value, __global real4* gradient, __global real* weight)
+{
+  offset[v] = (real4)(
+    MCOR_GET(points->ox, lane), MCOR_GET(points->oy, lane), MCOR_GET(points->oz, lane), 0);
+  value[v] = MCOR_GET(at->value, lane);
+  gradient[v] =
+    (real4)(MCOR_GET(at->gx, lane), MCOR_GET(at->gy, lane), MCOR_GET(at->gz, lane), 0);
+  weight[v] = MCOR_GET(at->weight, lane);
+}
+
 /* A vertex keeps this distance from the ends of its edge, so that vertices of edges which meet in a
  * node at the iso value stay apart and no triangle loses its area. */
 #define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
+
 /* Where the gradient is small, a small residual alone may be far from the surface: along the edge, a
  * vertex is also to come this close. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
+
+/* A bracket of this length is not halved any more. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
+/* Edges: values at both ends, against iso, and unit vectors along the edges. */
+typedef struct
+{
+  realv v0, v1, ax, ay, az;
+} mcor_edges;
+
+/* Loads the ends of a group's edges, and extends the query from their lower nodes to all of them. */
+void mcor_edges_load(__global const real* vertex_ends, int begin, int end, const int* axis_of,
+  int fix_bits, mcor_edges* edges, mcor_query* query)
+{
+  int axes = 0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = min(begin + lane, end - 1), axis = axis_of[lane] & 3;
+    MCOR_SET(edges->v0, lane) = vertex_ends[2 * v];
+    MCOR_SET(edges->v1, lane) = vertex_ends[2 * v + 1];
+    MCOR_SET(edges->ax, lane) = axis == 0;
+    MCOR_SET(edges->ay, lane) = axis == 1;
+    MCOR_SET(edges->az, lane) = axis == 2;
+    axes |= 1 << axis;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_points_extend(query, a, 0, (real)(axes >> a & 1), fix_bits);
+  }
+}
+
+/* Moves all vertices of a group along their edges, from t0, until each is on the surface or `limit`
+ * steps were made. `evaluations` counts how many each needed. */
+void mcor_correct_group(const mcor_grid* grid, mcor_query* query, const mcor_edges* e, realv t0,
+  real iso, real tolerance, int limit, mcor_points* points, mcor_field_at* at, realv* t,
+  fixv* evaluations)
+{
+  realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
+  const fixv rising = e->v0 < 0;
+  fixv active = low < high;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  *t = t0;
+  *evaluations = 0;
+  for (int i = 0;; ++i)
+  {
+    points->ox = *t * e->ax;
+    points->oy = *t * e->ay;
+    points->oz = *t * e->az;
+    mcor_evaluate(grid, query, &tile, points, iso, at);
+    *evaluations += active ? (fixv)1 : (fixv)0;
+    const realv slope = at->gx * e->ax + at->gy * e->ay + at->gz * e->az;
+    const realv error = fabs(at->value);
+    active = active && high - low > MCOR_EDGE_RESOLUTION &&
+      (error > (real)0.5 * tolerance || error > MCOR_EDGE_ERROR * fabs(slope));
+    if (i >= limit || !MCOR_ANY(active))
+    {
+      return;
+    }
+    const fixv before = rising ? at->value < 0 : at->value >= 0;
+    low = before ? *t : low;
+    high = before ? high : *t;
+    realv next = i == 0 ? mcor_correct_cubic(e->v0, e->v1, *t, at->value, slope)
+                        : *t - mcor_correct_ratio(at->value, slope);
+    /* Newton may creep where the field has a kink or no slope: from the 6th step on every other
+     * step halves the bracket. */
+    const bool newton = i < 5 || (i & 1);
+    next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
+    active = active && next != *t;
+    *t = active ? next : *t;
+  }
+}
+
 /* One work-item = one group of vertices. Reads edges and end values (against iso). Writes position
- * (node, offset), linear position, value, gradient and trimming weight, and how many evaluations
- * were made. limit 0: no correction (preview). */
+ * (node, offset), linear less final position along the edge, value, gradient and trimming weight,
+ * and how many evaluations were made. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends, const real iso,
-  const real tolerance, const int limit, __global real4* offset, __global real* linear,
-  __global real* value, __global real4* gradient, __global real* weight,
-  __global uchar* evaluations)
+  __global const int* groups, __global const int4* vertex_edge,
+  __global const real* vertex_ends, const real iso, const real tolerance, const int limit,
+  __global real4* offset, __global real* linear, __global real* value, __global real4* gradient,
+  __global real* weight, __global uchar* evaluations)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -252,67 +336,22 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
+  mcor_edges edges;
+  mcor_field_at at;
   int axis_of[MCOR_LANES];
   mcor_points_load(vertex_edge, begin, end, fix_bits, &points, &query, axis_of);
-  realv v0, v1, ax = 0, ay = 0, az = 0;
-  int axes = 0;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const int v = min(begin + lane, end - 1), axis = axis_of[lane] & 3;
-    MCOR_SET(v0, lane) = vertex_ends[2 * v];
-    MCOR_SET(v1, lane) = vertex_ends[2 * v + 1];
-    MCOR_SET(ax, lane) = axis == 0;
-    MCOR_SET(ay, lane) = axis == 1;
-    MCOR_SET(az, lane) = axis == 2;
-    axes |= 1 << axis;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_points_extend(&query, a, 0, (real)(axes >> a & 1), fix_bits);
-  }
-  realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
-  const realv t0 = clamp(v0 / (v0 - v1), low, high);
-  realv t = t0;
-  const fixv rising = v0 < 0;
-  fixv active = low < high, count = 0;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  mcor_field_at at;
-  for (int i = 0;; ++i)
-  {
-    points.ox = t * ax;
-    points.oy = t * ay;
-    points.oz = t * az;
-    mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
-    count += active ? (fixv)1 : (fixv)0;
-    const realv slope = at.gx * ax + at.gy * ay + at.gz * az;
-    const realv error = fabs(at.value);
-    active = active && (error > (real)0.5 * tolerance || error > MCOR_EDGE_ERROR * fabs(slope)) &&
-      high - low > MCOR_EDGE_RESOLUTION;
-    if (i >= limit || !MCOR_ANY(active))
-    {
-      break;
-    }
-    const fixv before = rising ? at.value < 0 : at.value >= 0;
-    low = before ? t : low;
-    high = before ? high : t;
-    realv next = i == 0 ? mcor_correct_cubic(v0, v1, t, at.value, slope) : t - mcor_correct_ratio(at.value, slope);
-    /* Newton may creep where the field has a kink or no slope: from the 6th step on every other
-     * step halves the bracket. */
-    const bool newton = i < 5 || (i & 1);
-    next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
-    active = active && next != t;
-    t = active ? next : t;
-  }
+  mcor_edges_load(vertex_ends, begin, end, axis_of, fix_bits, &edges, &query);
+  const realv t0 = clamp(
+    edges.v0 / (edges.v0 - edges.v1), (realv)MCOR_EDGE_MARGIN, (realv)(1 - MCOR_EDGE_MARGIN));
+  realv t;
+  fixv count;
+  mcor_correct_group(
+    &grid, &query, &edges, t0, iso, tolerance, limit, &points, &at, &t, &count);
   for (int lane = 0; begin + lane < end; ++lane)
   {
     const int v = begin + lane;
-    offset[v] = (real4)(MCOR_GET(points.ox, lane), MCOR_GET(points.oy, lane), MCOR_GET(points.oz, lane), 0);
+    mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
     linear[v] = MCOR_GET(t0, lane) - MCOR_GET(t, lane);
-    value[v] = MCOR_GET(at.value, lane);
-    gradient[v] =
-      (real4)(MCOR_GET(at.gx, lane), MCOR_GET(at.gy, lane), MCOR_GET(at.gz, lane), 0);
-    weight[v] = MCOR_GET(at.weight, lane);
     evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
   }
 }

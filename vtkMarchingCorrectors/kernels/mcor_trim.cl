@@ -122,17 +122,83 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
 }
 
-/* How far a cut vertex may move from the linear cut, in cubes. */
+/* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */
 #define MCOR_TRIM_REACH ((real)0.75)
-#define MCOR_TRIM_STEP ((real)0.25) /* in one iteration */
+#define MCOR_TRIM_STEP ((real)0.25)
 
-/* One work-item = one group of cut vertices. Moves them to where both field = iso and weight =
- * threshold, by the shortest (least-norm) Newton steps; where that does not converge nearby, the two
- * surfaces being tangent, the linear cut stays and flag becomes 2 instead of 1. */
+/* |w - threshold| of a cut vertex, at most. */
+#define MCOR_TRIM_TOLERANCE ((real)1e-5f)
+
+/* Newton's step of least norm towards field = iso and weight = threshold at once,
+ * -J^T (J J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there
+ * is none, the gradients being parallel. */
+fixv mcor_trim_step(const mcor_field_at* at, real threshold, realv* dx, realv* dy, realv* dz)
+{
+  const realv f = at->value, w = at->weight - threshold;
+  const realv ff = at->gx * at->gx + at->gy * at->gy + at->gz * at->gz;
+  const realv ww = at->wx * at->wx + at->wy * at->wy + at->wz * at->wz;
+  const realv fw = at->gx * at->wx + at->gy * at->wy + at->gz * at->wz;
+  const realv det = ff * ww - fw * fw;
+  const fixv tangent = det <= (real)1e-6f * ff * ww;
+  const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
+  const realv lf = (fw * w - ww * f) * inv_det, lw = (fw * f - ff * w) * inv_det;
+  const realv x = lf * at->gx + lw * at->wx;
+  const realv y = lf * at->gy + lw * at->wy;
+  const realv z = lf * at->gz + lw * at->wz;
+  const realv damp =
+    fmin(MCOR_TRIM_STEP * rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
+  *dx = damp * x;
+  *dy = damp * y;
+  *dz = damp * z;
+  return tangent;
+}
+
+/* Moves a group of points to where field = iso and weight = threshold; points for which that does not
+ * succeed nearby stay where they were. Returns the latter. */
+fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
+  real threshold, int limit, mcor_points* points, mcor_field_at* at)
+{
+  const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  fixv done = 0, failed = 0;
+  for (int i = 0;; ++i)
+  {
+    mcor_evaluate(grid, query, &tile, points, iso, at);
+    done = done ||
+      (fabs(at->value) <= tolerance && fabs(at->weight - threshold) <= MCOR_TRIM_TOLERANCE);
+    if (i == limit || !MCOR_ANY(!(done || failed)))
+    {
+      break;
+    }
+    realv dx, dy, dz;
+    const fixv tangent = mcor_trim_step(at, threshold, &dx, &dy, &dz);
+    const fixv far = fabs(points->ox + dx - x0) > MCOR_TRIM_REACH ||
+      fabs(points->oy + dy - y0) > MCOR_TRIM_REACH || fabs(points->oz + dz - z0) > MCOR_TRIM_REACH;
+    failed = failed || (!done && (far || tangent));
+    const fixv move = !(done || failed);
+    points->ox += move ? dx : (realv)0;
+    points->oy += move ? dy : (realv)0;
+    points->oz += move ? dz : (realv)0;
+  }
+  const fixv back = !done;
+  if (MCOR_ANY(back))
+  {
+    points->ox = back ? x0 : points->ox;
+    points->oy = back ? y0 : points->oy;
+    points->oz = back ? z0 : points->oz;
+    mcor_evaluate(grid, query, &tile, points, iso, at);
+  }
+  return back;
+}
+
+/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both equations
+ * hold. Writes position, value, gradient and weight; the flag 2 instead of 1 where the linear cut
+ * stays, the two surfaces being tangent or too far away. */
 __kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, const real iso, const real tolerance, const real threshold,
-  const int limit, __global real4* offset, __global real* value, __global real4* gradient,
-  __global real* weight, __global uchar* flag)
+  __global const int* groups, __global const int4* node, const real iso, const real tolerance,
+  const real threshold, const int limit, __global real4* offset, __global real* value,
+  __global real4* gradient, __global real* weight, __global uchar* flag)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -143,64 +209,16 @@ __kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count,
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  int unused[MCOR_LANES];
-  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
-  mcor_points_load_offsets(offset, begin, end, MCOR_TRIM_REACH, fix_bits, &points, &query);
-  const realv x0 = points.ox, y0 = points.oy, z0 = points.oz;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
   mcor_field_at at;
-  fixv done = 0, failed = 0;
-  for (int i = 0; i <= limit; ++i)
-  {
-    mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
-    const realv f = at.value, w = at.weight - threshold;
-    done = done || (fabs(f) <= tolerance && fabs(w) <= (real)1e-5f);
-    if (i == limit || !MCOR_ANY(!(done || failed)))
-    {
-      break;
-    }
-    /* Least-norm step: -J^T (J J^T)^-1 (f, w), J the two gradients. */
-    const realv ff = at.gx * at.gx + at.gy * at.gy + at.gz * at.gz;
-    const realv ww = at.wx * at.wx + at.wy * at.wy + at.wz * at.wz;
-    const realv fw = at.gx * at.wx + at.gy * at.wy + at.gz * at.wz;
-    const realv det = ff * ww - fw * fw;
-    const fixv tangent = det <= (real)1e-6 * ff * ww;
-    const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
-    const realv lf = (ww * f - fw * w) * inv_det, lw = (ff * w - fw * f) * inv_det;
-    const realv dx = lf * at.gx + lw * at.wx;
-    const realv dy = lf * at.gy + lw * at.wy;
-    const realv dz = lf * at.gz + lw * at.wz;
-    const realv damp = fmin(
-      MCOR_TRIM_STEP * rsqrt(fmax(dx * dx + dy * dy + dz * dz, (realv)1e-30f)), (realv)1);
-    const realv x = points.ox - damp * dx;
-    const realv y = points.oy - damp * dy;
-    const realv z = points.oz - damp * dz;
-    const fixv near = fabs(x - x0) <= MCOR_TRIM_REACH && fabs(y - y0) <= MCOR_TRIM_REACH &&
-      fabs(z - z0) <= MCOR_TRIM_REACH;
-    failed = failed || !(done || (near && !tangent));
-    const fixv move = !(done || failed);
-    points.ox = move ? x : failed ? x0 : points.ox;
-    points.oy = move ? y : failed ? y0 : points.oy;
-    points.oz = move ? z : failed ? z0 : points.oz;
-  }
-  const fixv back = !done;
-  if (MCOR_ANY(back))
-  {
-    points.ox = back ? x0 : points.ox;
-    points.oy = back ? y0 : points.oy;
-    points.oz = back ? z0 : points.oz;
-    mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
-  }
+  int borders[MCOR_LANES];
+  mcor_points_load(node, begin, end, fix_bits, &points, &query, borders);
+  mcor_points_load_offsets(offset, begin, end, MCOR_TRIM_REACH, fix_bits, &points, &query);
+  const fixv linear =
+    mcor_trim_group(&grid, &query, iso, tolerance, threshold, limit, &points, &at);
   for (int lane = 0; begin + lane < end; ++lane)
   {
-    const int v = begin + lane;
-    offset[v] = (real4)(MCOR_GET(points.ox, lane), MCOR_GET(points.oy, lane), MCOR_GET(points.oz, lane), 0);
-    value[v] = MCOR_GET(at.value, lane);
-    gradient[v] =
-      (real4)(MCOR_GET(at.gx, lane), MCOR_GET(at.gy, lane), MCOR_GET(at.gz, lane), 0);
-    weight[v] = MCOR_GET(at.weight, lane);
-    flag[v] = MCOR_GET_FIX(back, lane) ? 2 : 1;
+    mcor_points_store(&points, &at, lane, begin + lane, offset, value, gradient, weight);
+    flag[begin + lane] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
   }
 }
 

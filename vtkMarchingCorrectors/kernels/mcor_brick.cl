@@ -163,11 +163,12 @@ __kernel void mcor_brick_bits(MCOR_BLOCK_PARAMS, __global const ushort* marks,
   {
     return;
   }
+  const int4 first = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, word * 32);
   uint result = old_bits[word];
   for (int b = 0; b < 32; ++b)
   {
     const int m = word * 32 + b;
-    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+    const int4 brick = first + (int4)(b & 7, b >> 3, 0, 0);
     bool needed = marks[m] != 0 || (result >> b & 1);
     for (int d = 1; d < 8 && !needed; ++d)
     {

@@ -188,7 +188,9 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   {
     return;
   }
-  const ulong before = cells[2 * slot] | (ulong)cells[2 * slot + 1] << 32;
+  /* Atomic, as neighbours may add cells in the meantime; what is missed here comes next round. */
+  const ulong before =
+    atomic_or(cells + 2 * slot, 0) | (ulong)atomic_or(cells + 2 * slot + 1, 0) << 32;
   if (before == 0)
   {
     return;

@@ -363,6 +363,13 @@ __kernel void mcor_seed_brick(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global cons
     {
       return;
     }
+    if (MCOR_TENSOR)
+    {
+      /* With negative lobes the bound excludes next to nothing at this size, and costs more than the
+       * nodes. */
+      marks[m] = 0xffff;
+      return;
+    }
     if (first)
     {
       below = mcor_seed_middle(&grid, &query, &tile, (real)0.5 * MCOR_BRICK, iso) > level;

@@ -81,10 +81,10 @@ extern "C"
   void oracle_free_field(oracle_field* field);
 
   /* Fills particles->volume: mass / density; with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); with
-   * neither 1 / sum_k W(x_j - x_k, h_j). The sums run over all particles of the same sort (fluid or
-   * solid) or over all, see same_sort. Returns 0 if memory ran out. */
+   * neither 1 / sum_k W(x_j - x_k, h_j). The sums leave out solids that are ignored. Returns 0 if
+   * memory ran out. */
   int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, const double* mass,
-    const double* density, int same_sort);
+    const double* density);
 
   typedef struct oracle_sample
   {

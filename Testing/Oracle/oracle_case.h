@@ -41,6 +41,7 @@ extern "C"
     mcor_options options; /* one iso value; seeds and vertex_threshold are set by the run */
     int skip_pairs;       /* do not run with MCOR_PAIRS */
     int rough; /* values without any smoothness, or equal to iso in places: only edges and mesh */
+    int no_table; /* has no row in the table of results */
     int has_euler, euler; /* what the Euler number of the untrimmed surface must be */
     int64_t node_limit;   /* 0: 60 million */
   } oracle_case;

@@ -173,9 +173,11 @@ static void compare_assign_on_nodes(compare_state* state)
     if (state->vertex_edge[v] <= COMPARE_ON_NODE)
     {
       /* No crossed edge is left for it: a cut, or to be judged as a vertex on an uncrossed edge. */
-      const int flagged = state->surface->boundary_flag && state->surface->boundary_flag[v];
-      state->vertex_edge[v] =
-        flagged && state->trimmed ? COMPARE_TRIM_VERTEX : 3 * (COMPARE_ON_NODE - state->vertex_edge[v]);
+      const int64_t node = COMPARE_ON_NODE - state->vertex_edge[v];
+      const int cut = state->trimmed && state->surface->boundary_flag &&
+        state->surface->boundary_flag[v] &&
+        !(state->reference->lattice.flags[node] & ORACLE_NODE_CLOSE);
+      state->vertex_edge[v] = cut ? COMPARE_TRIM_VERTEX : 3 * node;
     }
   }
 }
@@ -190,10 +192,14 @@ static void compare_assign(compare_state* state)
   for (int64_t v = 0; v < surface->point_count; ++v)
   {
     const int64_t edge = compare_locate(&state->reference->lattice, &surface->points[3 * v]);
-    /* On a crossed edge a flagged vertex is one at the border of invalid cells, else it is a cut. */
+    /* On a crossed edge a flagged vertex is one at the border of invalid cells, as is one on an edge
+     * whose crossing is up to rounding; else it is a cut. */
     const int64_t e = edge >= 0 ? oracle_find_edge(&state->reference->surface, edge) : -1;
     const int flagged = surface->boundary_flag && surface->boundary_flag[v];
-    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && (e < 0 || (state->edge_vertex[e] >= 0 && !compare_takes_second(state, e)));
+    const int open = e >= 0 ? state->edge_vertex[e] < 0 || compare_takes_second(state, e)
+                            : edge >= 0 &&
+        compare_end_flag(&state->reference->lattice, edge, ORACLE_NODE_CLOSE);
+    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && !open;
     state->vertex_edge[v] = cut ? COMPARE_TRIM_VERTEX : edge;
     if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
     {

@@ -25,11 +25,12 @@ extern "C"
     /* Of the scalar over fluid particles; its largest magnitude if all are equal. Of the
      * weight: its largest value, at least 1. */
     double range;
+    double greatest_weight; /* of the nodes, at least 1 */
     double unit;  /* roundoff of the working precision */
   } oracle_reference;
 
   /* Reads input and options in the way mcor.h describes, evaluates the whole lattice. 0 with a reason
-   * in message if that is impossible. same_sort: see oracle_compute_volumes. */
+   * in message if that is impossible. */
   int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
     const mcor_options* options, int64_t node_limit, char message[256]);
   /* Makes the reference that of another iso value. */
@@ -53,6 +54,7 @@ extern "C"
     int64_t pinched_edges; /* two valid cells touch only in the edge */
 
     double residual;      /* max |f - iso| / range over vertices on edges */
+    int64_t noisy;        /* vertices whose residual is above 4e-6, but within the bound on rounding */
     int64_t jumps;        /* vertices where f jumps over iso; not in residual and normal_degrees */
     double distance;      /* max distance to the surface f = iso, in cubes */
     double normal_degrees;   /* max angle between normal and -gradient */
@@ -69,7 +71,7 @@ extern "C"
     int64_t below_threshold;                 /* vertices kept although their weight is too low */
     int64_t near_threshold;                  /* vertices that rounding may keep or cut away */
     int64_t unsettled; /* nodes and cells at the surface whose state depends on rounding */
-    double weight_error, gradient_error;     /* of the optional arrays; gradient relative */
+    double weight_error, gradient_error;     /* of the optional arrays, relative */
     char first[240];                         /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 

@@ -104,7 +104,8 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   if (state->surface->weight_sum)
   {
     result->weight_error = fmax(result->weight_error,
-      fabs((double)state->surface->weight_sum[v] - sample->trim_weight));
+      fabs((double)state->surface->weight_sum[v] - sample->trim_weight) /
+        state->reference->greatest_weight);
   }
   if (state->surface->gradients && sample->gradient_scale > 0.0)
   {
@@ -179,8 +180,14 @@ static void compare_trim_vertex(
     return;
   }
   result->trim_residual = fmax(result->trim_residual, residual);
-  result->trim_weight_error = fmax(result->trim_weight_error,
-    fabs(sample->trim_weight - state->options->vertex_threshold));
+  const double off = fabs(sample->trim_weight - state->options->vertex_threshold);
+  result->trim_weight_error = fmax(result->trim_weight_error, off);
+  if (!(off < 1e-3))
+  {
+    const double* p = &state->surface->points[3 * v];
+    compare_note(state, "cut vertex %lld at (%.9g, %.9g, %.9g) has weight %.6g, residual %.3g",
+      (long long)v, p[0], p[1], p[2], sample->trim_weight, residual);
+  }
 }
 
 /* A vertex on a lattice edge; 1 if f is iso there, 0 if f only jumps over it. */
@@ -198,7 +205,13 @@ static int compare_edge_vertex(
     ++result->jumps;
     return 0;
   }
-  if (!(residual <= result->residual))
+  if (residual > 4e-6 &&
+    residual * state->reference->range <=
+      oracle_rounding(&state->reference->field, point, state->reference->unit))
+  {
+    ++result->noisy;
+  }
+  else if (!(residual <= result->residual))
   {
     result->residual = residual;
     if (!(residual < 1e-5))

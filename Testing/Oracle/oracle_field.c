@@ -360,7 +360,6 @@ typedef struct oracle_volume_sum
 {
   int64_t j;
   const double* mass;
-  int same_sort;
   double sum;
 } oracle_volume_sum;
 
@@ -368,7 +367,7 @@ static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
 {
   oracle_volume_sum* at = user;
   const oracle_particles* p = field->particles;
-  if (at->same_sort && (p->solid[k] != 0) != (p->solid[at->j] != 0))
+  if (p->ignore_solids && p->solid[k])
   {
     return;
   }
@@ -382,7 +381,7 @@ static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
 }
 
 int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, const double* mass,
-  const double* density, int same_sort)
+  const double* density)
 {
   oracle_field field;
   if (mass && density)
@@ -399,10 +398,11 @@ int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, co
   }
   for (int64_t j = 0; j < particles->count; ++j)
   {
-    oracle_volume_sum at = { j, mass, same_sort, 0.0 };
+    oracle_volume_sum at = { j, mass, 0.0 };
     oracle_visit(&field, &particles->position[3 * j], oracle_reach(&field, j), oracle_add_density,
       &at, 0, 0, particles->count);
-    particles->volume[j] = (mass ? mass[j] : 1.0) / at.sum;
+    /* The sum of an ignored solid may be 0; its volume is of no use to anyone. */
+    particles->volume[j] = at.sum != 0.0 ? (mass ? mass[j] : 1.0) / at.sum : 0.0;
   }
   oracle_free_field(&field);
   return 1;

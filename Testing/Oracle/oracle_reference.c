@@ -84,7 +84,7 @@ static int reference_volumes(
       density[j] = reference_read(&input->density, j, 0);
     }
   }
-  enough = enough && oracle_compute_volumes(particles, kernel, mass, density, 0);
+  enough = enough && oracle_compute_volumes(particles, kernel, mass, density);
   free(mass);
   free(density);
   return enough;
@@ -164,10 +164,15 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
-  for (int64_t n = 0; options->field == MCOR_WEIGHT_SUM && n < oracle_node_count(&reference->lattice);
-       ++n)
+  reference->greatest_weight = 1.0;
+  for (int64_t n = 0; n < oracle_node_count(&reference->lattice); ++n)
   {
-    reference->range = fmax(reference->range, reference->lattice.value[n]);
+    reference->greatest_weight =
+      fmax(reference->greatest_weight, reference->lattice.trim_weight[n]);
+  }
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    reference->range = reference->greatest_weight;
   }
   if (!oracle_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5))
   {

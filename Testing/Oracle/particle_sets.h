@@ -36,6 +36,11 @@ const particle_set_entry* particle_set_find(const char* name);
 /* A borrowed array of doubles; a constant where data is NULL. */
 mcor_array particle_array(const double* data, int components, double constant);
 
+/* Particles without any plan: blocks and clouds, with or without jitter, equal or very different
+ * smoothing lengths, some solid, some at one place; scalars smooth, random or of few values. 0 if
+ * memory ran out. */
+int particle_set_random(particle_set* set, uint64_t seed);
+
 void particle_set_free(particle_set* set);
 
 /* The set as input of mcor_extract; borrowed from the set. */

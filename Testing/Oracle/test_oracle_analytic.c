@@ -288,6 +288,7 @@ static void run_inputs(oracle_suite* suite)
   } inputs[] = {
     { { .set = "puddle", .suffix = "/ignore_solids" }, ignore_solids },
     { { .set = "puddle", .suffix = "/no_volume" }, no_volume },
+    { { .set = "puddle", .suffix = "/no_volume", .field = MCOR_WEIGHT_SUM }, no_volume },
     { { .set = "variable_4", .suffix = "/no_volume" }, no_volume },
     { { .set = "variable_4", .suffix = "/mass_alone" }, mass_alone },
     { { .set = "variable_4", .suffix = "/mass_density" }, mass_and_density },

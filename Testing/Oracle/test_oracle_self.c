@@ -230,7 +230,7 @@ static void test_volumes(void)
   {
     mass[j] = 1.0 + (double)(j % 3);
   }
-  ORACLE_CHECK(oracle_compute_volumes(&particles, ORACLE_CUBIC_SPLINE, mass, NULL, 0), "no memory");
+  ORACLE_CHECK(oracle_compute_volumes(&particles, ORACLE_CUBIC_SPLINE, mass, NULL), "no memory");
   for (int64_t j = 0; j < set.count; j += 37)
   {
     double sum = 0.0;

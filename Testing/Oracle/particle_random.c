@@ -1,0 +1,106 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "particle_sets.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int64_t random_below(uint64_t* state, int64_t n)
+{
+  return (int64_t)(random_bits(state) % (uint64_t)n);
+}
+
+static void random_scalar(particle_set* set, int64_t j, int sort, uint64_t* state)
+{
+  const double* x = &set->position[3 * j];
+  switch (sort)
+  {
+    case 0:
+      set->scalar[j] = sin(3.0 * x[0]) + cos(4.0 * x[1] + x[2]);
+      break;
+    case 1:
+      set->scalar[j] = 2.0 * random_unit(state) - 1.0;
+      break;
+    case 2: /* few values, iso values among them */
+      set->scalar[j] = (double)random_below(state, 3) - 1.0;
+      break;
+    default: /* outliers */
+      set->scalar[j] = sin(5.0 * x[2]) + (random_below(state, 50) == 0 ? 1e4 : 0.0);
+      break;
+  }
+}
+
+/* One block of particles, a lattice that may be jittered or shot full of holes. */
+static int random_block(particle_set* set, int64_t capacity, uint64_t* state)
+{
+  const double spacing = 0.05 + 0.15 * random_unit(state);
+  const double jitter = random_below(state, 3) == 0 ? 0.0 : 0.5 * random_unit(state);
+  const double keep = random_below(state, 2) == 0 ? 1.0 : random_unit(state);
+  const double ratio = 0.8 + random_unit(state);
+  const double spread = random_below(state, 2) == 0 ? 0.0 : 3.0 * random_unit(state);
+  const int on_lattice = random_below(state, 4) == 0;
+  double corner[3];
+  int64_t n[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    corner[axis] = on_lattice ? 0.25 * (double)random_below(state, 8) : 2.0 * random_unit(state);
+    n[axis] = 1 + random_below(state, 7);
+  }
+  for (int64_t c = 0; c < n[0] * n[1] * n[2] && set->count < capacity; ++c)
+  {
+    const int64_t at[3] = { c % n[0], c / n[0] % n[1], c / n[0] / n[1] };
+    const int64_t j = set->count;
+    if (random_unit(state) > keep)
+    {
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      set->position[3 * j + axis] = corner[axis] +
+        spacing * ((double)at[axis] + jitter * (2.0 * random_unit(state) - 1.0));
+    }
+    set->smoothing_length[j] = ratio * spacing * exp2(spread * random_unit(state));
+    set->volume[j] = pow(spacing, 3.0) * (0.5 + random_unit(state));
+    ++set->count;
+  }
+  return 1;
+}
+
+int particle_set_random(particle_set* set, uint64_t seed)
+{
+  uint64_t state = seed;
+  const int64_t capacity = 1500;
+  memset(set, 0, sizeof(*set));
+  set->capacity = capacity;
+  set->position = calloc(3 * (size_t)capacity, sizeof(double));
+  set->smoothing_length = calloc((size_t)capacity, sizeof(double));
+  set->volume = calloc((size_t)capacity, sizeof(double));
+  set->scalar = calloc((size_t)capacity, sizeof(double));
+  set->solid = calloc((size_t)capacity, 1);
+  if (!set->position || !set->smoothing_length || !set->volume || !set->scalar || !set->solid)
+  {
+    particle_set_free(set);
+    return 0;
+  }
+  const int64_t blocks = 1 + random_below(&state, 6);
+  const int sort = (int)random_below(&state, 4);
+  const int solids = random_below(&state, 3) == 0;
+  for (int64_t b = 0; b < blocks; ++b)
+  {
+    const int64_t first = set->count;
+    random_block(set, capacity, &state);
+    const int solid = solids && b > 0 && random_below(&state, 2) == 0;
+    for (int64_t j = first; j < set->count; ++j)
+    {
+      random_scalar(set, j, sort, &state);
+      set->solid[j] = (uint8_t)solid;
+      set->has_solids = set->has_solids || solid;
+    }
+  }
+  if (set->count > 1 && random_below(&state, 5) == 0) /* two at one place */
+  {
+    memcpy(&set->position[3], set->position, 3 * sizeof(double));
+  }
+  return 1;
+}

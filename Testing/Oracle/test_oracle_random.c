@@ -1,0 +1,100 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The library against the oracle on particles and options without any plan.
+ *
+ *   test_oracle_random --results FILE [--first SEED] [--count N]     (the table is not used)
+ */
+
+#include "oracle_case.h"
+#include "particle_sets.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double pick(uint64_t* state, const double* values, int count)
+{
+  return values[random_bits(state) % (uint64_t)count];
+}
+
+static void fill_options(oracle_case* at, uint64_t* state, double* iso)
+{
+  static const double scales[] = { 1.0, 1.0, 0.75, 0.5 };
+  static const double factors[] = { 0.5, 0.5, 0.7, 1.0, 1.3 };
+  static const double node_thresholds[] = { 0.1, 0.1, 0.0, 0.3 };
+  static const double isos[] = { 0.0, 1.0, 0.3, -0.4, 0.05 };
+  at->options = oracle_case_options(iso);
+  at->options.sph_kernel = (mcor_sph_kernel)(random_bits(state) % MCOR_SPH_KERNEL_COUNT);
+  at->options.field = (mcor_field)(random_bits(state) % 3);
+  at->options.h_scale = pick(state, scales, 4);
+  at->options.cube_size_factor = pick(state, factors, 5);
+  at->options.node_threshold = pick(state, node_thresholds, 4);
+  at->options.precision = random_bits(state) % 4 == 0 ? MCOR_FLOAT64 : MCOR_FLOAT32;
+  *iso = at->options.field == MCOR_WEIGHT_SUM ? 0.2 + random_unit(state) : pick(state, isos, 5);
+  if (at->options.field == MCOR_SUM && *iso == 0.0)
+  {
+    *iso = 0.02; /* f is exactly 0 in all empty space: no question of interest */
+  }
+  at->input.ignore_solids = random_bits(state) % 2 == 0;
+  at->input.has_volume = random_bits(state) % 4 != 0;
+  at->skip_pairs = at->options.field == MCOR_WEIGHT_SUM;
+  at->rough = at->no_table = 1;
+}
+
+static void run_seed(oracle_suite* suite, uint64_t seed)
+{
+  particle_set set;
+  oracle_case at;
+  double iso;
+  uint64_t state = seed ^ 0x5DEECE66Du;
+  memset(&at, 0, sizeof(at));
+  if (!particle_set_random(&set, seed))
+  {
+    printf("  FAILED: no memory\n");
+    ++suite->failures;
+    return;
+  }
+  at.input = particle_set_input(&set);
+  fill_options(&at, &state, &iso);
+  snprintf(at.name, sizeof(at.name), "random/%llu/%s/f%d", (unsigned long long)seed,
+    mcor_sph_kernel_name(at.options.sph_kernel), (int)at.options.field);
+  if (set.count > 0)
+  {
+    oracle_run_case(suite, &at);
+  }
+  particle_set_free(&set);
+}
+
+int main(int argc, char** argv)
+{
+  uint64_t first = 1;
+  uint64_t count = 60;
+  char* others[16];
+  int other_count = 0;
+  for (int n = 0; n < argc && other_count < 16; ++n)
+  {
+    if (n + 1 < argc && strcmp(argv[n], "--first") == 0)
+    {
+      first = strtoull(argv[++n], NULL, 10);
+    }
+    else if (n + 1 < argc && strcmp(argv[n], "--count") == 0)
+    {
+      count = strtoull(argv[++n], NULL, 10);
+    }
+    else
+    {
+      others[other_count++] = argv[n];
+    }
+  }
+  oracle_suite suite;
+  if (!oracle_begin_suite(&suite, other_count, others))
+  {
+    return 1;
+  }
+  for (uint64_t seed = first; seed < first + count; ++seed)
+  {
+    run_seed(&suite, seed);
+  }
+  return oracle_end_suite(&suite);
+}

@@ -215,7 +215,7 @@ static void test_iteration_limit(void** state)
   options.cube_size_factor = 1;
   options.vertex_threshold = 0;
   static const int limits[] = { 1, 2, 4, 8, 255 };
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < (int)(sizeof limits / sizeof limits[0]); ++i)
   {
     options.iteration_limit = limits[i];
     mcor_surface surface = core_extract(*state, &input, &options);

@@ -147,6 +147,17 @@ static int compare_open_edges(const compare_state* state, int64_t node, int64_t 
   return count;
 }
 
+/* Whether a flagged vertex where no crossing is expected is a cut: not if the crossing there is up to
+ * rounding, unless its weight says so. */
+static int compare_is_cut(const compare_state* state, int64_t v, int close)
+{
+  oracle_sample sample;
+  oracle_evaluate(
+    &state->reference->field, NULL, &state->surface->points[3 * v], &sample);
+  return !close || fabs(sample.trim_weight - state->options->vertex_threshold) <= 1e-4 ||
+    state->surface->boundary_flag[v] == 2;
+}
+
 /* Vertices on a node: first those with one open edge, as long as there are any, then the others. */
 static void compare_assign_on_nodes(compare_state* state)
 {
@@ -174,9 +185,9 @@ static void compare_assign_on_nodes(compare_state* state)
     {
       /* No crossed edge is left for it: a cut, or to be judged as a vertex on an uncrossed edge. */
       const int64_t node = COMPARE_ON_NODE - state->vertex_edge[v];
+      const int close = state->reference->lattice.flags[node] & ORACLE_NODE_CLOSE;
       const int cut = state->trimmed && state->surface->boundary_flag &&
-        state->surface->boundary_flag[v] &&
-        !(state->reference->lattice.flags[node] & ORACLE_NODE_CLOSE);
+        state->surface->boundary_flag[v] && compare_is_cut(state, v, close);
       state->vertex_edge[v] = cut ? COMPARE_TRIM_VERTEX : 3 * node;
     }
   }
@@ -192,14 +203,14 @@ static void compare_assign(compare_state* state)
   for (int64_t v = 0; v < surface->point_count; ++v)
   {
     const int64_t edge = compare_locate(&state->reference->lattice, &surface->points[3 * v]);
-    /* On a crossed edge a flagged vertex is one at the border of invalid cells, as is one on an edge
-     * whose crossing is up to rounding; else it is a cut. */
+    /* On a crossed edge a flagged vertex is one at the border of invalid cells, else a cut. */
     const int64_t e = edge >= 0 ? oracle_find_edge(&state->reference->surface, edge) : -1;
     const int flagged = surface->boundary_flag && surface->boundary_flag[v];
-    const int open = e >= 0 ? state->edge_vertex[e] < 0 || compare_takes_second(state, e)
-                            : edge >= 0 &&
-        compare_end_flag(&state->reference->lattice, edge, ORACLE_NODE_CLOSE);
-    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && !open;
+    const int open = e >= 0 && (state->edge_vertex[e] < 0 || compare_takes_second(state, e));
+    const int close =
+      edge >= 0 && compare_end_flag(&state->reference->lattice, edge, ORACLE_NODE_CLOSE);
+    const int cut = flagged && state->trimmed && edge > COMPARE_ON_NODE && !open &&
+      compare_is_cut(state, v, close);
     state->vertex_edge[v] = cut ? COMPARE_TRIM_VERTEX : edge;
     if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
     {

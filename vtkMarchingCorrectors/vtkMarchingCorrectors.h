@@ -514,7 +514,7 @@ public:
   ///@{
   /**
    * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
-   * Empty (the default): the first GPU, else the first CPU.
+   * Empty (the default): PoCL, else the first one.
    */
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);

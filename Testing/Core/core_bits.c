@@ -26,9 +26,10 @@ static const bits_case cases[] = { { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD,
   { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, 0, 1, 1.5 },
   { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE, 0, 0, 0.5 } };
 
-static int run_case(mcor_context* context, const bits_case* at, int size)
+static int run_case(mcor_context* context, const bits_case* at, int small)
 {
-  core_set set = core_make_block(size, 0.3, 8, core_ball);
+  const double iso = small && at->field != MCOR_WEIGHT_SUM ? 6 : at->iso;
+  core_set set = core_make_block(small ? 4 : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -41,7 +42,7 @@ static int run_case(mcor_context* context, const bits_case* at, int size)
   input.has_volume = at->volumes;
   input.attributes = attributes;
   input.attribute_count = 2;
-  mcor_options options = core_options(&at->iso);
+  mcor_options options = core_options(&iso);
   options.sph_kernel = at->kernel;
   options.field = at->field;
   options.precision = at->precision;
@@ -77,7 +78,7 @@ int main(int argc, char** argv)
   int good = 1;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
-    good = run_case(context, cases + i, argc > 1 ? 4 : 10) && good;
+    good = run_case(context, cases + i, argc > 1) && good;
   }
   mcor_free_context(context);
   return good ? 0 : 1;

@@ -111,6 +111,7 @@ static void test_options(void** state)
     ARGUMENT("vertex threshold", call.options.vertex_threshold = bad[i]);
   }
   ARGUMENT("iteration limit|-1|255", call.options.iteration_limit = -1);
+  ARGUMENT("iteration limit|0|255", call.options.iteration_limit = 0);
   ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);
   ARGUMENT("-1 iso values", call.options.iso_count = -1);
   ARGUMENT("1 iso values", call.options.iso_values = NULL);

@@ -106,8 +106,8 @@ bool FindArray(vtkPolyData* particles, const char* name, mcor_array& array)
   return true;
 }
 
-bool FillInput(const DataCase& one, vtkPolyData* particles, std::vector<uint8_t>& solid,
-  mcor_input& input)
+bool FillInput(
+  const DataCase& one, vtkPolyData* particles, std::vector<uint8_t>& solid, mcor_input& input)
 {
   std::memset(&input, 0, sizeof(input));
   input.count = particles->GetNumberOfPoints();

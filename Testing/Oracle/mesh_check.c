@@ -35,7 +35,7 @@ void mesh_free_report(mesh_report* report)
   memset(report, 0, sizeof(*report));
 }
 
-/* ---- triangles one by one ----------------------------------------------------------------------- */
+/* ---- triangles one by one ------------------------------------------------------------------- */
 
 static int mesh_check_ranges(const double* points, const int32_t* triangles, mesh_report* report)
 {
@@ -93,16 +93,15 @@ static void mesh_measure_triangle(
     u[0] * v[1] - u[1] * v[0] };
   const double area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   report->area += area;
-  report->volume +=
-    (corner[0][0] * n[0] + corner[0][1] * n[1] + corner[0][2] * n[2]) / 6.0;
+  report->volume += (corner[0][0] * n[0] + corner[0][1] * n[1] + corner[0][2] * n[2]) / 6.0;
   if (!(area > 1e-12 * longest))
   {
-    mesh_add_fault(report, MESH_ZERO_AREA, "triangle %" PRId64 " (%d, %d, %d)", t,
-      (int)triangle[0], (int)triangle[1], (int)triangle[2]);
+    mesh_add_fault(report, MESH_ZERO_AREA, "triangle %" PRId64 " (%d, %d, %d)", t, (int)triangle[0],
+      (int)triangle[1], (int)triangle[2]);
   }
 }
 
-/* ---- sides -------------------------------------------------------------------------------------- */
+/* ---- sides ---------------------------------------------------------------------------------- */
 
 static int mesh_compare_sides(const void* x, const void* y)
 {
@@ -172,7 +171,7 @@ int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b)
   return count;
 }
 
-/* ---- union of corners (fans) and triangles (components) -------------------------------------------- */
+/* ---- union of corners (fans) and triangles (components) ------------------------------------- */
 
 static int64_t mesh_root(int64_t* parent, int64_t n)
 {
@@ -205,8 +204,8 @@ static void mesh_check_edges(
     const mesh_edge* first = &report->side[s];
     int64_t count = 1;
     int64_t forward = first->forward;
-    for (; s + count < report->side_count && first[count].a == first->a &&
-         first[count].b == first->b;
+    for (;
+         s + count < report->side_count && first[count].a == first->a && first[count].b == first->b;
          ++count)
     {
       forward += first[count].forward;
@@ -221,8 +220,8 @@ static void mesh_check_edges(
     if (count > 2)
     {
       mesh_add_fault(report, MESH_NON_MANIFOLD_EDGE,
-        "edge (%d, %d) has %" PRId64 " triangles, one is %" PRId64, (int)first->a,
-        (int)first->b, count, first->triangle);
+        "edge (%d, %d) has %" PRId64 " triangles, one is %" PRId64, (int)first->a, (int)first->b,
+        count, first->triangle);
     }
     else if (count == 2 && forward != 1)
     {
@@ -249,8 +248,8 @@ static void mesh_check_fans(
     used += *at == -1;
     if (*at >= 0 && *at != root)
     {
-      mesh_add_fault(report, MESH_NON_MANIFOLD_VERTEX, "point %d, triangles %" PRId64
-        " and %" PRId64, (int)triangles[c], *at / 3, c / 3);
+      mesh_add_fault(report, MESH_NON_MANIFOLD_VERTEX,
+        "point %d, triangles %" PRId64 " and %" PRId64, (int)triangles[c], *at / 3, c / 3);
       *at = -2; /* so that each point counts once */
     }
     else if (*at == -1)
@@ -277,7 +276,7 @@ static void mesh_number_components(mesh_report* report)
   }
 }
 
-/* ---- duplicates ---------------------------------------------------------------------------------- */
+/* ---- duplicates ----------------------------------------------------------------------------- */
 
 static int mesh_compare_triples(const void* x, const void* y)
 {
@@ -294,8 +293,7 @@ static int mesh_compare_triples(const void* x, const void* y)
 }
 
 /* quads: [count][4], a triple and the number of its owner. */
-static void mesh_check_triples(
-  double* quads, int64_t count, mesh_fault fault, mesh_report* report)
+static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, mesh_report* report)
 {
   qsort(quads, (size_t)count, 4 * sizeof(double), mesh_compare_triples);
   for (int64_t n = 1; n < count; ++n)
@@ -312,8 +310,7 @@ static void mesh_check_triples(
 static int mesh_check_duplicates(
   const double* points, const int32_t* triangles, mesh_report* report)
 {
-  const int64_t most =
-    report->points > report->triangles ? report->points : report->triangles;
+  const int64_t most = report->points > report->triangles ? report->points : report->triangles;
   double* quads = malloc(((size_t)most + 1) * 4 * sizeof(double));
   if (!quads)
   {

@@ -5,14 +5,14 @@
 
 /* An independent, brute-force reference in double precision.
  *
- * It answers one question: which lattice edges does the isosurface of an SPH field cross? Every node
- * of the bounding box is evaluated, nothing is excluded, no code is shared with the library under
- * test. Written for being obviously right, not for speed: particles are scattered to the lattice
- * one after the other, points are evaluated through a kd-tree.
+ * It answers one question: which lattice edges does the isosurface of an SPH field cross? Every
+ * node of the bounding box is evaluated, nothing is excluded, no code is shared with the library
+ * under test. Written for being obviously right, not for speed: particles are scattered to the
+ * lattice one after the other, points are evaluated through a kd-tree.
  *
- * Field (V: volume, A: scalar, W: kernel with h_scale * own smoothing length, fluid particles only):
- *   Shepard  sum V A W / sum V W        sum  sum V A W        weight  sum V W
- * The trimming weight is sum V W over fluid particles and, unless ignored, solid ones.
+ * Field (V: volume, A: scalar, W: kernel with h_scale * own smoothing length, fluid particles
+ * only): Shepard  sum V A W / sum V W        sum  sum V A W        weight  sum V W The trimming
+ * weight is sum V W over fluid particles and, unless ignored, solid ones.
  */
 
 #include <stdint.h>
@@ -80,11 +80,11 @@ extern "C"
     oracle_kernel kernel, oracle_kind kind, double h_scale);
   void oracle_free_field(oracle_field* field);
 
-  /* Fills particles->volume: mass / density; with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); with
-   * neither 1 / sum_k W(x_j - x_k, h_j). The sums leave out solids that are ignored. Returns 0 if
-   * memory ran out. */
-  int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, const double* mass,
-    const double* density);
+  /* Fills particles->volume: mass / density; with mass alone m_j / sum_k m_k W(x_j - x_k, h_j);
+   * with neither 1 / sum_k W(x_j - x_k, h_j). The sums leave out solids that are ignored. Returns 0
+   * if memory ran out. */
+  int oracle_compute_volumes(
+    oracle_particles* particles, oracle_kernel kernel, const double* mass, const double* density);
 
   typedef struct oracle_sample
   {
@@ -110,10 +110,10 @@ extern "C"
 
   enum
   {
-    ORACLE_NODE_ABOVE = 1,  /* value >= iso */
-    ORACLE_NODE_VALID = 2,  /* may be a corner of a cell that is used */
-    ORACLE_NODE_CLOSE = 4,  /* value within rounding of iso */
-    ORACLE_NODE_MARGIN = 8  /* weight within rounding of the threshold */
+    ORACLE_NODE_ABOVE = 1, /* value >= iso */
+    ORACLE_NODE_VALID = 2, /* may be a corner of a cell that is used */
+    ORACLE_NODE_CLOSE = 4, /* value within rounding of iso */
+    ORACLE_NODE_MARGIN = 8 /* weight within rounding of the threshold */
   };
 
   /* Nodes at integer multiples of `cube`, covering every point where a particle has influence. Node
@@ -140,17 +140,17 @@ extern "C"
   typedef struct oracle_limits
   {
     double iso;
-    double node_threshold;  /* not applied to ORACLE_WEIGHT */
-    double least_weight;    /* fluid weight below which a Shepard mean has no meaning, > 0 */
-    double close;           /* |value - iso| up to which a node is excused, in the scalar's unit */
-    double margin;          /* |weight - threshold| up to which a node is excused */
+    double node_threshold; /* not applied to ORACLE_WEIGHT */
+    double least_weight;   /* fluid weight below which a Shepard mean has no meaning, > 0 */
+    double close;          /* |value - iso| up to which a node is excused, in the scalar's unit */
+    double margin;         /* |weight - threshold| up to which a node is excused */
   } oracle_limits;
 
-  void oracle_classify(
-    oracle_lattice* lattice, oracle_kind kind, const oracle_limits* limits);
+  void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_limits* limits);
 
   /* 1 if the cell whose lowest node is (i,j,k) exists and all its nodes are valid. possible: valid,
-   * or all its invalid nodes are within the margin. certain: valid without any within the margin. */
+   * or all its invalid nodes are within the margin. certain: valid without any within the margin.
+   */
   int oracle_cell_valid(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
   int oracle_cell_possible(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
   int oracle_cell_certain(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
@@ -177,11 +177,11 @@ extern "C"
   void oracle_edge_root(const oracle_lattice* lattice, const oracle_field* field, double iso,
     int64_t edge, double point[3], oracle_sample* sample);
 
-  /* The surface as triangles: point n lies on edge n of the surface; in each valid cell the crossings
-   * of its faces are joined to loops (where a face has four, nodes above iso are kept apart), each
-   * loop is cut into a fan. Right-hand normals point to lower values. Loops that use an ambiguous
-   * face twice can put a diagonal into that face, so this is a measure of area and volume, not
-   * always a manifold. */
+  /* The surface as triangles: point n lies on edge n of the surface; in each valid cell the
+   * crossings of its faces are joined to loops (where a face has four, nodes above iso are kept
+   * apart), each loop is cut into a fan. Right-hand normals point to lower values. Loops that use
+   * an ambiguous face twice can put a diagonal into that face, so this is a measure of area and
+   * volume, not always a manifold. */
   typedef struct oracle_mesh
   {
     int64_t point_count, triangle_count;

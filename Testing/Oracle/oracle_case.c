@@ -83,7 +83,7 @@ mcor_options oracle_case_options(const double* iso)
   return options;
 }
 
-/* ---- one extraction --------------------------------------------------------------------------------- */
+/* ---- one extraction ------------------------------------------------------------------------- */
 
 typedef struct case_run
 {
@@ -116,19 +116,21 @@ static void case_print(const case_run* run)
   const oracle_comparison* c = &run->comparison;
   const mesh_report* m = &run->mesh;
   printf("%-44s %-8s edges %lld found %lld missing %lld extra %lld excused %lld+%lld trimmed %lld"
-         " comp %lld/-%lld tri %lld residual %.2g noisy %lld jumps %lld dist %.2g normal %.3g (flat %lld) open %lld"
+         " comp %lld/-%lld tri %lld residual %.2g noisy %lld jumps %lld dist %.2g normal %.3g "
+         "(flat %lld) open %lld"
          " holes %lld nonmanifold %lld+%lld clash %lld degenerate %lld coincident %lld trim %lld"
          " linear %lld (%lld) w %.2g f %.2g\n",
     run->at->name, run->mode, (long long)c->edges, (long long)c->matched, (long long)c->missing,
     (long long)c->extra, (long long)c->excused, (long long)c->rounding, (long long)c->trimmed,
     (long long)c->components, (long long)c->components_missing,
-    (long long)run->surface.triangle_count, c->residual, (long long)c->noisy, (long long)c->jumps, c->distance, c->normal_degrees,
-    (long long)c->flat_vertices, (long long)m->boundary_edges, (long long)c->holes,
-    (long long)m->faults[MESH_NON_MANIFOLD_EDGE], (long long)m->faults[MESH_NON_MANIFOLD_VERTEX],
-    (long long)m->faults[MESH_ORIENTATION_CLASH],
+    (long long)run->surface.triangle_count, c->residual, (long long)c->noisy, (long long)c->jumps,
+    c->distance, c->normal_degrees, (long long)c->flat_vertices, (long long)m->boundary_edges,
+    (long long)c->holes, (long long)m->faults[MESH_NON_MANIFOLD_EDGE],
+    (long long)m->faults[MESH_NON_MANIFOLD_VERTEX], (long long)m->faults[MESH_ORIENTATION_CLASH],
     (long long)(m->faults[MESH_ZERO_AREA] + m->faults[MESH_REPEATED_INDEX]),
     (long long)m->faults[MESH_COINCIDENT_POINT], (long long)c->trim_vertices,
-    (long long)c->trim_linear, (long long)c->trim_avoidable, c->trim_weight_error, c->trim_residual);
+    (long long)c->trim_linear, (long long)c->trim_avoidable, c->trim_weight_error,
+    c->trim_residual);
 }
 
 static void case_check_mesh(case_run* run)
@@ -158,8 +160,8 @@ static void case_check_edges(case_run* run, int pairs)
   case_expect(run, run->at->rough || pairs || c->excused + c->rounding <= 2 + c->edges / 2000,
     "%lld edges differ where values or weights are close to their thresholds",
     (long long)(c->excused + c->rounding));
-  case_expect(run, run->at->rough || c->noisy == 0, "%lld vertices with noisy values",
-    (long long)c->noisy);
+  case_expect(
+    run, run->at->rough || c->noisy == 0, "%lld vertices with noisy values", (long long)c->noisy);
   case_expect(run, run->at->rough || c->jumps <= 2 + c->edges / 1000,
     "%lld vertices where the field jumps", (long long)c->jumps);
   if (pairs)
@@ -181,14 +183,15 @@ static void case_check_accuracy(case_run* run, int trimmed)
   const int single = run->options.precision == MCOR_FLOAT32;
   const double residual = single ? 5e-6 : 1e-6;
   case_expect(run, c->residual <= residual, "residual %.3g: %s", c->residual, c->first);
-  case_expect(run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g",
-    c->weight_error);
+  case_expect(
+    run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g", c->weight_error);
   case_expect(run, c->inverted_triangles == 0, "%lld triangles inside out: %s",
     (long long)c->inverted_triangles, c->first);
   case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g: %s",
     c->trim_weight_error, c->first);
   /* Where kernels with lobes leave gaps, trimming may cut through steep flanks at low weight. */
-  case_expect(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual, "trim vertices: residual %.3g", c->trim_residual);
+  case_expect(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual,
+    "trim vertices: residual %.3g", c->trim_residual);
   case_expect(run, c->below_threshold == 0, "%lld vertices below the vertex threshold",
     (long long)c->below_threshold);
   if (!run->at->rough)
@@ -199,8 +202,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
     case_expect(run, c->distance <= 1e-4, "distance %.3g cubes", c->distance);
     case_expect(run, c->normal_degrees <= (single ? 0.5 : 0.1), "normal off by %.3g degrees: %s",
       c->normal_degrees, c->first);
-    case_expect(run, c->gradient_error <= (single ? 1e-4 : 1e-9), "gradient off by %.3g",
-      c->gradient_error);
+    case_expect(
+      run, c->gradient_error <= (single ? 1e-4 : 1e-9), "gradient off by %.3g", c->gradient_error);
   }
 }
 
@@ -224,7 +227,8 @@ static void case_check_measure(case_run* run)
   {
     case_expect(run, fabs(run->mesh.area / own.area - 1.0) < 0.02, "area %.6g, not %.6g",
       run->mesh.area, own.area);
-    case_expect(run, run->mesh.boundary_edges > 0 ||
+    case_expect(run,
+      run->mesh.boundary_edges > 0 ||
         fabs(run->mesh.volume - own.volume) < 0.02 * own.area * r->lattice.cube,
       "volume %.6g, not %.6g", run->mesh.volume, own.volume);
     mesh_free_report(&own);
@@ -249,8 +253,8 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   memset(&run->comparison, 0, sizeof(run->comparison));
   const mcor_status status =
     mcor_extract(suite->context, &run->at->input, &run->options, &run->surface);
-  case_expect(run, status == MCOR_OK, "%s: %s", mcor_status_name(status),
-    mcor_last_error(suite->context));
+  case_expect(
+    run, status == MCOR_OK, "%s: %s", mcor_status_name(status), mcor_last_error(suite->context));
   if (status != MCOR_OK)
   {
     return 0;
@@ -263,8 +267,8 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   case_expect(run, enough, "out of memory");
   case_print(run);
   const double cube = run->surface.statistics.cube_size;
-  case_expect(run, fabs(cube / run->reference->lattice.cube - 1.0) < 1e-12, "cube size %.17g",
-    cube);
+  case_expect(
+    run, fabs(cube / run->reference->lattice.cube - 1.0) < 1e-12, "cube size %.17g", cube);
   case_check_mesh(run);
   case_check_edges(run, pairs);
   case_check_accuracy(run, trimmed);
@@ -283,7 +287,7 @@ static void case_release(case_run* run)
   mcor_free_surface(&run->surface);
 }
 
-/* ---- one case --------------------------------------------------------------------------------------- */
+/* ---- one case ------------------------------------------------------------------------------- */
 
 /* Counts may differ from the table only where rounding decides, so that another device passes. */
 static int case_check_row(
@@ -357,8 +361,8 @@ int oracle_run_case(oracle_suite* suite, const oracle_case* at)
     return 1;
   }
   ++suite->cases;
-  int good = oracle_create_reference(&reference, &at->input, &at->options,
-    at->node_limit > 0 ? at->node_limit : 60000000, message);
+  int good = oracle_create_reference(
+    &reference, &at->input, &at->options, at->node_limit > 0 ? at->node_limit : 60000000, message);
   if (!good)
   {
     printf("  FAILED: %s: the oracle has %s\n", at->name, message);

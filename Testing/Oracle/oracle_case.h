@@ -24,8 +24,8 @@ extern "C"
     int cases, failures;
   } oracle_suite;
 
-  /* Command line: --results FILE [--update] [--case SUBSTRING] [--device NAME]. 0 after a message if
-   * the suite cannot run. */
+  /* Command line: --results FILE [--update] [--case SUBSTRING] [--device NAME]. 0 after a message
+   * if the suite cannot run. */
   int oracle_begin_suite(oracle_suite* suite, int argc, char** argv);
   /* Saves the table if asked to; prints the summary; the exit status of the program. */
   int oracle_end_suite(oracle_suite* suite);
@@ -41,13 +41,13 @@ extern "C"
     mcor_options options; /* one iso value; seeds and vertex_threshold are set by the run */
     int skip_pairs;       /* do not run with MCOR_PAIRS */
     int rough; /* values without any smoothness, or equal to iso in places: only edges and mesh */
-    int no_table; /* has no row in the table of results */
+    int no_table;         /* has no row in the table of results */
     int has_euler, euler; /* what the Euler number of the untrimmed surface must be */
     int64_t node_limit;   /* 0: 60 million */
   } oracle_case;
 
-  /* Runs complete without trimming, complete with trimming (not for the weight), and pairs; 1 if all
-   * is as it must be. */
+  /* Runs complete without trimming, complete with trimming (not for the weight), and pairs; 1 if
+   * all is as it must be. */
   int oracle_run_case(oracle_suite* suite, const oracle_case* at);
 
 #ifdef __cplusplus

@@ -56,14 +56,16 @@ void compare_note_edge(compare_state* state, const char* what, int64_t edge)
   compare_note(state,
     "%s edge at (%.9g, %.9g, %.9g) axis %d, f - iso = %.3g and %.3g, fluid weight %.3g and %.3g,"
     " least weight of its cells %.4g %.4g %.4g %.4g",
-    what, p[0], p[1], p[2], (int)(edge % 3), lattice->value[nodes[0]] - state->reference->limits.iso,
+    what, p[0], p[1], p[2], (int)(edge % 3),
+    lattice->value[nodes[0]] - state->reference->limits.iso,
     lattice->value[nodes[1]] - state->reference->limits.iso, lattice->weight[nodes[0]],
     lattice->weight[nodes[1]], w[0], w[1], w[2], w[3]);
 }
 
-/* ---- which lattice edge does a vertex lie on? ----------------------------------------------------- */
+/* ---- which lattice edge does a vertex lie on? ----------------------------------------------- */
 
-/* The position alone decides: on an edge, two coordinates are integer multiples of the cube size. */
+/* The position alone decides: on an edge, two coordinates are integer multiples of the cube size.
+ */
 static int64_t compare_locate(const oracle_lattice* lattice, const double point[3])
 {
   double u[3];
@@ -147,13 +149,12 @@ static int compare_open_edges(const compare_state* state, int64_t node, int64_t 
   return count;
 }
 
-/* Whether a flagged vertex where no crossing is expected is a cut: not if the crossing there is up to
- * rounding, unless its weight says so. */
+/* Whether a flagged vertex where no crossing is expected is a cut: not if the crossing there is up
+ * to rounding, unless its weight says so. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   oracle_sample sample;
-  oracle_evaluate(
-    &state->reference->field, NULL, &state->surface->points[3 * v], &sample);
+  oracle_evaluate(&state->reference->field, NULL, &state->surface->points[3 * v], &sample);
   return !close || fabs(sample.trim_weight - state->options->vertex_threshold) <= 1e-4 ||
     state->surface->boundary_flag[v] == 2;
 }
@@ -226,7 +227,7 @@ static void compare_assign(compare_state* state)
   compare_assign_on_nodes(state);
 }
 
-/* ---- missing and extra edges ---------------------------------------------------------------------- */
+/* ---- missing and extra edges ---------------------------------------------------------------- */
 
 static int compare_any_cell(const oracle_lattice* lattice, int64_t edge,
   int (*test)(const oracle_lattice*, int64_t, int64_t, int64_t))
@@ -371,8 +372,7 @@ static void compare_extra(compare_state* state)
 }
 
 int oracle_compare(const oracle_reference* reference, const mcor_options* options,
-  const mcor_surface* surface, const mesh_report* mesh, int trimmed,
-  oracle_comparison* comparison)
+  const mcor_surface* surface, const mesh_report* mesh, int trimmed, oracle_comparison* comparison)
 {
   memset(comparison, 0, sizeof(*comparison));
   const size_t points = (size_t)surface->point_count + 1;
@@ -383,7 +383,8 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
     malloc(((size_t)reference->surface.edge_count + 1) * sizeof(int64_t)),
     malloc(3 * points * sizeof(double)) };
   int64_t* count = calloc(2 * components, sizeof(int64_t));
-  int enough = state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient && count;
+  int enough =
+    state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient && count;
   if (enough)
   {
     comparison->edges = reference->surface.edge_count;

@@ -26,11 +26,11 @@ extern "C"
      * weight: its largest value, at least 1. */
     double range;
     double greatest_weight; /* of the nodes, at least 1 */
-    double unit;  /* roundoff of the working precision */
+    double unit;            /* roundoff of the working precision */
   } oracle_reference;
 
-  /* Reads input and options in the way mcor.h describes, evaluates the whole lattice. 0 with a reason
-   * in message if that is impossible. */
+  /* Reads input and options in the way mcor.h describes, evaluates the whole lattice. 0 with a
+   * reason in message if that is impossible. */
   int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
     const mcor_options* options, int64_t node_limit, char message[256]);
   /* Makes the reference that of another iso value. */
@@ -39,40 +39,41 @@ extern "C"
 
   typedef struct oracle_comparison
   {
-    int64_t edges;        /* of the oracle */
-    int64_t matched;      /* vertices that lie on one of them */
-    int64_t missing;      /* edges without a vertex, not excused */
-    int64_t extra;        /* vertices on an edge that is not crossed, not excused */
-    int64_t excused;      /* missing or extra, but a value or weight is within rounding */
-    int64_t rounding;     /* missing or extra, excused by the bound on rounding alone */
-    int64_t trimmed;      /* edges whose vertex is rightly cut away */
-    int64_t off_lattice;  /* unflagged vertices that lie on no lattice edge */
-    int64_t doubled;      /* two vertices on one edge that is not pinched */
-    int64_t split;        /* pinched edges with two vertices, as it should be */
-    int64_t components;   /* of the oracle */
+    int64_t edges;       /* of the oracle */
+    int64_t matched;     /* vertices that lie on one of them */
+    int64_t missing;     /* edges without a vertex, not excused */
+    int64_t extra;       /* vertices on an edge that is not crossed, not excused */
+    int64_t excused;     /* missing or extra, but a value or weight is within rounding */
+    int64_t rounding;    /* missing or extra, excused by the bound on rounding alone */
+    int64_t trimmed;     /* edges whose vertex is rightly cut away */
+    int64_t off_lattice; /* unflagged vertices that lie on no lattice edge */
+    int64_t doubled;     /* two vertices on one edge that is not pinched */
+    int64_t split;       /* pinched edges with two vertices, as it should be */
+    int64_t components;  /* of the oracle */
     int64_t components_missing, components_partial; /* unexcused edges missing: all, some */
-    int64_t pinched_edges; /* two valid cells touch only in the edge */
+    int64_t pinched_edges;                          /* two valid cells touch only in the edge */
 
-    double residual;      /* max |f - iso| / range over vertices on edges */
-    int64_t noisy;        /* vertices whose residual is above 4e-6, but within the bound on rounding */
-    int64_t jumps;        /* vertices where f jumps over iso; not in residual and normal_degrees */
-    double distance;      /* max distance to the surface f = iso, in cubes */
-    double normal_degrees;   /* max angle between normal and -gradient */
-    int64_t flat_vertices;   /* gradient too small for a meaningful normal; not in normal_degrees */
+    double residual; /* max |f - iso| / range over vertices on edges */
+    int64_t noisy;   /* vertices whose residual is above 4e-6, but within the bound on rounding */
+    int64_t jumps;   /* vertices where f jumps over iso; not in residual and normal_degrees */
+    double distance; /* max distance to the surface f = iso, in cubes */
+    double normal_degrees; /* max angle between normal and -gradient */
+    int64_t flat_vertices; /* gradient too small for a meaningful normal; not in normal_degrees */
     int64_t inverted_triangles;  /* go round a lattice face the wrong way, judged by its nodes */
     int64_t inverted_components; /* of the mesh, judged by -gradient and area */
 
     int64_t segments_missing; /* faces whose crossings the mesh does not connect as it must */
-    int64_t holes;            /* boundary edges that neither trimming nor an invalid cell explains */
+    int64_t holes; /* boundary edges that neither trimming nor an invalid cell explains */
 
     int64_t trim_vertices, trim_linear;
-    int64_t trim_avoidable; /* linear cuts with an exact one (f = iso, w = threshold) within a cube */
+    int64_t
+      trim_avoidable; /* linear cuts with an exact one (f = iso, w = threshold) within a cube */
     double trim_weight_error, trim_residual; /* of exact trim vertices */
     int64_t below_threshold;                 /* vertices kept although their weight is too low */
     int64_t near_threshold;                  /* vertices that rounding may keep or cut away */
     int64_t unsettled; /* nodes and cells at the surface whose state depends on rounding */
-    double weight_error, gradient_error;     /* of the optional arrays, relative */
-    char first[240];                         /* the first fault of a vertex or edge, in words */
+    double weight_error, gradient_error; /* of the optional arrays, relative */
+    char first[240];                     /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 
   /* trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must be

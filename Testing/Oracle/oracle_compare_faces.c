@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* ---- orientation ------------------------------------------------------------------------------------ */
+/* ---- orientation ---------------------------------------------------------------------------- */
 
 /* Corner of a cell (0..7) at the lower or upper end of an edge; -1 if it is none of the cell's. */
 static int compare_corner(
@@ -23,9 +23,9 @@ static int compare_corner(
   return -1;
 }
 
-/* On a face that both edges belong to and that has no other crossing, seen from outside the cell, the
- * surface goes from where a counter-clockwise walk enters "above" to where it leaves it. 1: the side
- * from one edge to the other goes that way, -1: the other way, 0: there is no such face. */
+/* On a face that both edges belong to and that has no other crossing, seen from outside the cell,
+ * the surface goes from where a counter-clockwise walk enters "above" to where it leaves it. 1: the
+ * side from one edge to the other goes that way, -1: the other way, 0: there is no such face. */
 static int compare_side_direction(
   const oracle_lattice* lattice, const int64_t ijk[3], int64_t from, int64_t to)
 {
@@ -48,7 +48,8 @@ static int compare_side_direction(
     {
       inside = inside && corner[n] >= 0 && (corner[n] >> axis & 1) == side;
       above[n] = lattice->flags[oracle_node_index(lattice, ijk[0] + (walk[n] & 1),
-                   ijk[1] + (walk[n] >> 1 & 1), ijk[2] + (walk[n] >> 2))] & ORACLE_NODE_ABOVE;
+                   ijk[1] + (walk[n] >> 1 & 1), ijk[2] + (walk[n] >> 2))] &
+        ORACLE_NODE_ABOVE;
     }
     for (int n = 0; n < 4; ++n)
     {
@@ -57,7 +58,8 @@ static int compare_side_direction(
     for (int n = 0; inside && crossings == 2 && n < 4; ++n)
     {
       const int next = walk[(n + 1) % 4];
-      if ((walk[n] == corner[0] && next == corner[1]) || (walk[n] == corner[1] && next == corner[0]))
+      if ((walk[n] == corner[0] && next == corner[1]) ||
+        (walk[n] == corner[1] && next == corner[0]))
       {
         return !above[n] && above[(n + 1) % 4] ? 1 : -1;
       }
@@ -109,8 +111,7 @@ void compare_inverted(compare_state* state)
     }
     for (int c = 0; c < 3; ++c)
     {
-      inverted =
-        inverted || compare_side_direction(lattice, ijk, edges[c], edges[(c + 1) % 3]) < 0;
+      inverted = inverted || compare_side_direction(lattice, ijk, edges[c], edges[(c + 1) % 3]) < 0;
     }
     state->result->inverted_triangles += inverted;
     if (inverted)
@@ -120,7 +121,7 @@ void compare_inverted(compare_state* state)
   }
 }
 
-/* ---- faces ------------------------------------------------------------------------------------------ */
+/* ---- faces ---------------------------------------------------------------------------------- */
 
 /* The 4 edges of the face of `cell` towards -axis, in cyclic order. */
 static void compare_face_edges(
@@ -192,8 +193,7 @@ static int compare_face_connected(
 
 /* With the paper's seeds a component may be missing though the crossings of a face have vertices:
  * those of another component that it touches in pinched edges. */
-static int compare_cells_left_out(
-  const compare_state* state, const int64_t crossings[4], int count)
+static int compare_cells_left_out(const compare_state* state, const int64_t crossings[4], int count)
 {
   int left_out = state->options->seeds == MCOR_PAIRS;
   for (int n = 0; left_out && n < count; ++n)
@@ -250,7 +250,8 @@ void compare_faces(compare_state* state)
       int64_t next[3] = { ijk[0], ijk[1], ijk[2] };
       compare_face(state, ijk, axis);
       next[axis] += 1;
-      /* The far face is the near face of the next cell; visited here if that cell will not do it. */
+      /* The far face is the near face of the next cell; visited here if that cell will not do it.
+       */
       if (next[axis] + 1 < lattice->size[axis] &&
         !oracle_cell_valid(lattice, next[0], next[1], next[2]))
       {

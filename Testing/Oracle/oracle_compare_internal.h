@@ -24,10 +24,10 @@ typedef struct compare_state
   int trimmed;
   oracle_comparison* result;
   int64_t* vertex_edge; /* [point_count], an edge of the lattice or COMPARE_* */
-  /* [edge_count] of the oracle's surface, a point or -1. A pinched edge has a second vertex, as each
-   * of its two cells has a fan of its own. */
+  /* [edge_count] of the oracle's surface, a point or -1. A pinched edge has a second vertex, as
+   * each of its two cells has a fan of its own. */
   int64_t *edge_vertex, *second_vertex;
-  double* gradient;     /* [point_count][3], by the oracle */
+  double* gradient; /* [point_count][3], by the oracle */
 } compare_state;
 
 /* The first fault is kept in words. */

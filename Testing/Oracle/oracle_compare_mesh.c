@@ -8,7 +8,7 @@
 
 #define COMPARE_PI 3.14159265358979323846
 
-/* ---- vertices -------------------------------------------------------------------------------------- */
+/* ---- vertices ------------------------------------------------------------------------------- */
 
 /* Distance to the surface f = iso, in cubes: by the gradient, or, where that is small, the smallest
  * step along the edge that brackets a crossing. */
@@ -18,8 +18,7 @@ static double compare_distance(
   const oracle_reference* reference = state->reference;
   const double* g = sample->gradient;
   const double slope = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  double distance =
-    fabs(sample->value - reference->limits.iso) / (slope * reference->lattice.cube);
+  double distance = fabs(sample->value - reference->limits.iso) / (slope * reference->lattice.cube);
   for (double step = 1e-6; distance > 1e-5 && step < distance; step *= 2.0)
   {
     double p[3] = { point[0], point[1], point[2] };
@@ -39,8 +38,8 @@ static double compare_distance(
 
 /* Shepard's field jumps where the fluid weight falls to 0: the last particle in reach leaves with a
  * value of its own, and beyond is a void without values. Weight of solids can keep the cells there
- * valid. It has poles where kernels with negative lobes make the weight pass 0. No point of the edge
- * then has the value iso; the vertex must be where the side changes, or at the void. */
+ * valid. It has poles where kernels with negative lobes make the weight pass 0. No point of the
+ * edge then has the value iso; the vertex must be where the side changes, or at the void. */
 static int compare_jump(
   const compare_state* state, const double point[3], int axis, double residual)
 {
@@ -90,9 +89,11 @@ static void compare_normal(compare_state* state, int64_t v, const oracle_sample*
     if (!(degrees < 1.0))
     {
       const double* p = &state->surface->points[3 * v];
-      compare_note(state, "normal of vertex %lld at (%.9g, %.9g, %.9g) is off by %.3g degrees,"
-        " weight %.3g, fluid %.3g, slope %.3g of %.3g, residual %.3g", (long long)v, p[0], p[1], p[2],
-        degrees, sample->trim_weight, sample->weight, slope, sample->gradient_scale,
+      compare_note(state,
+        "normal of vertex %lld at (%.9g, %.9g, %.9g) is off by %.3g degrees,"
+        " weight %.3g, fluid %.3g, slope %.3g of %.3g, residual %.3g",
+        (long long)v, p[0], p[1], p[2], degrees, sample->trim_weight, sample->weight, slope,
+        sample->gradient_scale,
         (sample->value - state->reference->limits.iso) / state->reference->range);
     }
   }
@@ -118,8 +119,8 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
-/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold, within
- * one cube. */
+/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold,
+ * within one cube. */
 static int compare_exact_cut_near(const compare_state* state, const double start[3])
 {
   const oracle_reference* reference = state->reference;
@@ -149,8 +150,8 @@ static int compare_exact_cut_near(const compare_state* state, const double start
     double d[3];
     for (int a = 0; a < 3; ++a)
     {
-      d[a] = -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * s.trim_gradient[a]) /
-        determinant;
+      d[a] =
+        -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * s.trim_gradient[a]) / determinant;
       length += d[a] * d[a];
     }
     const double most = 0.1 * reference->lattice.cube;
@@ -216,9 +217,10 @@ static int compare_edge_vertex(
     result->residual = residual;
     if (!(residual < 1e-5))
     {
-      compare_note(state, "vertex %lld at (%.9g, %.9g, %.9g) has residual %.3g; weight %.3g,"
-        " fluid %.3g", (long long)v, point[0], point[1], point[2], residual, sample->trim_weight,
-        sample->weight);
+      compare_note(state,
+        "vertex %lld at (%.9g, %.9g, %.9g) has residual %.3g; weight %.3g,"
+        " fluid %.3g",
+        (long long)v, point[0], point[1], point[2], residual, sample->trim_weight, sample->weight);
     }
   }
   result->distance = fmax(result->distance, compare_distance(state, point, axis, sample));
@@ -253,7 +255,7 @@ void compare_vertices(compare_state* state)
   }
 }
 
-/* ---- triangles -------------------------------------------------------------------------------------- */
+/* ---- triangles ------------------------------------------------------------------------------ */
 
 int compare_orientation(compare_state* state)
 {

@@ -63,7 +63,7 @@ double oracle_smallest_h(const oracle_particles* particles)
   return smallest;
 }
 
-/* ---- kd-tree: particles [begin,end) of `order`, split at the middle, leaves of a few ------------ */
+/* ---- kd-tree: particles [begin,end) of `order`, split at the middle, leaves of a few -------- */
 
 enum
 {
@@ -234,7 +234,7 @@ static void oracle_visit(const oracle_field* field, const double point[3], doubl
   oracle_visit(field, point, radius, visitor, user, 2 * n + 2, middle, end);
 }
 
-/* ---- sums -------------------------------------------------------------------------------------- */
+/* ---- sums ----------------------------------------------------------------------------------- */
 
 typedef struct oracle_sums
 {
@@ -293,8 +293,7 @@ void oracle_evaluate(
   memset(sample, 0, sizeof(*sample));
   if (field->particles->count > 0)
   {
-    oracle_visit(
-      field, point, 0.0, oracle_add_particle, &sums, 0, 0, field->particles->count);
+    oracle_visit(field, point, 0.0, oracle_add_particle, &sums, 0, 0, field->particles->count);
   }
   const int solids = !field->particles->ignore_solids;
   sample->weight = sums.w;
@@ -302,8 +301,7 @@ void oracle_evaluate(
   for (int axis = 0; axis < 3; ++axis)
   {
     sample->trim_gradient[axis] = sums.grad_w[axis] + (solids ? sums.grad_solid[axis] : 0.0);
-    sample->gradient[axis] =
-      field->kind == ORACLE_WEIGHT ? sums.grad_w[axis] : sums.grad_fw[axis];
+    sample->gradient[axis] = field->kind == ORACLE_WEIGHT ? sums.grad_w[axis] : sums.grad_fw[axis];
   }
   sample->value = field->kind == ORACLE_WEIGHT ? sums.w : sums.fw;
   sample->gradient_scale = sums.magnitude;
@@ -313,9 +311,8 @@ void oracle_evaluate(
     sample->gradient_scale = sums.w != 0.0 ? sums.magnitude / fabs(sums.w) : 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      sample->gradient[axis] = sums.w != 0.0
-        ? (sums.grad_fw[axis] - sample->value * sums.grad_w[axis]) / sums.w
-        : 0.0;
+      sample->gradient[axis] =
+        sums.w != 0.0 ? (sums.grad_fw[axis] - sample->value * sums.grad_w[axis]) / sums.w : 0.0;
     }
   }
 }
@@ -354,7 +351,7 @@ double oracle_rounding(const oracle_field* field, const double point[3], double 
   return sums.w != 0.0 ? sums.error / fabs(sums.w) : INFINITY;
 }
 
-/* ---- volumes ------------------------------------------------------------------------------------ */
+/* ---- volumes -------------------------------------------------------------------------------- */
 
 typedef struct oracle_volume_sum
 {
@@ -380,8 +377,8 @@ static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
     oracle_kernel_value(field->kernel, p->smoothing_length[at->j], offset, NULL);
 }
 
-int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, const double* mass,
-  const double* density)
+int oracle_compute_volumes(
+  oracle_particles* particles, oracle_kernel kernel, const double* mass, const double* density)
 {
   oracle_field field;
   if (mass && density)

@@ -100,8 +100,7 @@ double oracle_kernel_value(
   {
     return oracle_tensor_value(h, offset, gradient);
   }
-  const double r =
-    sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
+  const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
   const double q = r / h;
   if (!(q < oracle_support(kernel)))
   {

@@ -46,8 +46,7 @@ void oracle_free_lattice(oracle_lattice* lattice)
 }
 
 /* Bounds of all supports, one node further out on every side. */
-static int oracle_set_extent(
-  oracle_lattice* lattice, const oracle_field* field, int64_t node_limit)
+static int oracle_set_extent(oracle_lattice* lattice, const oracle_field* field, int64_t node_limit)
 {
   double nodes = 1.0;
   for (int axis = 0; axis < 3; ++axis)
@@ -56,8 +55,8 @@ static int oracle_set_extent(
     double high = -INFINITY;
     for (int64_t j = 0; j < field->particles->count; ++j)
     {
-      const double reach = oracle_support(field->kernel) * field->h_scale *
-        field->particles->smoothing_length[j];
+      const double reach =
+        oracle_support(field->kernel) * field->h_scale * field->particles->smoothing_length[j];
       low = fmin(low, field->particles->position[3 * j + axis] - reach);
       high = fmax(high, field->particles->position[3 * j + axis] + reach);
     }
@@ -93,11 +92,10 @@ static void oracle_scatter(oracle_lattice* lattice, const oracle_field* field, i
       for (int64_t i = low[0]; i <= high[0]; ++i)
       {
         const int64_t node = oracle_node_index(lattice, i, i_j, k);
-        const double offset[3] = {
-          (double)(lattice->origin[0] + i) * lattice->cube - p->position[3 * j],
+        const double offset[3] = { (double)(lattice->origin[0] + i) * lattice->cube -
+            p->position[3 * j],
           (double)(lattice->origin[1] + i_j) * lattice->cube - p->position[3 * j + 1],
-          (double)(lattice->origin[2] + k) * lattice->cube - p->position[3 * j + 2]
-        };
+          (double)(lattice->origin[2] + k) * lattice->cube - p->position[3 * j + 2] };
         const double w = volume * oracle_kernel_value(field->kernel, h, offset, NULL);
         if (p->solid[j])
         {
@@ -211,8 +209,8 @@ void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_lim
 }
 
 /* The flags of the 8 nodes combined: all of them and any of them; 0 if outside the lattice. */
-static int oracle_cell_flags(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k,
-  int corners[8])
+static int oracle_cell_flags(
+  const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k, int corners[8])
 {
   if (i < 0 || j < 0 || k < 0 || i + 1 >= lattice->size[0] || j + 1 >= lattice->size[1] ||
     k + 1 >= lattice->size[2])

@@ -61,8 +61,8 @@ static void polygon_link(const int above[8], int next[POLYGON_EDGES])
 }
 
 /* Writes the triangles of one cell to out (NULL: only counts them); returns how many. */
-static int64_t polygon_cell(const oracle_surface* surface, const oracle_lattice* lattice,
-  int64_t cell, int32_t* out)
+static int64_t polygon_cell(
+  const oracle_surface* surface, const oracle_lattice* lattice, int64_t cell, int32_t* out)
 {
   const int64_t step[3] = { 1, lattice->size[0], lattice->size[0] * lattice->size[1] };
   int64_t node[8];

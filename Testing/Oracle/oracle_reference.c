@@ -28,7 +28,8 @@ static double reference_scalar(const mcor_input* input, int64_t tuple)
   {
     for (int c = 0; c < components; ++c)
     {
-      sum += reference_read(&input->scalar, tuple, c) * reference_read(&input->scalar_dot, tuple, c);
+      sum +=
+        reference_read(&input->scalar, tuple, c) * reference_read(&input->scalar_dot, tuple, c);
     }
     return sum;
   }
@@ -98,7 +99,8 @@ static int reference_particles(
   {
     return 0;
   }
-  /* Solids count in the weight that trims; nothing is trimmed when the weight itself is contoured. */
+  /* Solids count in the weight that trims; nothing is trimmed when the weight itself is contoured.
+   */
   particles->ignore_solids = input->ignore_solids || options->field == MCOR_WEIGHT_SUM;
   for (int64_t j = 0; j < input->count; ++j)
   {
@@ -112,8 +114,7 @@ static int reference_particles(
       (input->smoothing_length_is_support_radius ? oracle_support(kernel) : 1.0);
     particles->solid[j] = input->solid && input->solid[j];
     particles->volume[j] = input->has_volume ? reference_read(&input->volume, j, 0) : 0.0;
-    particles->scalar[j] =
-      options->field == MCOR_WEIGHT_SUM ? 0.0 : reference_scalar(input, j);
+    particles->scalar[j] = options->field == MCOR_WEIGHT_SUM ? 0.0 : reference_scalar(input, j);
   }
   return input->has_volume || reference_volumes(particles, input, kernel);
 }
@@ -136,8 +137,8 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
 {
   memset(reference, 0, sizeof(*reference));
   message[0] = '\0';
-  reference->unit = options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON
-                                                       : 0.5 * DBL_EPSILON;
+  reference->unit =
+    options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON : 0.5 * DBL_EPSILON;
   reference->limits.node_threshold = options->node_threshold;
   reference->limits.least_weight = 1e-3;
   if (!reference_particles(&reference->particles, input, options) ||

@@ -3,9 +3,9 @@
 #ifndef oracle_results_h
 #define oracle_results_h
 
-/* The committed table of results, Testing/Regression/results.csv: one row per case, counts that must
- * not change unnoticed, and the residual for the record. Several programs share the table; each
- * touches the rows of its own cases only. */
+/* The committed table of results, Testing/Regression/results.csv: one row per case, counts that
+ * must not change unnoticed, and the residual for the record. Several programs share the table;
+ * each touches the rows of its own cases only. */
 
 #include <stdint.h>
 

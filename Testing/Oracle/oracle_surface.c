@@ -58,8 +58,7 @@ static void oracle_list(oracle_surface* surface, const oracle_lattice* lattice, 
         const int64_t ijk[3] = { i, j, k };
         for (int axis = 0; axis < 3; ++axis)
         {
-          if (ijk[axis] + 1 < lattice->size[axis] &&
-            oracle_edge_used(lattice, 3 * node + axis))
+          if (ijk[axis] + 1 < lattice->size[axis] && oracle_edge_used(lattice, 3 * node + axis))
           {
             if (fill)
             {
@@ -92,9 +91,8 @@ static int oracle_compare_keys(const void* a, const void* b)
 
 static int64_t oracle_find(const int64_t* keys, int64_t count, int64_t key)
 {
-  const int64_t* at = count > 0
-    ? bsearch(&key, keys, (size_t)count, sizeof(*keys), oracle_compare_keys)
-    : NULL;
+  const int64_t* at =
+    count > 0 ? bsearch(&key, keys, (size_t)count, sizeof(*keys), oracle_compare_keys) : NULL;
   return at ? at - keys : -1;
 }
 
@@ -190,10 +188,8 @@ int oracle_create_surface(oracle_surface* surface, const oracle_lattice* lattice
     {
       if (oracle_cell_valid(lattice, cells[c][0], cells[c][1], cells[c][2]))
       {
-        const int64_t node =
-          oracle_node_index(lattice, cells[c][0], cells[c][1], cells[c][2]);
-        surface->edge_component[e] =
-          parent[oracle_find(surface->cell, surface->cell_count, node)];
+        const int64_t node = oracle_node_index(lattice, cells[c][0], cells[c][1], cells[c][2]);
+        surface->edge_component[e] = parent[oracle_find(surface->cell, surface->cell_count, node)];
       }
     }
   }

@@ -57,8 +57,8 @@ static int random_block(particle_set* set, int64_t capacity, uint64_t* state)
     }
     for (int axis = 0; axis < 3; ++axis)
     {
-      set->position[3 * j + axis] = corner[axis] +
-        spacing * ((double)at[axis] + jitter * (2.0 * random_unit(state) - 1.0));
+      set->position[3 * j + axis] =
+        corner[axis] + spacing * ((double)at[axis] + jitter * (2.0 * random_unit(state) - 1.0));
     }
     set->smoothing_length[j] = ratio * spacing * exp2(spread * random_unit(state));
     set->volume[j] = pow(spacing, 3.0) * (0.5 + random_unit(state));

@@ -204,7 +204,8 @@ static double surface_area(const mcor_surface* surface)
 {
   mesh_report report;
   ORACLE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
-                 surface->triangle_count, &report), "no memory");
+                 surface->triangle_count, &report),
+    "no memory");
   const double area = report.area;
   mesh_free_report(&report);
   return area;
@@ -241,7 +242,8 @@ static void test_transform(const char* device, double scale, const double offset
       {
         worst = fmax(worst, fabs(y[v] - scale * x[v] - offset[axis]) / (scale * cube));
       }
-      ORACLE_CHECK(x && y && worst < 1e-4, "scale %g: coordinates differ by %g cubes", scale, worst);
+      ORACLE_CHECK(
+        x && y && worst < 1e-4, "scale %g: coordinates differ by %g cubes", scale, worst);
       free(x);
       free(y);
     }
@@ -251,8 +253,8 @@ static void test_transform(const char* device, double scale, const double offset
   free_bench(&b);
 }
 
-/* Without trimming preview has the same triangles, its vertices where a line between the node values
- * puts them. */
+/* Without trimming preview has the same triangles, its vertices where a line between the node
+ * values puts them. */
 static void test_preview(const char* device)
 {
   bench b;
@@ -280,8 +282,8 @@ static void test_preview(const char* device)
       {
         const double u = preview.points[3 * v + a] / cube;
         axis = fabs(u - round(u)) > 1e-7 ? a : axis;
-        low[a] = (int64_t)(fabs(u - round(u)) > 1e-7 ? floor(u) : round(u)) -
-          reference.lattice.origin[a];
+        low[a] =
+          (int64_t)(fabs(u - round(u)) > 1e-7 ? floor(u) : round(u)) - reference.lattice.origin[a];
       }
       const int64_t node = oracle_node_index(&reference.lattice, low[0], low[1], low[2]);
       int64_t nodes[2];
@@ -350,8 +352,7 @@ static void test_attributes(const char* name, const char* device)
       {
         oracle_sample sample;
         oracle_evaluate(&reference.field, component, &surface.points[3 * v], &sample);
-        const double value =
-          a < 3 ? surface.attributes[0][3 * v + a] : surface.attributes[1][v];
+        const double value = a < 3 ? surface.attributes[0][3 * v + a] : surface.attributes[1][v];
         worst = fmax(worst, fabs(value - sample.value));
       }
     }

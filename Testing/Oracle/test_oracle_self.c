@@ -15,7 +15,7 @@
 static const char* const kernel_names[ORACLE_KERNEL_COUNT] = { "cubic", "quadratic", "M'4",
   "quintic", "Wendland" };
 
-/* ---- kernels ---------------------------------------------------------------------------------------- */
+/* ---- kernels -------------------------------------------------------------------------------- */
 
 /* Midpoint rule on a grid; h other than 1 so that its powers are tested. */
 static void test_kernel_integrals(void)
@@ -75,8 +75,8 @@ static void test_kernel_values(void)
   const double pi = 3.14159265358979323846;
   const double zero[3] = { 0.0, 0.0, 0.0 };
   const double one[3] = { 2.0, 0.0, 0.0 };
-  const double peak[ORACLE_KERNEL_COUNT] = { 1.0 / pi, 15.0 / (16.0 * pi), 1.0,
-    66.0 / (120.0 * pi), 21.0 / (16.0 * pi) };
+  const double peak[ORACLE_KERNEL_COUNT] = { 1.0 / pi, 15.0 / (16.0 * pi), 1.0, 66.0 / (120.0 * pi),
+    21.0 / (16.0 * pi) };
   const double at_h[ORACLE_KERNEL_COUNT] = { 0.25 / pi, 15.0 / (64.0 * pi), 0.0,
     26.0 / (120.0 * pi), 63.0 / (256.0 * pi) };
   for (int kernel = 0; kernel < ORACLE_KERNEL_COUNT; ++kernel)
@@ -88,7 +88,7 @@ static void test_kernel_values(void)
   }
 }
 
-/* ---- fields ----------------------------------------------------------------------------------------- */
+/* ---- fields --------------------------------------------------------------------------------- */
 
 static int load_set(const char* name, particle_set* set)
 {
@@ -122,8 +122,8 @@ static void check_point(const oracle_reference* reference, const double point[3]
     const double offset[3] = { point[0] - p->position[3 * j], point[1] - p->position[3 * j + 1],
       point[2] - p->position[3 * j + 2] };
     const double value = p->volume[j] *
-      oracle_kernel_value(reference->field.kernel,
-        reference->field.h_scale * p->smoothing_length[j], offset, NULL);
+      oracle_kernel_value(
+        reference->field.kernel, reference->field.h_scale * p->smoothing_length[j], offset, NULL);
     all += p->solid[j] && p->ignore_solids ? 0.0 : value;
     w += p->solid[j] ? 0.0 : value;
     fw += p->solid[j] ? 0.0 : value * p->scalar[j];
@@ -163,8 +163,8 @@ static void check_gradient(const oracle_reference* reference, const double point
     ORACLE_CHECK(fabs(difference - sample.gradient[axis]) < 1e-4 * (1.0 + sample.gradient_scale),
       "gradient %g, not %g", sample.gradient[axis], difference);
     const double trim = (high.trim_weight - low.trim_weight) / (2.0 * step);
-    ORACLE_CHECK(fabs(trim - sample.trim_gradient[axis]) < 1e-3, "gradient of the weight %g, not %g",
-      sample.trim_gradient[axis], trim);
+    ORACLE_CHECK(fabs(trim - sample.trim_gradient[axis]) < 1e-3,
+      "gradient of the weight %g, not %g", sample.trim_gradient[axis], trim);
   }
 }
 
@@ -191,8 +191,8 @@ static void test_fields(void)
       uint64_t state = 5;
       for (int trial = 0; trial < 100; ++trial)
       {
-        const double point[3] = { 2.4 * random_unit(&state) - 1.2,
-          2.4 * random_unit(&state) - 1.2, 1.2 * random_unit(&state) - 0.4 };
+        const double point[3] = { 2.4 * random_unit(&state) - 1.2, 2.4 * random_unit(&state) - 1.2,
+          1.2 * random_unit(&state) - 0.4 };
         check_point(&reference, point);
         check_gradient(&reference, point);
       }
@@ -241,8 +241,8 @@ static void test_volumes(void)
       {
         offset[axis] = set.position[3 * j + axis] - set.position[3 * k + axis];
       }
-      sum += mass[k] *
-        oracle_kernel_value(ORACLE_CUBIC_SPLINE, set.smoothing_length[j], offset, NULL);
+      sum +=
+        mass[k] * oracle_kernel_value(ORACLE_CUBIC_SPLINE, set.smoothing_length[j], offset, NULL);
     }
     ORACLE_CHECK(fabs(particles.volume[j] * sum / mass[j] - 1.0) < 1e-12, "volume of particle %lld",
       (long long)j);
@@ -252,7 +252,7 @@ static void test_volumes(void)
   particle_set_free(&set);
 }
 
-/* ---- a known surface ---------------------------------------------------------------------------------- */
+/* ---- a known surface ------------------------------------------------------------------------ */
 
 /* One particle: w = iso on a sphere whose radius can be computed from the kernel alone. */
 static void test_known_sphere(void)
@@ -299,8 +299,9 @@ static void test_known_sphere(void)
   ORACLE_CHECK(reference.surface.component_count == 1, "components");
   oracle_mesh mesh;
   mesh_report report;
-  ORACLE_CHECK(oracle_create_mesh(&mesh, &reference.surface, &reference.lattice, &reference.field,
-                 iso), "no memory");
+  ORACLE_CHECK(
+    oracle_create_mesh(&mesh, &reference.surface, &reference.lattice, &reference.field, iso),
+    "no memory");
   ORACLE_CHECK(
     mesh_check(mesh.points, mesh.point_count, mesh.triangles, mesh.triangle_count, &report),
     "no memory");
@@ -315,7 +316,7 @@ static void test_known_sphere(void)
   particle_set_free(&set);
 }
 
-/* ---- the mesh checker finds planted faults -------------------------------------------------------------- */
+/* ---- the mesh checker finds planted faults -------------------------------------------------- */
 
 typedef struct planted
 {
@@ -406,18 +407,20 @@ static void test_mesh_checker(void)
     ORACLE_CHECK(report.faults[fault] == 0, "%s in an octahedron: %s",
       mesh_fault_name((mesh_fault)fault), report.first[fault]);
   }
-  ORACLE_CHECK(report.euler == 2 && report.edges == 12 && report.boundary_edges == 0 &&
-      report.components == 1, "topology of an octahedron");
+  ORACLE_CHECK(
+    report.euler == 2 && report.edges == 12 && report.boundary_edges == 0 && report.components == 1,
+    "topology of an octahedron");
   ORACLE_CHECK(fabs(report.volume - 4.0 / 3.0) < 1e-14, "volume %g", report.volume);
   ORACLE_CHECK(fabs(report.area - 4.0 * sqrt(3.0)) < 1e-14, "area %g", report.area);
-  ORACLE_CHECK(mesh_count_sides(&report, 4, 2) == 2 && mesh_count_sides(&report, 0, 1) == 0, "sides");
+  ORACLE_CHECK(
+    mesh_count_sides(&report, 4, 2) == 2 && mesh_count_sides(&report, 0, 1) == 0, "sides");
   mesh_free_report(&report);
   for (int fault = 0; fault <= 10; ++fault)
   {
     plant_octahedron(&mesh, points, triangles);
     const mesh_fault kind = plant_fault(&mesh, fault);
-    ORACLE_CHECK(mesh_check(points, mesh.point_count, triangles, mesh.triangle_count, &report),
-      "no memory");
+    ORACLE_CHECK(
+      mesh_check(points, mesh.point_count, triangles, mesh.triangle_count, &report), "no memory");
     if (kind == MESH_FAULT_COUNT)
     {
       ORACLE_CHECK(report.boundary_edges == 3, "a missing triangle was not seen");

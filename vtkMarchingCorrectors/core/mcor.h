@@ -66,7 +66,8 @@ extern "C"
   typedef enum mcor_field
   {
     MCOR_SHEPARD = 0,   /* sum V A W / sum V W; the default */
-    MCOR_SUM = 1,       /* sum V A W, the paper's field */
+    MCOR_SUM = 1,       /* sum V A W, the paper's field; 0 in all empty space, so iso value 0 with node
+                         * threshold 0 gives no sensible surface */
     MCOR_WEIGHT_SUM = 2 /* sum V W: the free surface; needs no scalar, applies no threshold */
   } mcor_field;
 
@@ -103,7 +104,8 @@ extern "C"
 
     /* Particle volume, unit L^3, > 0: `volume` if has_volume; else mass / density if has_mass and
      * has_density; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
-     * 1 / sum_k W(x_j - x_k, h_j). */
+     * 1 / sum_k W(x_j - x_k, h_j). These sums leave out solids that are ignored, and all solids for
+     * MCOR_WEIGHT_SUM, so that such volumes next to walls differ between the fields. */
     mcor_array volume, mass, density;
     int has_volume, has_mass, has_density;
 

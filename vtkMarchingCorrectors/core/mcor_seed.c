@@ -15,7 +15,7 @@ static mcor_status mcor_ask_blocks(mcor_context* context, int lattice_blocks)
   const int* blocks = context->lattice.blocks;
   mcor_buffer* flags = &context->scratch[0];
   MCOR_TRY(mcor_reserve(context, flags, ((size_t)lattice_blocks + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_reached", MCOR_LIGHT, lattice_blocks,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_reached", MCOR_HEAVY, lattice_blocks,
     MCOR_GRID_ARGS(context), MCOR_INT(lattice_blocks), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
     MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_scan(context, flags, lattice_blocks, &bricks->block_count));

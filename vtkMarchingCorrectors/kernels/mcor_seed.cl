@@ -80,8 +80,14 @@ __kernel void mcor_seed_reached(MCOR_GRID_PARAMS, const int lattice_blocks, cons
     i / blocks_x % blocks_y * MCOR_BLOCK_CUBES - MCOR_BRICK,
     i / blocks_x / blocks_y * MCOR_BLOCK_CUBES - MCOR_BRICK, MCOR_BLOCK_CUBES + MCOR_BRICK,
     fix_bits);
-  mcor_query_begin(&grid, &query);
-  flags[i] = query.begin < query.end || mcor_query_next_row(&grid, &query);
+  bool reached = false;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; !reached && mcor_tile_next(&grid, &query, &tile, first); first = false)
+  {
+    reached = tile.count > 0;
+  }
+  flags[i] = reached;
 }
 
 /* One work-item = one block of the whole lattice. Reads the scanned flags. Writes the keys. */

@@ -366,15 +366,14 @@ mcor_status mcor_read(
   return MCOR_OK;
 }
 
-mcor_status mcor_zero(mcor_context* context, mcor_buffer* buffer, size_t bytes)
+mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes)
 {
   MCOR_TRY(mcor_reserve(context, buffer, bytes));
-  const cl_uchar zero = 0;
   if (bytes > 0)
   {
     MCOR_CL_TRY(context,
       clEnqueueFillBuffer(
-        context->cl.queue, buffer->mem, &zero, sizeof zero, 0, bytes, 0, NULL, NULL),
+        context->cl.queue, buffer->mem, &byte, sizeof byte, 0, bytes, 0, NULL, NULL),
       "clEnqueueFillBuffer");
   }
   return MCOR_OK;

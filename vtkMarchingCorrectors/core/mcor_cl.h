@@ -102,7 +102,7 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
-mcor_status mcor_zero(mcor_context* context, mcor_buffer* buffer, size_t bytes);
+mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
 mcor_status mcor_copy(
   mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t bytes);
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,

@@ -93,8 +93,9 @@ typedef struct mcor_brick_data
 typedef struct mcor_bricks
 {
   int block_count, block_shift;
-  mcor_buffer block_keys, block_buckets, block_keep, region_keep, inside;
-  mcor_buffer marks;      /* ushort [block_count][512], of this iso value */
+  mcor_buffer block_keys, block_buckets;
+  mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
+  mcor_buffer marks;      /* the same; of this iso value: 1 where a brick is needed */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now, last; /* last: the other half of a double buffer */
   mcor_buffer neighbours, need;
@@ -178,6 +179,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, mcor_buffer* to, int to_offset);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
+mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);

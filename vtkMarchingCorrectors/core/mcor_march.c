@@ -13,11 +13,13 @@ static mcor_status mcor_evaluate_nodes(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
-  return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+    MCOR_INT(!mcor_uses_pairs(context)), MCOR_BUFFER(&bricks->now.known),
+    MCOR_BUFFER(&bricks->need)));
+  /* One item per brick where one gathers for many lanes, else one per node. */
+  const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
+  return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
     MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->need),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
-    MCOR_BUFFER(&bricks->now.weight));
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
 static mcor_status mcor_sign_nodes(mcor_context* context, double iso)
@@ -28,7 +30,7 @@ static mcor_status mcor_sign_nodes(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->above, bytes));
   MCOR_TRY(mcor_reserve(context, &mesh->valid, bytes));
   return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_LIGHT, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.known),
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.known),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
     MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&mesh->above),
     MCOR_BUFFER(&mesh->valid));
@@ -45,7 +47,7 @@ mcor_status mcor_count_bits(
   return mcor_scan(context, counts, count, total);
 }
 
-/* Evaluates and, from paired seeds, grows until no cell is new. Ends with the used cells. */
+/* Evaluates and grows until nothing is new. Ends with the used cells. */
 static mcor_status mcor_find_cells(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -70,11 +72,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
       statistics->seed_cells_not_intersected += seeds - hits;
     }
     ++statistics->march_rounds;
-    grown = false;
-    if (pairs)
-    {
-      MCOR_TRY(mcor_grow_cells(context, &grown));
-    }
+    MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
   }
   MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &used));
   statistics->cells_used += used;

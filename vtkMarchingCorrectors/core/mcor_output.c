@@ -41,7 +41,7 @@ static mcor_status mcor_compact(mcor_context* context, int* count)
   mcor_mesh* mesh = &context->mesh;
   mcor_buffer* out = context->out;
   const int vertices = mesh->vertex_count, corners = 3 * mesh->triangle_count;
-  MCOR_TRY(mcor_zero(context, &mesh->scanned, ((size_t)vertices + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, ((size_t)vertices + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, corners,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
   MCOR_TRY(mcor_scan(context, &mesh->scanned, vertices, count));

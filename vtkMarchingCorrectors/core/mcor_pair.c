@@ -27,7 +27,7 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_zero(context, &bricks->now.cells, (size_t)bricks->now.count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &bricks->now.cells, 0, (size_t)bricks->now.count * sizeof(cl_ulong)));
   return mcor_mark(context, iso, 1);
 }
 
@@ -38,7 +38,7 @@ mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
   mcor_mesh* mesh = &context->mesh;
   mcor_buffer* flags = &context->scratch[1];
   cl_int flag;
-  MCOR_TRY(mcor_zero(context, flags, sizeof flag));
+  MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),

@@ -58,44 +58,61 @@ mcor_status mcor_make_blocks(mcor_context* context)
     &bricks->block_buckets, &bricks->block_shift));
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   bricks->now.count = 0;
-  return mcor_zero(context, &bricks->bits, words * sizeof(cl_uint));
+  return mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint));
 }
 
-/* Tests blocks (size 32) or the regions of the blocks that remain (size 8). */
-static mcor_status mcor_test_regions(mcor_context* context, double iso, int size,
-  int regions_per_block, const mcor_buffer* block_keep, mcor_buffer* keep)
+/* States of the blocks (per_block 1), their regions (64) or bricks (512); see mcor_seed.cl. */
+static mcor_status mcor_find_states(mcor_context* context, double iso, int per_block,
+  const mcor_buffer* before, mcor_buffer* states)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int regions = bricks->block_count * regions_per_block;
-  MCOR_TRY(mcor_reserve(context, keep, (size_t)regions));
-  return MCOR_LAUNCH(context, "mcor_seed_region", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
+  const int count = bricks->block_count * per_block;
+  MCOR_TRY(mcor_reserve(context, states, (size_t)count));
+  return MCOR_LAUNCH(context, "mcor_seed_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
-    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size),
-    MCOR_BUFFER(block_keep), MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold),
-    MCOR_BUFFER(keep));
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(per_block),
+    MCOR_BUFFER(before), MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold),
+    MCOR_BUFFER(states));
 }
 
-/* Marks every brick box that the bound cannot exclude: blocks, regions, bricks. */
+/* Marks every brick whose nodes must be evaluated. */
 static mcor_status mcor_mark_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   const int* blocks = context->lattice.blocks;
-  mcor_buffer *block_keep = &bricks->block_keep, *region_keep = &bricks->region_keep;
-  MCOR_TRY(mcor_reserve(context, block_keep, (size_t)bricks->block_count));
-  MCOR_TRY(mcor_test_regions(context, iso, MCOR_BLOCK_CUBES, 1, block_keep, block_keep));
-  MCOR_TRY(mcor_test_regions(context, iso, 8, 64, block_keep, region_keep));
+  mcor_buffer *of_blocks = &context->scratch[0], *of_regions = &context->scratch[1];
+  MCOR_TRY(mcor_reserve(context, of_blocks, 1));
+  MCOR_TRY(mcor_find_states(context, iso, 1, of_blocks, of_blocks));
+  MCOR_TRY(mcor_find_states(context, iso, 64, of_blocks, of_regions));
+  MCOR_TRY(
+    mcor_find_states(context, iso, MCOR_BLOCK_BRICKS, of_regions, &bricks->states));
   const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
-  MCOR_TRY(mcor_reserve(context, &bricks->inside, (size_t)count));
-  if (context->options->field == MCOR_WEIGHT_SUM)
+  if (context->options->field == MCOR_WEIGHT_SUM &&
+    context->options->sph_kernel != MCOR_M_PRIME_4)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_inside", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
       MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-      MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(region_keep), MCOR_REAL(iso),
-      MCOR_BUFFER(&bricks->inside)));
+      MCOR_BUFFER(&bricks->block_keys), MCOR_REAL(iso), MCOR_BUFFER(&bricks->states)));
   }
-  return MCOR_LAUNCH(context, "mcor_seed_brick", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(region_keep), MCOR_BUFFER(&bricks->inside),
-    MCOR_REAL(iso), MCOR_BUFFER(&bricks->marks));
+  return MCOR_LAUNCH(context, "mcor_seed_mark", MCOR_LIGHT, count, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->marks));
+}
+
+/* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
+mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* flag = &context->scratch[1];
+  cl_int value;
+  MCOR_TRY(mcor_fill(context, flag, 0, sizeof value));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states),
+    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(flag)));
+  MCOR_TRY(mcor_read(context, flag, 0, &value, sizeof value));
+  *grown = value != 0;
+  return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */
@@ -106,16 +123,11 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
   MCOR_RETURN_IF(marks > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: %d blocks of 32^3 cells hold particles. Use a larger cube size.",
     bricks->block_count);
-  MCOR_TRY(mcor_zero(context, &bricks->marks, marks * sizeof(cl_ushort)));
+  MCOR_TRY(mcor_fill(context, &bricks->marks, 0, marks));
   const bool pairs = mcor_uses_pairs(context);
   MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_mark_complete(context, iso));
   MCOR_TRY(mcor_place_bricks(context));
-  if (pairs)
-  {
-    return mcor_mark_pair_cells(context, iso);
-  }
-  return MCOR_LAUNCH(context, "mcor_seed_cells", MCOR_LIGHT, bricks->now.count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
-    MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(&bricks->now.cells));
+  return pairs ? mcor_mark_pair_cells(context, iso)
+               : mcor_fill(context, &bricks->now.cells, 0xff,
+                   (size_t)bricks->now.count * sizeof(cl_ulong));
 }

@@ -152,10 +152,10 @@ __kernel void mcor_block_fill(MCOR_GRID_PARAMS, const int blocks_x, const int bl
   }
 }
 
-/* One work-item = one word of 32 bricks. Reads the marks (bricks with cells to examine) and the
- * bricks that exist already. Writes which bricks are to exist: those, and the upper neighbours,
- * which own some nodes of a marked brick's cells. */
-__kernel void mcor_brick_bits(MCOR_BLOCK_PARAMS, __global const ushort* marks,
+/* One work-item = one word of 32 bricks. Reads the marks and the bricks that exist already. Writes
+ * which bricks are to exist: those, and with_upper the upper neighbours of marked ones, which own some
+ * nodes of their cells. */
+__kernel void mcor_brick_bits(MCOR_BLOCK_PARAMS, __global const uchar* marks, const int with_upper,
   __global const uint* old_bits, __global uint* bits, __global int* counts)
 {
   const int word = get_global_id(0);
@@ -170,7 +170,7 @@ __kernel void mcor_brick_bits(MCOR_BLOCK_PARAMS, __global const ushort* marks,
     const int m = word * 32 + b;
     const int4 brick = first + (int4)(b & 7, b >> 3, 0, 0);
     bool needed = marks[m] != 0 || (result >> b & 1);
-    for (int d = 1; d < 8 && !needed; ++d)
+    for (int d = 1; d < 8 && with_upper && !needed; ++d)
     {
       const bool inside = ((d & 1) == 0 || (m & 7)) && ((d & 2) == 0 || (m >> 3 & 7)) &&
         ((d & 4) == 0 || (m >> 6 & 7));

@@ -131,8 +131,6 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
 #if MCOR_SOLIDS
   realv t = 0, tx = 0, ty = 0, tz = 0;
 #endif
-  /* Nodes and particles relative to the query's box: exact in single precision while the support is
-   * below 16 cubes, so that the result does not depend on which points form a group. */
   const realv x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
   const realv y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
   const realv z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
@@ -140,17 +138,16 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      const int j = tile->list[i];
-      const realv dx = (x - (real)(grid->px[j] - query->low[0]) * grid->unit) + points->ox;
-      const realv dy = (y - (real)(grid->py[j] - query->low[1]) * grid->unit) + points->oy;
-      const realv dz = (z - (real)(grid->pz[j] - query->low[2]) * grid->unit) + points->oz;
+      const realv dx = (x - tile->x[i]) + points->ox;
+      const realv dy = (y - tile->y[i]) + points->oy;
+      const realv dz = (z - tile->z[i]) + points->oz;
       realv gx, gy, gz;
-      const realv k = mcor_weight_gradient(dx, dy, dz, grid->inv_h[j], &gx, &gy, &gz);
-      const real m = grid->weight[j];
+      const realv k = mcor_weight_gradient(dx, dy, dz, tile->inv_h[i], &gx, &gy, &gz);
+      const real m = tile->weight[i];
 #if MCOR_FIELD == 0
-      const real c = m * (grid->value[j] - iso);
+      const real c = m * (tile->value[i] - iso);
 #elif MCOR_FIELD == 1
-      const real c = m * grid->value[j];
+      const real c = m * tile->value[i];
 #endif
 #if MCOR_FIELD != 2
       s += c * k;
@@ -163,7 +160,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
       wy += m * gy;
       wz += m * gz;
 #if MCOR_SOLIDS
-      const real mt = grid->trim_weight[j];
+      const real mt = tile->trim_weight[i];
       t += mt * k;
       tx += mt * gx;
       ty += mt * gy;

@@ -8,10 +8,10 @@
  * over voids without any fluid, and rounding noise of a kernel's rim would count as a value. */
 #define MCOR_LEAST_WEIGHT ((real)1e-3)
 
-/* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
- * are not yet known, rounded up to whole planes of 16. */
+/* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need (rounded up
+ * to whole planes of 16) or all, less those that are known. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
-  __global const ulong* cells, __global const ulong* known, __global ulong* need)
+  __global const ulong* cells, const int all, __global const ulong* known, __global ulong* need)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -32,7 +32,7 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   ulong planes = 0;
   for (int z = 0; z < 4; ++z)
   {
-    planes |= (m[0] >> (16 * z) & MCOR_LOW_Z) ? MCOR_LOW_Z << (16 * z) : 0;
+    planes |= (all || (m[0] >> (16 * z) & MCOR_LOW_Z)) ? MCOR_LOW_Z << (16 * z) : 0;
   }
   need[slot] = planes & ~known[slot];
 }
@@ -53,51 +53,44 @@ void mcor_march_store(real s, real w, real t, __global real* value, __global rea
 #endif
 }
 
-/* One work-item = one brick. Reads the particles that reach the needed nodes. Writes the values and
- * weights of those nodes. */
+/* One work-item = MCOR_ITEM_NODES nodes of a brick. Reads the particles that reach those needed.
+ * Writes their values and weights. */
 __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const ulong* need, __global ulong* known,
-  __global real* node_value, __global real* node_weight)
+  __global const int4* bricks, __global const ulong* need, __global real* node_value,
+  __global real* node_weight)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || need[slot] == 0)
+  const int first_node = get_global_id(0) * MCOR_ITEM_NODES, slot = first_node / 64;
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  const int first = first_node % 64;
+  const ulong wanted = MCOR_ITEM_NODES == 64 ? need[slot] : need[slot] >> first & 1;
+  if (wanted == 0)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const ulong wanted = need[slot];
-  const int low = mcor_ctz(wanted) / 16, high = 3 - (int)(clz(wanted) / 16);
-  const int4 brick = bricks[slot];
-  mcor_query query;
-  mcor_seed_box(
-    &query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK, 3, fix_bits);
-  const fix origin_z = query.low[2];
-  query.low[2] = origin_z + ((fix)low << fix_bits);
-  query.high[2] = origin_z + ((fix)high << fix_bits);
   mcor_node_sums sums;
-  mcor_node_sum(&grid, &query, origin_z, wanted, &sums);
-  for (int n = 0; n < 64; ++n)
+  mcor_node_sum(&grid, bricks[slot], first, wanted, 1, &sums);
+  for (ulong rest = wanted; rest; rest &= rest - 1)
   {
-    if (wanted >> n & 1)
-    {
-      const int g = n / MCOR_LANES, lane = n % MCOR_LANES;
-      const real w = MCOR_GET(sums.w[g], lane);
+    const int n = mcor_ctz(rest), g = n / MCOR_LANES, lane = n % MCOR_LANES;
+    const real w = MCOR_GET(sums.w[g], lane);
 #if MCOR_SOLIDS
-      const real t = MCOR_GET(sums.t[g], lane);
+    const real t = MCOR_GET(sums.t[g], lane);
 #else
-      const real t = w;
+    const real t = w;
 #endif
-      mcor_march_store(MCOR_GET(sums.s[g], lane), w, t, node_value + slot * 64L + n,
-        node_weight + slot * 64L + n);
-    }
+    mcor_march_store(MCOR_GET(sums.s[g], lane), w, t, node_value + first_node + n,
+      node_weight + first_node + n);
   }
-  known[slot] |= wanted;
 }
 
-/* One work-item = one brick. Reads node values. Writes which nodes are above the iso value, and
- * which are valid (weight not below the node threshold). */
-__kernel void mcor_march_sign(const int brick_count, __global const ulong* known,
-  __global const real* node_value, __global const real* node_weight, const real iso,
+/* One work-item = one brick. Reads node values, those needed being known by now. Writes which nodes
+ * are above the iso value, and which are valid (weight not below the node threshold). */
+__kernel void mcor_march_sign(const int brick_count, __global const ulong* need,
+  __global ulong* known, __global const real* node_value, __global const real* node_weight, const real iso,
   const real node_threshold, __global ulong* above, __global ulong* valid)
 {
   const int slot = get_global_id(0);
@@ -111,8 +104,10 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* known
     a |= (ulong)(node_value[slot * 64L + n] >= iso) << n;
     v |= (ulong)(MCOR_FIELD == 2 || node_weight[slot * 64L + n] >= node_threshold) << n;
   }
-  above[slot] = a & known[slot];
-  valid[slot] = v & known[slot];
+  const ulong all = known[slot] | need[slot];
+  known[slot] = all;
+  above[slot] = a & all;
+  valid[slot] = v & all;
 }
 
 /* Per cell: whether some (all) of its 8 nodes are set. m: masks of a brick and its upper

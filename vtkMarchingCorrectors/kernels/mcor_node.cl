@@ -1,12 +1,22 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at the 64 nodes of a brick, MCOR_LANES nodes at a time. */
+/* Evaluation of the field at nodes, in groups of MCOR_LANES neighbouring nodes of a brick: with 16
+ * lanes a plane, with 8 half a plane, with 1 a node. One work-item treats a whole brick where
+ * particles are gathered for many lanes at once, else one node. */
 
-#define MCOR_NODE_GROUPS (64 / MCOR_LANES)
-#define MCOR_PLANE_GROUPS (16 / MCOR_LANES)
+#if MCOR_LANES == 1
+#define MCOR_ITEM_NODES 1
+#define MCOR_GROUP_X 1
+#define MCOR_GROUP_Y 1
+#else
+#define MCOR_ITEM_NODES 64
+#define MCOR_GROUP_X 4
+#define MCOR_GROUP_Y (MCOR_LANES / 4)
+#endif
+#define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 
-/* Sums at the nodes of a brick: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
+/* Sums at the nodes of a work-item: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
 typedef struct
 {
   realv s[MCOR_NODE_GROUPS], w[MCOR_NODE_GROUPS];
@@ -15,57 +25,83 @@ typedef struct
 #endif
 } mcor_node_sums;
 
-/* Adds particle j to the planes of `need`; its position relative to the brick is (x, y, z). */
-void mcor_node_add(const mcor_grid* grid, int j, real x, real y, real z, ulong need,
-  const realv* lane_x, const realv* lane_y, mcor_node_sums* sums)
+/* Places in the tile of the particles that reach a group; (x, y, z) is its first node. */
+int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list)
 {
-  const real inv_h = grid->inv_h[j];
-#if MCOR_SOLIDS
-  const real trim = grid->trim_weight[j];
-#endif
-  const real weight = grid->weight[j], c = MCOR_FIELD == 2 ? (real)0 : weight * grid->value[j];
-  realv planar[MCOR_PLANE_GROUPS];
-  for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
+  const real ex = (real)0.5 * (MCOR_GROUP_X - 1), ey = (real)0.5 * (MCOR_GROUP_Y - 1);
+  int count = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    planar[g] = mcor_planar(x - lane_x[g], y - lane_y[g], inv_h);
-  }
-  const real beside_x = fmax(fabs(x - (real)1.5) - (real)1.5, (real)0);
-  const real beside_y = fmax(fabs(y - (real)1.5) - (real)1.5, (real)0);
-  for (int plane = 0; plane < 4; ++plane)
-  {
-    const real dz = z - plane;
+    const realv dx = fmax(fabs(MCOR_LOAD(i, tile->x) - (x + ex)) - ex, (realv)0);
+    const realv dy = fmax(fabs(MCOR_LOAD(i, tile->y) - (y + ey)) - ey, (realv)0);
+    const realv dz = MCOR_LOAD(i, tile->z) - z;
+    const realv inv_h = MCOR_LOAD(i, tile->inv_h);
 #if MCOR_TENSOR
-    const bool near = fabs(dz) * inv_h < MCOR_SUPPORT;
+    const fixv near = fmax(dx, fmax(dy, fabs(dz))) * inv_h < MCOR_SUPPORT * (real)1.0001;
 #else
-    const bool near = (beside_x * beside_x + beside_y * beside_y + dz * dz) * inv_h * inv_h <
+    const fixv near = (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
       MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001;
 #endif
-    if ((need >> (16 * plane) & 1) && near)
-    {
-      for (int g = 0; g < MCOR_PLANE_GROUPS; ++g)
-      {
-        const int n = plane * MCOR_PLANE_GROUPS + g;
-        const realv w = mcor_weight(planar[g], (realv)dz, inv_h);
-        sums->s[n] += c * w;
-        sums->w[n] += weight * w;
-#if MCOR_SOLIDS
-        sums->t[n] += trim * w;
-#endif
-      }
-    }
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
+    MCOR_PACK_INDEX(mask, i, list + count);
+    count += MCOR_MASK_COUNT(mask);
   }
+  return count;
 }
 
-/* Sums over all particles of the query, at the nodes of the planes that `need` has. The query's x and
- * y range is the brick's; origin_z is its lowest plane. */
-void mcor_node_sum(
-  const mcor_grid* grid, mcor_query* query, fix origin_z, ulong need, mcor_node_sums* sums)
+/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's low corner. */
+void mcor_node_add(
+  const mcor_tile* tile, int g, real x, real y, real z, mcor_node_sums* sums)
 {
-  realv lane_x[MCOR_PLANE_GROUPS], lane_y[MCOR_PLANE_GROUPS];
-  for (int n = 0; n < 16; ++n)
+  realv node_x = x, node_y = y;
+  for (int lane = 1; lane < MCOR_LANES; ++lane)
   {
-    MCOR_SET(lane_x[n / MCOR_LANES], n % MCOR_LANES) = n & 3;
-    MCOR_SET(lane_y[n / MCOR_LANES], n % MCOR_LANES) = n >> 2;
+    MCOR_SET(node_x, lane) = x + (lane & 3);
+    MCOR_SET(node_y, lane) = y + (lane >> 2);
+  }
+  int list[MCOR_TILE + 16];
+  const int count = mcor_node_list(tile, x, y, z, list);
+  realv s = sums->s[g], w = sums->w[g];
+#if MCOR_SOLIDS
+  realv t = sums->t[g];
+#endif
+  for (int k = 0; k < count; ++k)
+  {
+    const int i = list[k];
+    const real inv_h = tile->inv_h[i], weight = tile->weight[i];
+    const realv planar = mcor_planar(tile->x[i] - node_x, tile->y[i] - node_y, inv_h);
+    const realv v = mcor_weight(planar, tile->z[i] - z, inv_h);
+#if MCOR_FIELD != 2
+    s += weight * tile->value[i] * v;
+#endif
+    w += weight * v;
+#if MCOR_SOLIDS
+    t += tile->trim_weight[i] * v;
+#endif
+  }
+  sums->s[g] = s;
+  sums->w[g] = w;
+#if MCOR_SOLIDS
+  sums->t[g] = t;
+#endif
+}
+
+/* Sums at the nodes from `first` on, MCOR_ITEM_NODES of a brick, for the groups that `wanted` has:
+ * over all particles in reach, or only those within `share` of their support. */
+void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, float share,
+  mcor_node_sums* sums)
+{
+  /* The planes that are wanted. */
+  const int low = (first + mcor_ctz(wanted)) / 16, high = (first + 63 - (int)clz(wanted)) / 16;
+  const int corner[3] = { brick.x * MCOR_BRICK + (MCOR_GROUP_X == 1 ? first & 3 : 0),
+    brick.y * MCOR_BRICK + (MCOR_GROUP_Y == 1 ? first >> 2 & 3 : 0), brick.z * MCOR_BRICK + low };
+  const int extent[3] = { MCOR_GROUP_X - 1, MCOR_GROUP_Y == 1 ? 0 : MCOR_BRICK - 1, high - low };
+  mcor_query query;
+  query.radius = -share;
+  for (int a = 0; a < 3; ++a)
+  {
+    query.low[a] = (fix)corner[a] << grid->fix_bits;
+    query.high[a] = query.low[a] + ((fix)extent[a] << grid->fix_bits);
   }
   for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
   {
@@ -76,14 +112,16 @@ void mcor_node_sum(
   }
   mcor_tile tile;
   mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
+  for (bool begin = true; mcor_tile_next(grid, &query, &tile, begin); begin = false)
   {
-    for (int i = 0; i < tile.count; ++i)
+    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
-      const int j = tile.list[i];
-      mcor_node_add(grid, j, (real)(grid->px[j] - query->low[0]) * grid->unit,
-        (real)(grid->py[j] - query->low[1]) * grid->unit,
-        (real)(grid->pz[j] - origin_z) * grid->unit, need, lane_x, lane_y, sums);
+      const int n = g * MCOR_LANES;
+      if (wanted >> n & 1)
+      {
+        mcor_node_add(&tile, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
+          (real)((first + n) / 16 - low), sums);
+      }
     }
   }
 }

@@ -6,7 +6,7 @@
  * to cell through crossed faces. */
 
 /* Marks the bricks that the segment's bounding box touches. */
-void mcor_pair_mark_bricks(MCOR_BLOCK_PARAMS, const int* a, const int* b, __global ushort* marks)
+void mcor_pair_mark_bricks(MCOR_BLOCK_PARAMS, const int* a, const int* b, __global uchar* marks)
 {
   for (int z = min(a[2], b[2]) >> 2; z <= max(a[2], b[2]) >> 2; ++z)
   {
@@ -17,7 +17,7 @@ void mcor_pair_mark_bricks(MCOR_BLOCK_PARAMS, const int* a, const int* b, __glob
         const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z);
         if (m >= 0)
         {
-          marks[m] = 0xffff;
+          marks[m] = 1;
         }
       }
     }
@@ -71,7 +71,7 @@ void mcor_pair_mark_line(
 /* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
  * each. mark_cells 0: marks bricks for pairs that straddle the iso value; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const real iso,
-  const int mark_cells, __global ushort* marks, __global uint* cells)
+  const int mark_cells, __global uchar* marks, __global uint* cells)
 {
   const int begin = get_global_id(0) * MCOR_LANES;
   if (begin >= particle_count)
@@ -83,12 +83,13 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const real iso
   mcor_query query;
   const real coarsest = mcor_query_particles(&grid, &query, begin, count);
   query.radius = (float)(1 / coarsest);
-  bool above = false, below = false;
+  int sides = 0;
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
   {
-    if (!mcor_seed_straddles(&grid, &tile, iso, &above, &below) && tile.complete)
+    sides |= mcor_seed_sides(&tile, iso);
+    if (sides != 3 && tile.complete)
     {
       return;
     }
@@ -148,7 +149,7 @@ ulong mcor_pair_faces(const ulong* m, int first, int axis)
 }
 
 /* Hands cells to a neighbour brick. flags: 1 a cell is new, 2 a brick must be placed. */
-void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global ushort* marks,
+void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uchar* marks,
   __global uint* cells, __global int* flags)
 {
   if (pushed == 0)
@@ -162,7 +163,7 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   if (marks[m] == 0)
   {
-    marks[m] = 0xffff;
+    marks[m] = 1;
     atomic_or(flags, 2);
   }
   if (slot >= 0)
@@ -181,7 +182,7 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
  * used cells, within the brick to the end, and one step into its neighbours. */
 __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const int* neighbours, __global const ulong* above,
-  __global const ulong* valid, __global ushort* marks, __global uint* cells, __global int* flags)
+  __global const ulong* valid, __global uchar* marks, __global uint* cells, __global int* flags)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)

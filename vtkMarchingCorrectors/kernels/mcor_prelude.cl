@@ -59,6 +59,28 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
 #endif
 
+/* 0, 1, ... MCOR_LANES - 1. */
+fixv mcor_lane_index(void)
+{
+#if MCOR_LANES == 1
+  return 0;
+#elif MCOR_LANES == 8
+  return (fixv)(0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  return (fixv)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+}
+
+real mcor_lane_sum(realv v)
+{
+  real sum = 0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    sum += MCOR_GET(v, lane);
+  }
+  return sum;
+}
+
 /* Particles that one gather collects at most before they are evaluated. A GPU has little private
  * memory per work-item. */
 #define MCOR_TILE (MCOR_LANES == 1 ? 32 : 1024)

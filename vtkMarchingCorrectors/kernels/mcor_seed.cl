@@ -1,11 +1,19 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Seed cells [III-C]: which cells are to be examined. A brick's mark is not 0 where it has some; with
- * complete seeds it has one bit per box of 2 x 2 x 1 cells: bit x + 2 y + 4 z. */
+/* Complete seeds [III-C]: which bricks of nodes are to be evaluated, so that no crossed edge is
+ * missed. Nodes are left out where the side of the iso value that they are on is certain without, or
+ * where their weight is certain to be too low: whole blocks (32^3 nodes), regions (8^3) and bricks
+ * (4^3) of them. A crossed edge has nodes on both sides. If both were left out, two neighbouring
+ * bricks would be certain of different sides: those are evaluated after all (mcor_seed_mark). If one
+ * was, an evaluated brick would have a node on the other side than its neighbour: that is evaluated
+ * then (mcor_seed_grow). */
 
-#define MCOR_BOXES 16
-#define MCOR_BOX_GROUPS (MCOR_BOXES / MCOR_LANES)
+/* What is known of a region's nodes. */
+#define MCOR_VOID 0    /* below the node threshold: no cell there is valid */
+#define MCOR_ABOVE 1
+#define MCOR_BELOW 2
+#define MCOR_EXAMINE 3 /* not enough; evaluate */
 
 #if MCOR_TENSOR
 /* Interval of the one-dimensional w over distances [near, far]. */
@@ -17,40 +25,36 @@ void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Greatest (side -1) or least (side 1) w over boxes of half sizes e, e, ez around (dx, dy, dz). */
-realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, real ez, realv side, realv inv_h)
+/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz). */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
 {
   realv xl, xh, yl, yh, zl, zh;
   mcor_seed_interval(fmax(fabs(dx) - e, (realv)0) * inv_h,
     (fabs(dx) + e) * inv_h, &xl, &xh);
   mcor_seed_interval(fmax(fabs(dy) - e, (realv)0) * inv_h,
     (fabs(dy) + e) * inv_h, &yl, &yh);
-  mcor_seed_interval(
-    fmax(fabs(dz) - ez, (realv)0) * inv_h, (fabs(dz) + ez) * inv_h, &zl, &zh);
+  mcor_seed_interval(fmax(fabs(dz) - e, (realv)0) * inv_h,
+    (fabs(dz) + e) * inv_h, &zl, &zh);
   const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
   const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
   return side > 0 ? fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh))
                   : fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* Greatest (side -1) or least (side 1) w over boxes of half sizes e, e, ez around (dx, dy, dz): w
- * falls with the distance, so that of the nearest or farthest point. */
-realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, real ez, realv side, realv inv_h)
+/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz): w falls with
+ * the distance, so that of the nearest or farthest point. */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
 {
   const realv x = fmax(fabs(dx) + side * e, (realv)0);
   const realv y = fmax(fabs(dy) + side * e, (realv)0);
-  const realv z = fmax(fabs(dz) + side * ez, (realv)0);
-  const realv r2 = x * x + y * y + z * z;
-  return MCOR_W(r2 * mcor_rsqrt(r2) * inv_h);
+  const realv z = fmax(fabs(dz) + side * e, (realv)0);
+  return MCOR_W(mcor_sqrt(x * x + y * y + z * z) * inv_h);
 }
 #endif
 
 /* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the least
  * and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
-
-/* Whether mcor_seed_inside has been run. */
-#define MCOR_INSIDE_DECIDES (MCOR_FIELD == 2 && !MCOR_TENSOR)
 
 void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bits)
 {
@@ -108,143 +112,132 @@ __kernel void mcor_seed_reached_fill(
  *
  * as each w_j lies in its interval wherever in the box the point is, whatever the sign of w_j;
  * likewise from above. Only one of the two is computed: from below where F is positive in the middle,
- * else from above. A box with F of one sign has no crossing. The margin is 1e-5 of the
- * sum of the absolute terms, above the rounding of this sum and of the node values. */
-typedef struct
-{
-  realv x, y, z; /* centres of the boxes */
-  realv sum, size;
-} mcor_bound;
+ * else from above. The margin is 1e-5 of the sum of the absolute terms, above the rounding of this
+ * sum and of the node values. */
 
-void mcor_seed_bound_init(mcor_bound* bounds)
+/* c_j of MCOR_LANES particles of the tile. */
+realv mcor_seed_coefficients(const mcor_tile* tile, int i, real iso)
 {
-  for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
-  {
-    mcor_bound* b = bounds + g;
-    b->sum = b->size = 0;
-    for (int lane = 0; lane < MCOR_LANES; ++lane)
-    {
-      const int box = g * MCOR_LANES + lane;
-      MCOR_SET(b->x, lane) = 1 + 2 * (box & 1);
-      MCOR_SET(b->y, lane) = 1 + (box & 2);
-      MCOR_SET(b->z, lane) = (real)0.5 + (box >> 2);
-    }
-  }
-}
-
-/* The boxes of a group that remain, as bits of a mark. below: the bound is one from below. */
-uint mcor_seed_bound_mark(const mcor_bound* b, int group, bool below, real level)
-{
-  const realv margin = (real)1e-5f * (b->size + fabs(level));
-  const fixv keep = below ? b->sum <= level + margin : b->sum >= level - margin;
-  uint mark = 0;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    mark |= (uint)(MCOR_GET_FIX(keep, lane) != 0) << (group * MCOR_LANES + lane);
-  }
-  return mark;
-}
-
-/* c_j of the bound. */
-real mcor_seed_coefficient(const mcor_grid* grid, int j, real iso)
-{
+  const realv weight = MCOR_LOAD(i, tile->weight);
 #if MCOR_FIELD == 0
-  return grid->weight[j] * (grid->value[j] - iso);
+  return weight * (MCOR_LOAD(i, tile->value) - iso);
 #elif MCOR_FIELD == 1
-  return grid->weight[j] * grid->value[j];
+  return weight * MCOR_LOAD(i, tile->value);
 #else
-  return grid->weight[j];
+  return weight;
 #endif
 }
 
 /* Roughly F + level in the middle of a box, with (1 - (r / support)^2)^3 for every kernel: it only
  * chooses the bound's side. */
-real mcor_seed_middle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
-  real half_size, real iso)
+real mcor_seed_middle(const mcor_query* query, const mcor_tile* tile, real iso)
 {
-  real sum = 0;
-  for (int i = 0; i < tile->count; ++i)
+  realv sum = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const int j = tile->list[i];
-    const real scale = grid->inv_h[j] / MCOR_SUPPORT;
-    const real x = ((real)(grid->px[j] - query->low[0]) * grid->unit - half_size) * scale;
-    const real y = ((real)(grid->py[j] - query->low[1]) * grid->unit - half_size) * scale;
-    const real z = ((real)(grid->pz[j] - query->low[2]) * grid->unit - half_size) * scale;
-    const real near = fmax(1 - x * x - y * y - z * z, (real)0);
-    sum += mcor_seed_coefficient(grid, j, iso) * near * near * near;
+    const realv scale = MCOR_LOAD(i, tile->inv_h) * (1 / MCOR_SUPPORT);
+    const realv x = (MCOR_LOAD(i, tile->x) - query->center[0]) * scale;
+    const realv y = (MCOR_LOAD(i, tile->y) - query->center[1]) * scale;
+    const realv z = (MCOR_LOAD(i, tile->z) - query->center[2]) * scale;
+    const realv near = fmax((real)1 - x * x - y * y - z * z, (realv)0);
+    sum += mcor_seed_coefficients(tile, i, iso) * near * near * near;
   }
-  return sum / ((real)0.6383 * MCOR_NORM * MCOR_SUPPORT * MCOR_SUPPORT * MCOR_SUPPORT);
+  return mcor_lane_sum(sum) /
+    ((real)0.6383 * MCOR_NORM * MCOR_SUPPORT * MCOR_SUPPORT * MCOR_SUPPORT);
 }
 
-/* Whether the particles of the tile have values on both sides; updates above and below. */
-bool mcor_seed_straddles(
-  const mcor_grid* grid, const mcor_tile* tile, real iso, bool* above, bool* below)
+/* Whether the tile's particles have values above (bit 0) and below (bit 1) the iso value. */
+int mcor_seed_sides(const mcor_tile* tile, real iso)
 {
-  for (int i = 0; i < tile->count && !(*above && *below); ++i)
+  fixv above = 0, below = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const int j = tile->list[i];
-    const bool fluid = !MCOR_SOLIDS || grid->weight[j] != 0;
-    *above = *above || (fluid && grid->value[j] >= iso);
-    *below = *below || (fluid && grid->value[j] < iso);
+    const fixv is_above = MCOR_LOAD(i, tile->value) >= iso;
+    const fixv counts = MCOR_LOAD(i, tile->weight) != 0;
+    above = above || (counts && is_above);
+    below = below || (counts && !is_above);
   }
-  return *above && *below;
+  return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
 
-/* The bound for one box, of `size` cubes, with MCOR_LANES particles at a time: whether F may be 0, and
- * some node's weight reach the threshold. */
-bool mcor_seed_region_may_cross(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
-  real size, real iso, real node_threshold)
+/* Sums of the bound over the particles of a box. */
+typedef struct
+{
+  realv sum, size; /* the bound + level, and the absolute terms */
+  realv weight;    /* of the greatest weights */
+} mcor_bound;
+
+void mcor_seed_bound(const mcor_query* query, const mcor_tile* tile, real iso, bool from_below,
+  mcor_bound* bound)
+{
+  const real e = query->half_size[0];
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const realv x = MCOR_LOAD(i, tile->x) - query->center[0];
+    const realv y = MCOR_LOAD(i, tile->y) - query->center[1];
+    const realv z = MCOR_LOAD(i, tile->z) - query->center[2];
+    const realv inv_h = MCOR_LOAD(i, tile->inv_h), c = mcor_seed_coefficients(tile, i, iso);
+    const realv side = (c > 0) == (fixv)(from_below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
+    const realv w = mcor_seed_weight(x, y, z, e, side, inv_h);
+    bound->sum += c * w;
+    bound->size += fabs(c) * fabs(w);
+#if MCOR_FIELD != 2
+    bound->weight +=
+      MCOR_LOAD(i, MCOR_TILE_TRIM(tile)) * mcor_seed_weight(x, y, z, e, (realv)-1, inv_h);
+#endif
+  }
+}
+
+/* What the sums say. */
+int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, real node_threshold)
 {
   const real level = MCOR_FIELD == 0 ? (real)0 : iso;
-  const real e = (real)0.5 * size;
-  bool above = false, under = false, below = false;
-  realv sum = 0, total = 0, most_weight = 0;
-  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
+  const real sum = mcor_lane_sum(bound->sum);
+  const real margin = (real)1e-5f * (mcor_lane_sum(bound->size) + fabs(level));
+  if (MCOR_FIELD != 2 && mcor_lane_sum(bound->weight) < node_threshold * (real)0.9999)
   {
-    mcor_seed_straddles(grid, tile, iso, &above, &under);
-    if (first)
-    {
-      below = mcor_seed_middle(grid, query, tile, e, iso) > level;
-    }
-    for (int i = 0; i < tile->count; i += MCOR_LANES)
-    {
-      realv x, y, z, inv_h, c, trim;
-      for (int lane = 0; lane < MCOR_LANES; ++lane)
-      {
-        const int j = tile->list[min(i + lane, tile->count - 1)];
-        MCOR_SET(x, lane) = (real)(grid->px[j] - query->low[0]) * grid->unit - e;
-        MCOR_SET(y, lane) = (real)(grid->py[j] - query->low[1]) * grid->unit - e;
-        MCOR_SET(z, lane) = (real)(grid->pz[j] - query->low[2]) * grid->unit - e;
-        MCOR_SET(inv_h, lane) = grid->inv_h[j];
-        MCOR_SET(c, lane) =
-          i + lane < tile->count ? mcor_seed_coefficient(grid, j, iso) : (real)0;
-        MCOR_SET(trim, lane) = i + lane < tile->count ? grid->trim_weight[j] : (real)0;
-      }
-      const realv side = (c > 0) == (fixv)(below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
-      const realv w = mcor_seed_weight(x, y, z, e, e, side, inv_h);
-      sum += c * w;
-      total += fabs(c) * fabs(w);
-      if (MCOR_FIELD != 2)
-      {
-        most_weight += trim * mcor_seed_weight(x, y, z, e, e, (realv)-1, inv_h);
-      }
-    }
+    return MCOR_VOID;
   }
-  real s = 0, t = 0, m = 0;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    s += MCOR_GET(sum, lane);
-    t += MCOR_GET(total, lane);
-    m += MCOR_GET(most_weight, lane);
-  }
-  const real margin = (real)1e-5f * (t + fabs(level));
-  const bool may = below ? s <= level + margin : s >= level - margin;
-  const bool valid = MCOR_FIELD == 2 || m >= node_threshold * (real)0.9999;
-  return may && valid && (!MCOR_RANGE_DECIDES || (above && under));
+  const bool certain = from_below ? sum > level + margin : sum < level - margin;
+  return !certain ? MCOR_EXAMINE : from_below ? MCOR_ABOVE : MCOR_BELOW;
 }
 
-/* Blocks, and regions of 8^3 cubes in them, come before bricks: where smoothing lengths are many
- * cubes, a bound on a large box is tight already. */
+/* State of a cube of nodes, `size` cubes from the first to the last. */
+int mcor_seed_state(const mcor_grid* grid, mcor_query* query, int size, real iso,
+  real node_threshold)
+{
+  const int empty = MCOR_FIELD != 2 && node_threshold > 0 ? MCOR_VOID
+    : (MCOR_FIELD == 0)                                   ? MCOR_VOID
+    : iso <= 0                                            ? MCOR_ABOVE
+                                                          : MCOR_BELOW;
+  mcor_bound bound = { 0, 0, 0 };
+  bool from_below = false, some = false;
+  int sides = 0;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
+  {
+    some = some || tile.count > 0;
+    sides |= mcor_seed_sides(&tile, iso);
+    if (first)
+    {
+      from_below = mcor_seed_middle(query, &tile, iso) > (MCOR_FIELD == 0 ? (real)0 : iso);
+    }
+    mcor_seed_bound(query, &tile, iso, from_below, &bound);
+  }
+  if (!some)
+  {
+    return empty;
+  }
+  if (MCOR_RANGE_DECIDES && sides != 3)
+  {
+    return sides == 1 ? MCOR_ABOVE : sides == 2 ? MCOR_BELOW : MCOR_VOID;
+  }
+  return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
+}
+
+/* Edge of the cubes of nodes of which states are kept, and their number in a block; each level is
+ * within the one before. */
 #define MCOR_REGION_CUBES 8
 #define MCOR_BLOCK_REGIONS 64
 
@@ -255,174 +248,133 @@ int mcor_seed_region_of(int m)
   return m / MCOR_BLOCK_BRICKS * MCOR_BLOCK_REGIONS + region;
 }
 
-/* One work-item = one region of `size` cubes: a block (32), or one of its 64 regions (8), x fastest.
- * Reads the particles that reach it, and what is known of the blocks. Writes whether the iso value
- * may occur in it. */
-__kernel void mcor_seed_region(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, const int size,
-  __global const uchar* block_keep, const real iso, const real node_threshold,
-  __global uchar* keep)
+/* Position in bricks and edge of cube i of a level, of per_block (1, 64, 512) cubes. */
+int4 mcor_seed_cube(__global const ulong* block_keys, const int blocks_x, const int blocks_y,
+  const int per_block, int i, int* cubes)
+{
+  if (per_block == MCOR_BLOCK_BRICKS)
+  {
+    *cubes = MCOR_BRICK;
+    return mcor_brick_of_mark(block_keys, blocks_x, blocks_y, i);
+  }
+  const int r = i % per_block;
+  *cubes = per_block == 1 ? MCOR_BLOCK_CUBES : MCOR_REGION_CUBES;
+  return mcor_brick_of_mark(block_keys, blocks_x, blocks_y, i / per_block * MCOR_BLOCK_BRICKS) +
+    (int4)(r & 3, r >> 2 & 3, r >> 4, 0) * (*cubes / MCOR_BRICK);
+}
+
+/* One work-item = one cube of nodes: a block (per_block 1), or one of its 64 regions or 512 bricks.
+ * Reads the particles that reach it, and the states of the level before. Writes its state. */
+__kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+  const int blocks_y, __global const ulong* block_keys, const int per_block,
+  __global const uchar* before, const real iso, const real node_threshold, __global uchar* states)
 {
   const int i = get_global_id(0);
-  const int regions = size == MCOR_BLOCK_CUBES ? 1 : MCOR_BLOCK_REGIONS;
-  const int block = i / regions, r = i % regions;
-  if (block >= block_count)
+  if (i >= block_count * per_block)
   {
     return;
   }
-  if (regions > 1 && !block_keep[block])
+  const int outer = per_block == MCOR_BLOCK_BRICKS ? mcor_seed_region_of(i) : i / per_block;
+  if (per_block > 1 && before[outer] != MCOR_EXAMINE)
   {
-    keep[i] = 0;
+    states[i] = before[outer];
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int4 brick =
-    mcor_brick_of_mark(block_keys, blocks_x, blocks_y, block * MCOR_BLOCK_BRICKS);
+  int cubes;
+  const int4 brick = mcor_seed_cube(block_keys, blocks_x, blocks_y, per_block, i, &cubes);
   mcor_query query;
-  mcor_seed_box(&query, brick.x * MCOR_BRICK + (r & 3) * size,
-    brick.y * MCOR_BRICK + (r >> 2 & 3) * size, brick.z * MCOR_BRICK + (r >> 4) * size, size,
-    fix_bits);
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  keep[i] = mcor_seed_region_may_cross(&grid, &query, &tile, (real)size, iso, node_threshold);
+  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
+    cubes - 1, fix_bits);
+  states[i] = (uchar)mcor_seed_state(&grid, &query, cubes - 1, iso, node_threshold);
 }
 
 /* One work-item = one brick (of all in blocks), for the weight sum of a kernel w >= 0. Reads the
  * particles within half the support of its nodes, an eighth of all, which make up most of the sum
- * there. Writes whether they alone lift all 64 nodes to the iso value: the rest can only add. The
- * margin is above rounding. Far inside the fluid, this is all that is ever evaluated. */
+ * there. Writes that it is above the iso value if they alone lift all 64 nodes there: the rest can
+ * only add. The margin is above rounding. Far inside the fluid, this is all that is ever evaluated. */
 __kernel void mcor_seed_inside(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, __global const uchar* keep, const real iso,
-  __global uchar* inside)
+  const int blocks_y, __global const ulong* block_keys, const real iso, __global uchar* states)
+{
+  const int m = get_global_id(0);
+  if (m >= block_count * MCOR_BLOCK_BRICKS || states[m] != MCOR_EXAMINE)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+  bool inside = true;
+  for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
+  {
+    mcor_node_sums sums;
+    mcor_node_sum(&grid, brick, first, MCOR_ITEM_NODES == 64 ? ~0UL : 1UL, 0.5f, &sums);
+    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+    {
+      inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
+    }
+  }
+  states[m] = inside ? MCOR_ABOVE : MCOR_EXAMINE;
+}
+
+/* State of a neighbour of a brick; void where it has no block. */
+int mcor_seed_neighbour(MCOR_BLOCK_PARAMS, int4 brick, int d, __global const uchar* states, int* m)
+{
+  *m = mcor_find_mark(
+    MCOR_BLOCK_ARGS, brick.x + d % 3 - 1, brick.y + d / 3 % 3 - 1, brick.z + d / 9 - 1);
+  return *m < 0 ? MCOR_VOID : states[*m];
+}
+
+/* One work-item = one brick (of all in blocks). Reads the states. Writes its mark, 1 where it is to
+ * be evaluated: where it is to be examined, or its neighbour is certain to be on the other side. */
+__kernel void mcor_seed_mark(MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* marks)
 {
   const int m = get_global_id(0);
   if (m >= block_count * MCOR_BLOCK_BRICKS)
   {
     return;
   }
-  /* A region without the iso value is not examined, whatever is said of it here. */
-  inside[m] = 1;
-  if (!keep[mcor_seed_region_of(m)])
+  const int state = states[m];
+  bool mark = state == MCOR_EXAMINE;
+  if (state == MCOR_ABOVE || state == MCOR_BELOW)
   {
-    return;
+    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+    for (int d = 0; d < 27 && !mark; ++d)
+    {
+      int other;
+      mark = mcor_seed_neighbour(MCOR_BLOCK_ARGS, brick, d, states, &other) ==
+        MCOR_ABOVE + MCOR_BELOW - state;
+    }
   }
-  const mcor_grid grid = MCOR_GRID;
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
-  mcor_query query;
-  mcor_seed_box(
-    &query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK, 3, fix_bits);
-  query.radius = -0.5f;
-  mcor_node_sums sums;
-  mcor_node_sum(&grid, &query, query.low[2], ~0UL, &sums);
-  fixv lowest_is_above = sums.w[0] > iso * (real)1.0001f;
-  for (int g = 1; g < MCOR_NODE_GROUPS; ++g)
-  {
-    lowest_is_above = lowest_is_above && sums.w[g] > iso * (real)1.0001f;
-  }
-  inside[m] = MCOR_ALL(lowest_is_above) ? 1 : 0;
+  marks[m] = mark;
 }
 
-/* Whether a brick's cells have all their nodes inside: its own, and those of its upper neighbours. */
-bool mcor_seed_is_inside(MCOR_BLOCK_PARAMS, int4 brick, __global const uchar* inside)
-{
-  for (int d = 0; d < 8; ++d)
-  {
-    const int m = mcor_find_mark(
-      MCOR_BLOCK_ARGS, brick.x + (d & 1), brick.y + (d >> 1 & 1), brick.z + (d >> 2));
-    if (m < 0 || !inside[m])
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-/* One work-item = one brick (of all in blocks). Reads the particles that reach its cells. Writes its
- * mark: the boxes in which the bound admits a crossing. */
-__kernel void mcor_seed_brick(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* keep,
-  __global const uchar* inside, const real iso, __global ushort* marks)
-{
-  const int m = get_global_id(0);
-  if (m >= block_count * MCOR_BLOCK_BRICKS || !keep[mcor_seed_region_of(m)])
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  const real level = MCOR_FIELD == 0 ? (real)0 : iso;
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
-  if (MCOR_INSIDE_DECIDES && mcor_seed_is_inside(MCOR_BLOCK_ARGS, brick, inside))
-  {
-    return;
-  }
-  mcor_query query;
-  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-    MCOR_BRICK, fix_bits);
-  mcor_bound bounds[MCOR_BOX_GROUPS];
-  mcor_seed_bound_init(bounds);
-  bool above = false, under = false, below = false;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
-  {
-    const bool straddles = mcor_seed_straddles(&grid, &tile, iso, &above, &under);
-    if (tile.complete && (tile.count == 0 || (MCOR_RANGE_DECIDES && !straddles)))
-    {
-      return;
-    }
-    if (MCOR_TENSOR)
-    {
-      /* With negative lobes the bound excludes next to nothing at this size, and costs more than the
-       * nodes. */
-      marks[m] = 0xffff;
-      return;
-    }
-    if (first)
-    {
-      below = mcor_seed_middle(&grid, &query, &tile, (real)0.5 * MCOR_BRICK, iso) > level;
-    }
-    for (int i = 0; i < tile.count; ++i)
-    {
-      const int j = tile.list[i];
-      const real x = (real)(px[j] - query.low[0]) * grid.unit;
-      const real y = (real)(py[j] - query.low[1]) * grid.unit;
-      const real z = (real)(pz[j] - query.low[2]) * grid.unit;
-      const real c = mcor_seed_coefficient(&grid, j, iso);
-      const real side = (c > 0) == below ? 1 : -1;
-      for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
-      {
-        mcor_bound* b = bounds + g;
-        const realv w = mcor_seed_weight(
-          x - b->x, y - b->y, z - b->z, 1, (real)0.5, (realv)side, (realv)p_inv_h[j]);
-        b->sum += c * w;
-        b->size += fabs(c) * fabs(w);
-      }
-    }
-  }
-  uint mark = 0;
-  for (int g = 0; g < MCOR_BOX_GROUPS; ++g)
-  {
-    mark |= mcor_seed_bound_mark(bounds + g, g, below, level);
-  }
-  marks[m] = (MCOR_RANGE_DECIDES && !(above && under)) ? 0 : (ushort)mark;
-}
-
-/* One work-item = one brick slot. Reads its mark. Writes the cells to examine. */
-__kernel void mcor_seed_cells(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const ushort* marks, __global ulong* cells)
+/* One work-item = one evaluated brick. Reads its nodes' sides, and the states of bricks around it that
+ * are not evaluated. Marks those certain of another side than a valid node next to them. */
+__kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* above, __global const ulong* valid, __global const uchar* states,
+  __global uchar* marks, __global int* grown)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
   {
     return;
   }
-  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, bricks[slot].x, bricks[slot].y, bricks[slot].z);
-  ulong mask = 0;
-  for (int box = 0; box < MCOR_BOXES; ++box)
+  for (int d = 0; d < 27; ++d)
   {
-    if (marks[m] >> box & 1)
+    int m;
+    const int state = mcor_seed_neighbour(MCOR_BLOCK_ARGS, bricks[slot], d, states, &m);
+    if ((state != MCOR_ABOVE && state != MCOR_BELOW) || marks[m])
     {
-      mask |= 0x33UL << (2 * (box & 1) + 4 * (box & 2) + 16 * (box >> 2));
+      continue;
+    }
+    const int x = d % 3, y = d / 3 % 3, z = d / 9;
+    const ulong beside = (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
+      (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
+      (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
+    if (beside & valid[slot] & (state == MCOR_ABOVE ? ~above[slot] : above[slot]))
+    {
+      marks[m] = 1;
+      *grown = 1;
     }
   }
-  cells[slot] = mask;
 }

@@ -18,7 +18,7 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
   return mcor_reserve(context, &data->weight, values);
 }
 
-/* Makes all marked bricks (with paired seeds, their upper neighbours too) exist, besides those that do already, and keeps
+/* Makes all marked bricks exist, besides those that do already, and keeps
  * what is known of the latter. */
 mcor_status mcor_place_bricks(mcor_context* context)
 {
@@ -28,9 +28,8 @@ mcor_status mcor_place_bricks(mcor_context* context)
   int count;
   MCOR_TRY(mcor_reserve(context, bits, (size_t)words * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &bricks->base, ((size_t)words + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_bits", MCOR_LIGHT, words, MCOR_BLOCK_ARGS(context),
-    MCOR_BUFFER(&bricks->marks), MCOR_INT(mcor_uses_pairs(context)), MCOR_BUFFER(&bricks->bits),
-    MCOR_BUFFER(bits),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_bits", MCOR_LIGHT, words, MCOR_INT(words),
+    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(bits),
     MCOR_BUFFER(&bricks->base)));
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
   const mcor_buffer old_bits = bricks->bits;

@@ -57,7 +57,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_bricks* b = &context->bricks;
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
-    &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &b->block_keys,
+    &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides, &b->block_keys,
     &b->block_buckets, &b->states, &b->marks, &b->bits, &b->base, &b->now.bricks, &b->now.known,
     &b->now.cells, &b->now.value, &b->now.weight, &b->last.bricks, &b->last.known, &b->last.cells,
     &b->last.value, &b->last.weight, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,

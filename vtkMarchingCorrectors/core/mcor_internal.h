@@ -76,6 +76,7 @@ typedef struct mcor_grid
   mcor_buffer level_buffer, buckets, cell_keys, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
   mcor_buffer value;
+  mcor_buffer sides; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
   bool has_solids;
 } mcor_grid;
 

@@ -9,6 +9,8 @@
  * their blocks, which costs nothing for empty space but repeats blocks under coarse particles. */
 #define MCOR_BLOCKS_ASKED (1 << 22)
 
+#define MCOR_CHUNK_PARTICLES 16 /* MCOR_CHUNK of mcor_seed.cl */
+
 static mcor_status mcor_ask_blocks(mcor_context* context, int lattice_blocks)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -68,10 +70,11 @@ static mcor_status mcor_find_states(mcor_context* context, double iso, int per_b
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count * per_block;
   MCOR_TRY(mcor_reserve(context, states, (size_t)count));
-  return MCOR_LAUNCH(context, "mcor_seed_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+  return MCOR_LAUNCH(context, "mcor_seed_states", per_block == 1 ? MCOR_HEAVY : MCOR_LIGHT, count,
+    MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(per_block),
-    MCOR_BUFFER(before), MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold),
+    MCOR_BUFFER(before), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold),
     MCOR_BUFFER(states));
 }
 
@@ -79,22 +82,18 @@ static mcor_status mcor_find_states(mcor_context* context, double iso, int per_b
 static mcor_status mcor_mark_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int* blocks = context->lattice.blocks;
-  mcor_buffer *of_blocks = &context->scratch[0], *of_regions = &context->scratch[1];
+  mcor_buffer *of_blocks = &context->scratch[0], *of_regions = &context->scratch[1],
+              *quiet = &context->scratch[2];
   MCOR_TRY(mcor_reserve(context, of_blocks, 1));
   MCOR_TRY(mcor_find_states(context, iso, 1, of_blocks, of_blocks));
   MCOR_TRY(mcor_find_states(context, iso, 64, of_blocks, of_regions));
   MCOR_TRY(
     mcor_find_states(context, iso, MCOR_BLOCK_BRICKS, of_regions, &bricks->states));
-  const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
-  if (context->options->field == MCOR_WEIGHT_SUM &&
-    context->options->sph_kernel != MCOR_M_PRIME_4)
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_inside", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(bricks->block_count), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-      MCOR_BUFFER(&bricks->block_keys), MCOR_REAL(iso), MCOR_BUFFER(&bricks->states)));
-  }
-  return MCOR_LAUNCH(context, "mcor_seed_mark", MCOR_LIGHT, count, MCOR_BLOCK_ARGS(context),
+  MCOR_TRY(mcor_reserve(context, quiet, (size_t)bricks->block_count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_quiet", MCOR_LIGHT, bricks->block_count,
+    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(of_blocks), MCOR_BUFFER(quiet)));
+  return MCOR_LAUNCH(context, "mcor_seed_mark", MCOR_LIGHT,
+    bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_BLOCK_ARGS(context), MCOR_BUFFER(quiet),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->marks));
 }
 
@@ -115,6 +114,19 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
+/* The sides of the iso value on which particles are, where the field has values at particles. */
+static mcor_status mcor_find_sides(mcor_context* context, double iso)
+{
+  mcor_grid* grid = &context->grid;
+  const int chunks = grid->count / MCOR_CHUNK_PARTICLES + 1;
+  MCOR_TRY(mcor_reserve(context, &grid->sides, (size_t)chunks));
+  return context->options->field == MCOR_WEIGHT_SUM
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_seed_sides", MCOR_LIGHT, chunks, MCOR_INT(grid->count),
+        MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+        MCOR_BUFFER(&grid->value), MCOR_REAL(iso), MCOR_BUFFER(&grid->sides));
+}
+
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */
 mcor_status mcor_select_seeds(mcor_context* context, double iso)
 {
@@ -124,6 +136,7 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
     "The virtual grid is too large: %d blocks of 32^3 cells hold particles. Use a larger cube size.",
     bricks->block_count);
   MCOR_TRY(mcor_fill(context, &bricks->marks, 0, marks));
+  MCOR_TRY(mcor_find_sides(context, iso));
   const bool pairs = mcor_uses_pairs(context);
   MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_mark_complete(context, iso));
   MCOR_TRY(mcor_place_bricks(context));

@@ -153,33 +153,19 @@ __kernel void mcor_block_fill(MCOR_GRID_PARAMS, const int blocks_x, const int bl
 }
 
 /* One work-item = one word of 32 bricks. Reads the marks and the bricks that exist already. Writes
- * which bricks are to exist: those, and with_upper the upper neighbours of marked ones, which own some
- * nodes of their cells. */
-__kernel void mcor_brick_bits(MCOR_BLOCK_PARAMS, __global const uchar* marks, const int with_upper,
+ * which bricks are to exist. */
+__kernel void mcor_brick_bits(const int word_count, __global const uchar* marks,
   __global const uint* old_bits, __global uint* bits, __global int* counts)
 {
   const int word = get_global_id(0);
-  if (word >= block_count * MCOR_BLOCK_WORDS)
+  if (word >= word_count)
   {
     return;
   }
-  const int4 first = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, word * 32);
   uint result = old_bits[word];
   for (int b = 0; b < 32; ++b)
   {
-    const int m = word * 32 + b;
-    const int4 brick = first + (int4)(b & 7, b >> 3, 0, 0);
-    bool needed = marks[m] != 0 || (result >> b & 1);
-    for (int d = 1; d < 8 && with_upper && !needed; ++d)
-    {
-      const bool inside = ((d & 1) == 0 || (m & 7)) && ((d & 2) == 0 || (m >> 3 & 7)) &&
-        ((d & 4) == 0 || (m >> 6 & 7));
-      const int other = inside ? m - (d & 1) - (d >> 1 & 1) * 8 - (d >> 2) * 64
-                               : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x - (d & 1),
-                                   brick.y - (d >> 1 & 1), brick.z - (d >> 2));
-      needed = other >= 0 && marks[other] != 0;
-    }
-    result |= (uint)needed << b;
+    result |= (uint)(marks[word * 32 + b] != 0) << b;
   }
   bits[word] = result;
   counts[word] = (int)popcount(result);

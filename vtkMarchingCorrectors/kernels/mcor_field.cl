@@ -465,7 +465,8 @@ realv mcor_sqrt(realv x)
 }
 #endif
 
-/* W / norm * h^3 at offset (dx, dy, dz), in two steps: what (dx, dy) give serves a whole column. */
+/* W / norm * h^3 at offset (dx, dy, dz), from what (dx, dy) give, which serves a column of points,
+ * and what dz gives, which serves a plane. */
 realv mcor_planar(realv dx, realv dy, real inv_h)
 {
 #if MCOR_TENSOR
@@ -475,12 +476,21 @@ realv mcor_planar(realv dx, realv dy, real inv_h)
 #endif
 }
 
-realv mcor_weight(realv planar, realv dz, real inv_h)
+realv mcor_height(realv dz, realv inv_h)
 {
 #if MCOR_TENSOR
-  return planar * MCOR_W(fabs(dz) * inv_h);
+  return MCOR_W(fabs(dz) * inv_h);
 #else
-  return MCOR_W(mcor_sqrt(planar + dz * dz) * inv_h);
+  return dz * dz;
+#endif
+}
+
+realv mcor_weight(realv planar, realv height, real inv_h)
+{
+#if MCOR_TENSOR
+  return planar * height;
+#else
+  return MCOR_W(mcor_sqrt(planar + height) * inv_h);
 #endif
 }
 

@@ -25,8 +25,9 @@ typedef struct
 #endif
 } mcor_node_sums;
 
-/* Places in the tile of the particles that reach a group; (x, y, z) is its first node. */
-int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list)
+/* Places in the tile of the particles that reach a group, and what their distance in z gives;
+ * (x, y, z) is the group's first node. */
+int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list, real* height)
 {
   const real ex = (real)0.5 * (MCOR_GROUP_X - 1), ey = (real)0.5 * (MCOR_GROUP_Y - 1);
   int count = 0;
@@ -44,6 +45,7 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list)
 #endif
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
+    MCOR_PACK_REAL(mask, mcor_height(dz, inv_h), height + count);
     count += MCOR_MASK_COUNT(mask);
   }
   return count;
@@ -60,7 +62,8 @@ void mcor_node_add(
     MCOR_SET(node_y, lane) = y + (lane >> 2);
   }
   int list[MCOR_TILE + 16];
-  const int count = mcor_node_list(tile, x, y, z, list);
+  real height[MCOR_TILE + 16];
+  const int count = mcor_node_list(tile, x, y, z, list, height);
   realv s = sums->s[g], w = sums->w[g];
 #if MCOR_SOLIDS
   realv t = sums->t[g];
@@ -70,7 +73,7 @@ void mcor_node_add(
     const int i = list[k];
     const real inv_h = tile->inv_h[i], weight = tile->weight[i];
     const realv planar = mcor_planar(tile->x[i] - node_x, tile->y[i] - node_y, inv_h);
-    const realv v = mcor_weight(planar, tile->z[i] - z, inv_h);
+    const realv v = mcor_weight(planar, height[k], inv_h);
 #if MCOR_FIELD != 2
     s += weight * tile->value[i] * v;
 #endif

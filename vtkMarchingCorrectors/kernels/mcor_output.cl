@@ -95,14 +95,16 @@ __kernel void mcor_output_attributes(MCOR_GRID_PARAMS, const int group_count,
     for (int i = 0; i < tile.count; ++i)
     {
       const int j = tile.list[i];
-      if (MCOR_SOLIDS && p_weight[j] == 0)
+      if (MCOR_SOLIDS && tile.weight[i] == 0)
       {
         continue;
       }
       const realv dx = MCOR_CONVERT_REALV(px[j] - points.x) * grid.unit - points.ox;
       const realv dy = MCOR_CONVERT_REALV(py[j] - points.y) * grid.unit - points.oy;
       const realv dz = MCOR_CONVERT_REALV(pz[j] - points.z) * grid.unit - points.oz;
-      const realv k = p_weight[j] * mcor_weight(mcor_planar(dx, dy, p_inv_h[j]), dz, p_inv_h[j]);
+      const real inv_h = tile.inv_h[i];
+      const realv k = tile.weight[i] *
+        mcor_weight(mcor_planar(dx, dy, inv_h), mcor_height(dz, (realv)inv_h), inv_h);
       w += k;
       for (int c = 0; c < attribute_count; ++c)
       {

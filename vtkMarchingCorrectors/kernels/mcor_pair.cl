@@ -5,14 +5,15 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
-/* Marks the bricks that the segment's bounding box touches. */
-void mcor_pair_mark_bricks(MCOR_BLOCK_PARAMS, const int* a, const int* b, __global uchar* marks)
+/* Marks the bricks that have nodes of the cells in a box. */
+void mcor_pair_mark_bricks(
+  MCOR_BLOCK_PARAMS, const int* low, const int* high, __global uchar* marks)
 {
-  for (int z = min(a[2], b[2]) >> 2; z <= max(a[2], b[2]) >> 2; ++z)
+  for (int z = low[2] >> 2; z <= (high[2] + 1) >> 2; ++z)
   {
-    for (int y = min(a[1], b[1]) >> 2; y <= max(a[1], b[1]) >> 2; ++y)
+    for (int y = low[1] >> 2; y <= (high[1] + 1) >> 2; ++y)
     {
-      for (int x = min(a[0], b[0]) >> 2; x <= max(a[0], b[0]) >> 2; ++x)
+      for (int x = low[0] >> 2; x <= (high[0] + 1) >> 2; ++x)
       {
         const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z);
         if (m >= 0)
@@ -68,10 +69,77 @@ void mcor_pair_mark_line(
   }
 }
 
+/* Places in the tile of particles on the other side of the iso value and closer to particle j than its
+ * smoothing length. A pair in which each is closer than the other's is left to the particle above. */
+int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int j,
+  real iso, int* list)
+{
+  const real x = (real)(grid->px[j] - query->low[0]) * grid->unit;
+  const real y = (real)(grid->py[j] - query->low[1]) * grid->unit;
+  const real z = (real)(grid->pz[j] - query->low[2]) * grid->unit;
+  const real inv_h = grid->inv_h[j];
+  const bool is_above = grid->value[j] >= iso;
+  const fixv above = is_above ? (fixv)MCOR_TRUE : (fixv)0;
+  int count = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const realv dx = MCOR_LOAD(i, tile->x) - x, dy = MCOR_LOAD(i, tile->y) - y,
+                dz = MCOR_LOAD(i, tile->z) - z, other = MCOR_LOAD(i, tile->inv_h);
+    const realv r2 = dx * dx + dy * dy + dz * dz;
+    const fixv chosen = r2 * inv_h * inv_h < (real)1 &&
+      (MCOR_LOAD(i, tile->value) >= iso) != above && MCOR_LOAD(i, tile->weight) != 0 &&
+      (above || r2 * other * other >= (real)1);
+    const mcor_mask mask = MCOR_MASK(chosen, min(MCOR_LANES, tile->count - i));
+    MCOR_PACK_INDEX(mask, i, list + count);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  return count;
+}
+
+/* Marks for particle j and the particles of the tile that pair with it: the cells on the lines, or the
+ * bricks of the box around these. */
+void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
+  const mcor_tile* tile, int j, real iso, int mark_cells, __global uchar* marks, __global uint* cells)
+{
+  int list[MCOR_TILE + 16];
+  const int count = mcor_pair_list(grid, query, tile, j, iso, list);
+  const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
+  int a[3], low[3], high[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    a[c] = low[c] = high[c] = (int)(own[c] >> grid->fix_bits);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const int k = tile->list[list[i]];
+    const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
+    real p[3], q[3];
+    int b[3], cell[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      /* Relative to cell a, so that single precision suffices. */
+      p[c] = (real)(own[c] - ((fix)a[c] << grid->fix_bits)) * grid->unit;
+      q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
+      b[c] = (int)(other[c] >> grid->fix_bits);
+      cell[c] = a[c];
+      low[c] = min(low[c], b[c]);
+      high[c] = max(high[c], b[c]);
+    }
+    if (mark_cells)
+    {
+      mcor_pair_mark_line(MCOR_BRICK_ARGS, p, q, cell, b, cells);
+    }
+  }
+  if (count > 0 && !mark_cells)
+  {
+    mcor_pair_mark_bricks(MCOR_BLOCK_ARGS, low, high, marks);
+  }
+}
+
 /* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
  * each. mark_cells 0: marks bricks for pairs that straddle the iso value; 1: marks cells. */
-__kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const real iso,
-  const int mark_cells, __global uchar* marks, __global uint* cells)
+__kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
+  const real iso, const int mark_cells, __global uchar* marks, __global uint* cells)
 {
   const int begin = get_global_id(0) * MCOR_LANES;
   if (begin >= particle_count)
@@ -79,51 +147,24 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const real iso
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int count = min(MCOR_LANES, particle_count - begin);
+  const int end = min(begin + MCOR_LANES, particle_count);
   mcor_query query;
-  const real coarsest = mcor_query_particles(&grid, &query, begin, count);
+  const real coarsest = mcor_query_particles(&grid, &query, begin, end - begin);
   query.radius = (float)(1 / coarsest);
-  int sides = 0;
+  if (mcor_query_sides(&grid, &query, sides) != 3)
+  {
+    return;
+  }
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
   {
-    sides |= mcor_seed_sides(&tile, iso);
-    if (sides != 3 && tile.complete)
+    const int seen = mcor_tile_sides(&tile, iso);
+    for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
-      return;
-    }
-    for (int lane = 0; lane < count; ++lane)
-    {
-      const int j = begin + lane;
-      for (int i = 0; i < tile.count; ++i)
+      if (!MCOR_SOLIDS || p_weight[j] != 0)
       {
-        const int k = tile.list[i];
-        const real x = (real)(px[k] - px[j]), y = (real)(py[k] - py[j]), z = (real)(pz[k] - pz[j]);
-        const real scale = grid.unit * p_inv_h[j];
-        if ((p_value[j] >= iso) == (p_value[k] >= iso) ||
-          (x * x + y * y + z * z) * scale * scale >= 1 ||
-          (MCOR_SOLIDS && (p_weight[j] == 0 || p_weight[k] == 0)))
-        {
-          continue;
-        }
-        int a[3] = { (int)(px[j] >> fix_bits), (int)(py[j] >> fix_bits), (int)(pz[j] >> fix_bits) };
-        const int b[3] = { (int)(px[k] >> fix_bits), (int)(py[k] >> fix_bits),
-          (int)(pz[k] >> fix_bits) };
-        if (mark_cells)
-        {
-          /* Relative to cell a, so that single precision suffices. */
-          const fix ax = (fix)a[0] << fix_bits, ay = (fix)a[1] << fix_bits,
-                    az = (fix)a[2] << fix_bits;
-          const real p[3] = { (real)(px[j] - ax) * grid.unit, (real)(py[j] - ay) * grid.unit,
-            (real)(pz[j] - az) * grid.unit };
-          const real q[3] = { p[0] + x * grid.unit, p[1] + y * grid.unit, p[2] + z * grid.unit };
-          mcor_pair_mark_line(MCOR_BRICK_ARGS, p, q, a, b, cells);
-        }
-        else
-        {
-          mcor_pair_mark_bricks(MCOR_BLOCK_ARGS, a, b, marks);
-        }
+        mcor_pair_mark_particle(&grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, mark_cells, marks, cells);
       }
     }
   }
@@ -148,7 +189,8 @@ ulong mcor_pair_faces(const ulong* m, int first, int axis)
     : (some[0] | mcor_from_next_z(some[0], some[1])) & ~(all[0] & mcor_from_next_z(all[0], all[1]));
 }
 
-/* Hands cells to a neighbour brick. flags: 1 a cell is new, 2 a brick must be placed. */
+/* Hands cells to a brick. flags: 1 a cell is new, 2 a brick must be placed. Where no particle reaches
+ * there is no brick, and no node is valid. */
 void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uchar* marks,
   __global uint* cells, __global int* flags)
 {
@@ -156,24 +198,30 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   {
     return;
   }
-  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-  if (m < 0)
-  {
-    return; /* beyond the reach of all particles: no node there is valid */
-  }
-  if (marks[m] == 0)
-  {
-    marks[m] = 1;
-    atomic_or(flags, 2);
-  }
   if (slot >= 0)
   {
     const uint low = (uint)pushed, high = (uint)(pushed >> 32);
     const uint new_low = low & ~atomic_or(cells + 2 * slot, low);
     const uint new_high = high & ~atomic_or(cells + 2 * slot + 1, high);
-    if (new_low | new_high)
+    pushed = new_low | (ulong)new_high << 32;
+    if (pushed == 0)
     {
-      atomic_or(flags, 1);
+      return;
+    }
+    atomic_or(flags, 1);
+  }
+  for (int d = 0; d < 8; ++d)
+  {
+    /* Upper neighbours have nodes of the cells on the side towards them. */
+    const ulong beside = (d & 1 ? MCOR_LOW_X << 3 : ~0UL) & (d & 2 ? MCOR_LOW_Y << 12 : ~0UL) &
+      (d & 4 ? MCOR_LOW_Z << 48 : ~0UL);
+    const int m = pushed & beside ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
+                                      brick.y + (d >> 1 & 1), brick.z + (d >> 2))
+                                  : -1;
+    if (m >= 0 && marks[m] == 0)
+    {
+      marks[m] = 1;
+      atomic_or(flags, 2);
     }
   }
 }

@@ -56,6 +56,43 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv i
  * and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
 
+/* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Kept for every
+ * MCOR_CHUNK successive sorted particles, so that most queries need not look at particles. */
+#define MCOR_CHUNK 16
+
+/* One work-item = one chunk. Writes its fluid particles' sides. */
+__kernel void mcor_seed_sides(const int particle_count, __global const real* weight,
+  __global const real* value, const real iso, __global uchar* sides)
+{
+  const int begin = get_global_id(0) * MCOR_CHUNK;
+  if (begin >= particle_count)
+  {
+    return;
+  }
+  int seen = 0;
+  for (int j = begin; j < min(begin + MCOR_CHUNK, particle_count); ++j)
+  {
+    seen |= (MCOR_SOLIDS && weight[j] == 0) ? 0 : value[j] >= iso ? 1 : 2;
+  }
+  sides[get_global_id(0)] = (uchar)seen;
+}
+
+/* Sides of all particles that may reach a query's box, and maybe some more. */
+int mcor_query_sides(const mcor_grid* grid, mcor_query* query, __global const uchar* sides)
+{
+  int seen = 0;
+  mcor_query_begin(grid, query);
+  while (seen != 3 && (query->begin < query->end || mcor_query_next_row(grid, query)))
+  {
+    for (int c = query->begin / MCOR_CHUNK; c <= (query->end - 1) / MCOR_CHUNK && seen != 3; ++c)
+    {
+      seen |= sides[c];
+    }
+    query->begin = query->end;
+  }
+  return seen;
+}
+
 void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bits)
 {
   query->radius = -1;
@@ -146,8 +183,8 @@ real mcor_seed_middle(const mcor_query* query, const mcor_tile* tile, real iso)
     ((real)0.6383 * MCOR_NORM * MCOR_SUPPORT * MCOR_SUPPORT * MCOR_SUPPORT);
 }
 
-/* Whether the tile's particles have values above (bit 0) and below (bit 1) the iso value. */
-int mcor_seed_sides(const mcor_tile* tile, real iso)
+/* Sides of the tile's particles. */
+int mcor_tile_sides(const mcor_tile* tile, real iso)
 {
   fixv above = 0, below = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
@@ -202,23 +239,36 @@ int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, re
   return !certain ? MCOR_EXAMINE : from_below ? MCOR_ABOVE : MCOR_BELOW;
 }
 
-/* State of a cube of nodes, `size` cubes from the first to the last. */
-int mcor_seed_state(const mcor_grid* grid, mcor_query* query, int size, real iso,
-  real node_threshold)
+/* State of a cube of nodes, the query's box; a coarse one may miss that a part is void. */
+int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
+  __global const uchar* sides, real iso, real node_threshold)
 {
+  const int of_sides[3] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW };
+  if (MCOR_RANGE_DECIDES && coarse)
+  {
+    const int seen = mcor_query_sides(grid, query, sides);
+    if (seen != 3)
+    {
+      return of_sides[seen];
+    }
+  }
   const int empty = MCOR_FIELD != 2 && node_threshold > 0 ? MCOR_VOID
     : (MCOR_FIELD == 0)                                   ? MCOR_VOID
     : iso <= 0                                            ? MCOR_ABOVE
                                                           : MCOR_BELOW;
   mcor_bound bound = { 0, 0, 0 };
   bool from_below = false, some = false;
-  int sides = 0;
+  int seen = 0;
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
   {
     some = some || tile.count > 0;
-    sides |= mcor_seed_sides(&tile, iso);
+    seen |= mcor_tile_sides(&tile, iso);
+    if (tile.complete && MCOR_RANGE_DECIDES && seen != 3)
+    {
+      break;
+    }
     if (first)
     {
       from_below = mcor_seed_middle(query, &tile, iso) > (MCOR_FIELD == 0 ? (real)0 : iso);
@@ -229,9 +279,9 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, int size, real iso
   {
     return empty;
   }
-  if (MCOR_RANGE_DECIDES && sides != 3)
+  if (MCOR_RANGE_DECIDES && seen != 3)
   {
-    return sides == 1 ? MCOR_ABOVE : sides == 2 ? MCOR_BELOW : MCOR_VOID;
+    return of_sides[seen];
   }
   return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
 }
@@ -263,11 +313,30 @@ int4 mcor_seed_cube(__global const ulong* block_keys, const int blocks_x, const 
     (int4)(r & 3, r >> 2 & 3, r >> 4, 0) * (*cubes / MCOR_BRICK);
 }
 
+/* Whether the particles within half their support of a brick's nodes, an eighth of all, which make up
+ * most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0 the rest
+ * can only add. The margin is above rounding. Far inside the fluid, no more is ever evaluated. */
+bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, real iso)
+{
+  bool inside = true;
+  for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
+  {
+    mcor_node_sums sums;
+    mcor_node_sum(grid, brick, first, MCOR_ITEM_NODES == 64 ? ~0UL : 1UL, 0.5f, &sums);
+    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+    {
+      inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
+    }
+  }
+  return inside;
+}
+
 /* One work-item = one cube of nodes: a block (per_block 1), or one of its 64 regions or 512 bricks.
  * Reads the particles that reach it, and the states of the level before. Writes its state. */
 __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, const int per_block,
-  __global const uchar* before, const real iso, const real node_threshold, __global uchar* states)
+  __global const uchar* before, __global const uchar* sides, const real iso,
+  const real node_threshold, __global uchar* states)
 {
   const int i = get_global_id(0);
   if (i >= block_count * per_block)
@@ -283,53 +352,58 @@ __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const in
   const mcor_grid grid = MCOR_GRID;
   int cubes;
   const int4 brick = mcor_seed_cube(block_keys, blocks_x, blocks_y, per_block, i, &cubes);
+  if (MCOR_FIELD == 2 && !MCOR_TENSOR && per_block == MCOR_BLOCK_BRICKS &&
+    mcor_seed_is_inside(&grid, brick, iso))
+  {
+    states[i] = MCOR_ABOVE;
+    return;
+  }
   mcor_query query;
   mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
     cubes - 1, fix_bits);
-  states[i] = (uchar)mcor_seed_state(&grid, &query, cubes - 1, iso, node_threshold);
+  states[i] = (uchar)mcor_seed_state(
+    &grid, &query, per_block == 1, sides, iso, node_threshold);
 }
 
-/* One work-item = one brick (of all in blocks), for the weight sum of a kernel w >= 0. Reads the
- * particles within half the support of its nodes, an eighth of all, which make up most of the sum
- * there. Writes that it is above the iso value if they alone lift all 64 nodes there: the rest can
- * only add. The margin is above rounding. Far inside the fluid, this is all that is ever evaluated. */
-__kernel void mcor_seed_inside(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, const real iso, __global uchar* states)
+/* One work-item = one block. Reads the states of blocks. Writes whether no brick in it can have a
+ * neighbour on another side: all blocks around it are certain of its own side, or void. */
+__kernel void mcor_seed_quiet(MCOR_BLOCK_PARAMS, __global const uchar* block_states, __global uchar* quiet)
 {
-  const int m = get_global_id(0);
-  if (m >= block_count * MCOR_BLOCK_BRICKS || states[m] != MCOR_EXAMINE)
+  const int block = get_global_id(0);
+  if (block >= block_count)
   {
     return;
   }
-  const mcor_grid grid = MCOR_GRID;
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
-  bool inside = true;
-  for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, block * MCOR_BLOCK_BRICKS);
+  int seen = 1 << block_states[block];
+  for (int d = 0; d < 27; ++d)
   {
-    mcor_node_sums sums;
-    mcor_node_sum(&grid, brick, first, MCOR_ITEM_NODES == 64 ? ~0UL : 1UL, 0.5f, &sums);
-    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
-    {
-      inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
-    }
+    const int other = mcor_find_block(MCOR_BLOCK_ARGS, brick.x / 8 + d % 3 - 1,
+      brick.y / 8 + d / 3 % 3 - 1, brick.z / 8 + d / 9 - 1);
+    seen |= other < 0 ? 0 : 1 << block_states[other];
   }
-  states[m] = inside ? MCOR_ABOVE : MCOR_EXAMINE;
+  const int both = 1 << MCOR_ABOVE | 1 << MCOR_BELOW;
+  quiet[block] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
 }
 
-/* State of a neighbour of a brick; void where it has no block. */
-int mcor_seed_neighbour(MCOR_BLOCK_PARAMS, int4 brick, int d, __global const uchar* states, int* m)
+/* State of neighbour d (0..26) of the brick with mark m; void where it has no block. */
+int mcor_seed_neighbour(MCOR_BLOCK_PARAMS, int m, int4 brick, int d, __global const uchar* states, int* other)
 {
-  *m = mcor_find_mark(
-    MCOR_BLOCK_ARGS, brick.x + d % 3 - 1, brick.y + d / 3 % 3 - 1, brick.z + d / 9 - 1);
-  return *m < 0 ? MCOR_VOID : states[*m];
+  const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
+  const bool same_block = (uint)((brick.x & 7) + x) < 8 && (uint)((brick.y & 7) + y) < 8 &&
+    (uint)((brick.z & 7) + z) < 8;
+  *other = same_block ? m + x + 8 * y + 64 * z
+                      : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + x, brick.y + y, brick.z + z);
+  return *other < 0 ? MCOR_VOID : states[*other];
 }
 
 /* One work-item = one brick (of all in blocks). Reads the states. Writes its mark, 1 where it is to
  * be evaluated: where it is to be examined, or its neighbour is certain to be on the other side. */
-__kernel void mcor_seed_mark(MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* marks)
+__kernel void mcor_seed_mark(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
+  __global const uchar* states, __global uchar* marks)
 {
   const int m = get_global_id(0);
-  if (m >= block_count * MCOR_BLOCK_BRICKS)
+  if (m >= block_count * MCOR_BLOCK_BRICKS || quiet[m / MCOR_BLOCK_BRICKS])
   {
     return;
   }
@@ -341,7 +415,7 @@ __kernel void mcor_seed_mark(MCOR_BLOCK_PARAMS, __global const uchar* states, __
     for (int d = 0; d < 27 && !mark; ++d)
     {
       int other;
-      mark = mcor_seed_neighbour(MCOR_BLOCK_ARGS, brick, d, states, &other) ==
+      mark = mcor_seed_neighbour(MCOR_BLOCK_ARGS, m, brick, d, states, &other) ==
         MCOR_ABOVE + MCOR_BELOW - state;
     }
   }
@@ -359,10 +433,12 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   {
     return;
   }
+  const int4 brick = bricks[slot];
+  const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 0; d < 27; ++d)
   {
     int m;
-    const int state = mcor_seed_neighbour(MCOR_BLOCK_ARGS, bricks[slot], d, states, &m);
+    const int state = mcor_seed_neighbour(MCOR_BLOCK_ARGS, own, brick, d, states, &m);
     if ((state != MCOR_ABOVE && state != MCOR_BELOW) || marks[m])
     {
       continue;

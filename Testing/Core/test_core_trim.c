@@ -46,7 +46,7 @@ static void trim(mcor_context* context, flat_mesh* m)
   CORE_OK(context, mcor_write(context, &mesh->vertex_weight, m->weight, n * sizeof(float)));
   CORE_OK(context, mcor_write(context, &mesh->field_value, zeros, n * sizeof(float)));
   CORE_OK(context, mcor_write(context, &mesh->gradient, zeros, n * 4 * sizeof(float)));
-  CORE_OK(context, mcor_zero(context, &mesh->flag, n));
+  CORE_OK(context, mcor_fill(context, &mesh->flag, 0, n));
   CORE_OK(context,
     mcor_write(context, &mesh->triangles, m->triangle, (size_t)m->triangles * 3 * sizeof(int)));
   mesh->march_count = mesh->vertex_count = m->vertices;

@@ -214,6 +214,7 @@ extern const char mcor_source_mcor_pair_cl[];
 extern const char mcor_source_mcor_correct_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_output_cl[];
+extern const char mcor_source_mcor_attribute_cl[];
 
 /* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
 #define MCOR_GRID_ARGS(c)                                                                          \

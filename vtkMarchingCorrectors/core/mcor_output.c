@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_output.cl */
+#define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_attribute.cl */
 
 /* What the device hands over for the vertices of one iso value. */
 typedef struct mcor_download
@@ -199,50 +199,66 @@ typedef struct mcor_component
   int attribute, component;
 } mcor_component;
 
+/* Memory for what was evaluated at the points just put out, read from a device buffer. */
+static mcor_status mcor_read_points(
+  mcor_context* context, const mcor_buffer* buffer, size_t bytes, void** host)
+{
+  *host = malloc(bytes + 1);
+  MCOR_RETURN_IF(!*host, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory of %zu bytes for arrays of the surface could not be allocated.", bytes);
+  return mcor_read(context, buffer, 0, *host, bytes);
+}
+
+static mcor_status mcor_add_nearest(mcor_context* context, int points, mcor_surface* surface)
+{
+  mcor_buffer* indices = &context->out[6];
+  const size_t bytes = (size_t)points * sizeof(cl_int);
+  MCOR_TRY(mcor_reserve(context, indices, bytes));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, context->group_count,
+    MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
+    MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]),
+    MCOR_INT(context->measure.support_min == context->measure.support_max),
+    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
+  cl_int* host;
+  const mcor_status status = mcor_read_points(context, indices, bytes, (void**)&host);
+  int64_t* to = surface->nearest_particle + surface->point_count;
+  for (int i = 0; i < points && status == MCOR_OK; ++i)
+  {
+    to[i] = host[i] < 0 ? -1 : context->source[host[i]];
+  }
+  free(host);
+  return status;
+}
+
 /* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
 static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_input* input,
   const mcor_component* components, int count, int points, mcor_surface* surface)
 {
-  const size_t real = context->cl.real_size;
+  const size_t real = context->cl.real_size, bytes = (size_t)points * (size_t)count * real;
   const int stride = context->grid.count;
-  const bool nearest = context->options->nearest_particle && components == NULL;
-  const size_t n = (size_t)points;
-  mcor_buffer *values = &context->out[5], *indices = &context->out[6];
+  mcor_buffer* values = &context->out[5];
   MCOR_TRY(mcor_reserve(context, &context->attributes, (size_t)count * (size_t)stride * real));
-  MCOR_TRY(mcor_reserve(context, values, n * (size_t)count * real));
-  MCOR_TRY(mcor_reserve(context, indices, nearest ? n * sizeof(cl_int) : 1));
+  MCOR_TRY(mcor_reserve(context, values, bytes));
   for (int c = 0; c < count; ++c)
   {
     MCOR_TRY(mcor_sort_values(context, input, &input->attributes[components[c].attribute],
       components[c].component, 0, &context->attributes, c * stride));
   }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_output_attributes", MCOR_HEAVY, context->group_count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, context->group_count,
     MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
-    MCOR_BUFFER(&context->out[0]),
-    MCOR_BUFFER(&context->out[1]), MCOR_INT(count), MCOR_INT(stride),
-    MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values), MCOR_INT(nearest),
-    MCOR_INT(context->measure.support_min == context->measure.support_max),
-    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
-  void* host = malloc(n * ((size_t)count * real + sizeof(cl_int)) + 1);
-  MCOR_RETURN_IF(!host, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for the attributes of %d points could not be allocated.", points);
-  mcor_status status = nearest ? mcor_read(context, indices, 0, host, n * sizeof(cl_int))
-                               : mcor_read(context, values, 0, host, n * (size_t)count * real);
-  const int64_t base = surface->point_count;
-  for (int64_t i = 0; i < points && status == MCOR_OK; ++i)
+    MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]), MCOR_INT(count),
+    MCOR_INT(stride), MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values)));
+  void* host;
+  const mcor_status status = mcor_read_points(context, values, bytes, &host);
+  for (int c = 0; c < count && status == MCOR_OK; ++c)
   {
-    if (nearest)
+    const int a = components[c].attribute;
+    const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
+    double* to =
+      surface->attributes[a] + surface->point_count * width + components[c].component;
+    for (int64_t i = 0; i < points; ++i)
     {
-      const cl_int at = ((const cl_int*)host)[i];
-      surface->nearest_particle[base + i] = at < 0 ? -1 : context->source[at];
-      continue;
-    }
-    for (int c = 0; c < count; ++c)
-    {
-      const int a = components[c].attribute;
-      const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
-      surface->attributes[a][(base + i) * width + components[c].component] =
-        mcor_get_real(context, host, i * count + c);
+      to[i * width] = mcor_get_real(context, host, i * count + c);
     }
   }
   free(host);
@@ -261,7 +277,7 @@ static mcor_status mcor_add_attributes(
   MCOR_TRY(mcor_make_groups(context, &context->out[0], 0, points, &context->group_count));
   if (context->options->nearest_particle)
   {
-    MCOR_TRY(mcor_evaluate_attributes(context, input, NULL, 0, points, surface));
+    MCOR_TRY(mcor_add_nearest(context, points, surface));
   }
   for (int a = 0; a < input->attribute_count; ++a)
   {

@@ -1,0 +1,136 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Other particle arrays at the surface's points [III-D.4]. */
+
+#define MCOR_ATTRIBUTE_LIMIT 8
+
+/* Points relative to a query's box. */
+void mcor_attribute_points(const mcor_grid* grid, const mcor_query* query, const mcor_points* points,
+  realv* x, realv* y, realv* z)
+{
+  *x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
+  *y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
+  *z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
+}
+
+/* One work-item = one group of points. Reads `attribute_count` (at most MCOR_ATTRIBUTE_LIMIT) sorted
+ * arrays, one after the other. Writes their Shepard means. */
+__kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, __global const real4* offset,
+  const int attribute_count, const int stride, __global const real* attributes, __global real* out)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const int begin = groups[group], end = groups[group + 1];
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  int unused[MCOR_LANES];
+  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
+  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
+  realv x, y, z, sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
+  mcor_attribute_points(&grid, &query, &points, &x, &y, &z);
+  for (int c = 0; c < attribute_count; ++c)
+  {
+    sums[c] = 0;
+  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+  {
+    realv weight[MCOR_TILE];
+    for (int i = 0; i < tile.count; ++i)
+    {
+      const realv planar = mcor_planar(
+        (x - tile.x[i]) + points.ox, (y - tile.y[i]) + points.oy, tile.inv_h[i]);
+      const realv height = mcor_height((z - tile.z[i]) + points.oz, (realv)tile.inv_h[i]);
+      weight[i] = tile.weight[i] * mcor_weight(planar, height, tile.inv_h[i]);
+      w += weight[i];
+    }
+    for (int c = 0; c < attribute_count; ++c)
+    {
+      realv sum = sums[c];
+      for (int i = 0; i < tile.count; ++i)
+      {
+        sum += weight[i] * attributes[c * (long)stride + tile.list[i]];
+      }
+      sums[c] = sum;
+    }
+  }
+  for (int lane = 0; begin + lane < end; ++lane)
+  {
+    const real weight = MCOR_GET(w, lane);
+    for (int c = 0; c < attribute_count; ++c)
+    {
+      out[(begin + lane) * (long)attribute_count + c] =
+        weight != 0 ? MCOR_GET(sums[c], lane) / weight : (real)0;
+    }
+  }
+}
+
+/* Updates each point's nearest fluid particle from those that reach the query's box. */
+void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
+  realv* least, fixv* index)
+{
+  realv x, y, z;
+  mcor_attribute_points(grid, query, points, &x, &y, &z);
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
+  {
+    for (int i = 0; i < tile.count; ++i)
+    {
+      if (MCOR_SOLIDS && tile.weight[i] == 0)
+      {
+        continue;
+      }
+      const realv dx = (x - tile.x[i]) + points->ox, dy = (y - tile.y[i]) + points->oy,
+                  dz = (z - tile.z[i]) + points->oz;
+      const realv r2 = dx * dx + dy * dy + dz * dz;
+      *index = r2 < *least ? (fixv)tile.list[i] : *index;
+      *least = fmin(*least, r2);
+    }
+  }
+}
+
+/* One work-item = one group of points. Writes the nearest fluid particle, among those that reach the
+ * points first; where smoothing lengths differ, others may be nearer that do not. */
+__kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, __global const real4* offset,
+  const int uniform, __global const int* order, __global int* nearest)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const int begin = groups[group], end = groups[group + 1];
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  int unused[MCOR_LANES];
+  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
+  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
+  realv least = MAXFLOAT;
+  fixv index = -1;
+  mcor_attribute_nearer(&grid, &query, &points, &least, &index);
+  if (!uniform)
+  {
+    real farthest = 0;
+    for (int lane = 0; lane < MCOR_LANES; ++lane)
+    {
+      farthest = MCOR_GET_FIX(index, lane) >= 0 ? fmax(farthest, MCOR_GET(least, lane)) : farthest;
+    }
+    query.radius = (float)sqrt(farthest) * 1.0001f;
+    mcor_attribute_nearer(&grid, &query, &points, &least, &index);
+  }
+  for (int lane = 0; begin + lane < end; ++lane)
+  {
+    const int j = (int)MCOR_GET_FIX(index, lane);
+    nearest[begin + lane] = j < 0 ? -1 : order[j];
+  }
+}

@@ -367,6 +367,34 @@ mcor_status mcor_read(
   return MCOR_OK;
 }
 
+mcor_status mcor_map(
+  mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data)
+{
+  cl_int error;
+  *data = clEnqueueMapBuffer(context->cl.queue, buffer->mem, CL_TRUE,
+    write ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ, 0, bytes > 0 ? bytes : 1, 0, NULL, NULL,
+    &error);
+  if (error != CL_SUCCESS)
+  {
+    *data = NULL;
+  }
+  MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
+  return MCOR_OK;
+}
+
+mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data)
+{
+  void* const mapped = *data;
+  *data = NULL;
+  if (mapped)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueUnmapMemObject(context->cl.queue, buffer->mem, mapped, 0, NULL, NULL),
+      "clEnqueueUnmapMemObject");
+  }
+  return MCOR_OK;
+}
+
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes)
 {
   MCOR_TRY(mcor_reserve(context, buffer, bytes));

@@ -102,6 +102,11 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
+/* The host's view of a buffer, without a copy where device and host share memory: to be filled
+ * (write), or to be read. NULL where it is not mapped. */
+mcor_status mcor_map(
+  mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
+mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
 mcor_status mcor_copy(
   mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t bytes);

@@ -5,8 +5,6 @@
 
 #include "mcor_internal.h"
 
-#include <stdlib.h>
-
 /* Cuts points [first, first + count) into groups that are evaluated together. */
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)
@@ -38,20 +36,20 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
 static mcor_status mcor_count_iterations(mcor_context* context)
 {
   mcor_statistics* s = context->statistics;
+  const mcor_buffer* buffer = &context->mesh.evaluations;
   const size_t n = (size_t)context->mesh.march_count;
-  uint8_t* evaluations = malloc(n + 1);
-  MCOR_RETURN_IF(!evaluations, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %zu vertices could not be allocated.", n);
-  const mcor_status status =
-    mcor_read(context, &context->mesh.evaluations, 0, evaluations, n);
-  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  void* view;
+  MCOR_TRY(mcor_map(context, buffer, n, false, &view));
+  const uint8_t* evaluations = view;
+  int most = 0;
+  for (size_t i = 0; i < n; ++i)
   {
     s->newton_evaluations += evaluations[i];
-    s->iterations_max = evaluations[i] - 1 > s->iterations_max ? evaluations[i] - 1 : s->iterations_max;
+    most = evaluations[i] > most ? evaluations[i] : most;
   }
+  s->iterations_max = most - 1 > s->iterations_max ? most - 1 : s->iterations_max;
   s->vertices_corrected += (int64_t)n;
-  free(evaluations);
-  return status;
+  return mcor_unmap(context, buffer, &view);
 }
 
 /* Moves the vertices onto the surface, or evaluates them where linear interpolation puts them

@@ -14,47 +14,90 @@
  * and need more rows: 2 took as long, 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
-/* The input in the device's form, in input order; solids that are not used left out. */
+/* The input in the device's form, in input order; solids that are not used left out. Arrays are views
+ * of the scratch buffers named like them. */
 typedef struct mcor_staging
 {
   int count;
   void *xyz, *inv_h, *size; /* fix [count][3], real [count]; size: volume, mass, or 1 */
   double size_scale; /* see mcor_size_scale */
-  uint8_t *solid, *level;
+  void *solid, *level; /* uint8_t */
 } mcor_staging;
 
-static void mcor_free_staging(mcor_staging* staging)
+enum
 {
-  free(staging->xyz);
-  free(staging->inv_h);
-  free(staging->size);
-  free(staging->solid);
-  free(staging->level);
-  *staging = (mcor_staging){ 0 };
+  MCOR_STAGE_XYZ, /* scratch buffers */
+  MCOR_STAGE_INV_H,
+  MCOR_STAGE_SIZE,
+  MCOR_STAGE_SOLID,
+  MCOR_STAGE_LEVEL,
+  MCOR_STAGE_COUNT
+};
+
+static mcor_status mcor_map_staging(mcor_context* context, int64_t count, mcor_staging* staging)
+{
+  const size_t n = (size_t)count, real = context->cl.real_size;
+  const size_t bytes[MCOR_STAGE_COUNT] = { n * 3 * context->cl.fix_size, n * real, n * real, n, n };
+  void** const views[MCOR_STAGE_COUNT] = { &staging->xyz, &staging->inv_h, &staging->size,
+    &staging->solid, &staging->level };
+  for (int i = 0; i < MCOR_STAGE_COUNT; ++i)
+  {
+    MCOR_TRY(mcor_reserve(context, &context->scratch[i], bytes[i]));
+    MCOR_TRY(mcor_map(context, &context->scratch[i], bytes[i], true, views[i]));
+  }
+  return MCOR_OK;
 }
 
-static void mcor_put_real(const mcor_context* context, void* array, int64_t i, double value)
+static mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
+{
+  void** const views[MCOR_STAGE_COUNT] = { &staging->xyz, &staging->inv_h, &staging->size,
+    &staging->solid, &staging->level };
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < MCOR_STAGE_COUNT; ++i)
+  {
+    const mcor_status unmapped = mcor_unmap(context, &context->scratch[i], views[i]);
+    status = status == MCOR_OK ? unmapped : status;
+  }
+  return status;
+}
+
+static void mcor_put_reals(
+  const mcor_context* context, void* array, int64_t first, const double* values, int count)
 {
   if (context->cl.real_size == sizeof(float))
   {
-    ((float*)array)[i] = (float)value;
+    float* to = (float*)array + first;
+    for (int i = 0; i < count; ++i)
+    {
+      to[i] = (float)values[i];
+    }
   }
   else
   {
-    ((double*)array)[i] = value;
+    memcpy((double*)array + first, values, (size_t)count * sizeof *values);
   }
 }
 
-/* Positions are never below the lattice's origin, so adding 1/2 and truncating rounds them. */
-static void mcor_put_fixed(const mcor_context* context, void* array, int64_t i, double fixed)
+/* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
+ * truncating rounds them. */
+static void mcor_put_fixed(
+  const mcor_context* context, void* array, int64_t first, int axis, const double* values, int count)
 {
   if (context->cl.fix_size == sizeof(int32_t))
   {
-    ((int32_t*)array)[i] = (int32_t)(fixed + 0.5);
+    int32_t* to = (int32_t*)array + 3 * first + axis;
+    for (int i = 0; i < count; ++i)
+    {
+      to[3 * i] = (int32_t)(values[i] + 0.5);
+    }
   }
   else
   {
-    ((int64_t*)array)[i] = (int64_t)(fixed + 0.5);
+    int64_t* to = (int64_t*)array + 3 * first + axis;
+    for (int i = 0; i < count; ++i)
+    {
+      to[3 * i] = (int64_t)(values[i] + 0.5);
+    }
   }
 }
 
@@ -108,64 +151,107 @@ static int mcor_level_of(double support_max, double support)
   return level < 0 ? 0 : level >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : level;
 }
 
-static void mcor_stage_chunk(mcor_context* context, const mcor_input* input, int64_t first,
-  int count, mcor_staging* staging)
+/* Particles of a chunk in the staging arrays' units. */
+typedef struct mcor_stage_chunk
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK];
+  int32_t source[MCOR_CHUNK];
+} mcor_stage_chunk;
+
+static void mcor_read_stage_chunk(mcor_context* context, const mcor_input* input, int64_t first,
+  const mcor_staging* staging, mcor_stage_chunk* chunk)
 {
   const mcor_lattice* lattice = &context->lattice;
-  const double h_scale = context->options->h_scale;
-  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
   const double scale = ldexp(1, lattice->fix_bits);
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK];
+  const int count = chunk->count;
   mcor_array positions = input->positions;
   positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    mcor_read_array(&positions, first, count, a, x[a]);
+    const double origin = (double)lattice->origin[a];
+    double* x = chunk->x[a];
+    mcor_read_array(&positions, first, count, a, x);
     for (int i = 0; i < count; ++i)
     {
-      x[a][i] = (x[a][i] / lattice->cube - (double)lattice->origin[a]) * scale;
+      x[i] = (x[i] / lattice->cube - origin) * scale;
     }
   }
-  mcor_read_smoothing_length(context, input, first, count, h);
-  mcor_read_size(input, first, count, size);
+  mcor_read_smoothing_length(context, input, first, count, chunk->h);
+  mcor_read_size(input, first, count, chunk->size);
   for (int i = 0; i < count; ++i)
   {
-    if (!mcor_is_used(context, input, first + i))
-    {
-      continue;
-    }
-    const int to = staging->count++;
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_put_fixed(context, staging->xyz, 3 * (int64_t)to + a, x[a][i]);
-    }
-    mcor_put_real(context, staging->inv_h, to, lattice->cube / (h_scale * h[i]));
-    mcor_put_real(context, staging->size, to, size[i] * staging->size_scale);
-    staging->solid[to] = input->solid && input->solid[first + i];
-    staging->level[to] = (uint8_t)mcor_level_of(context->measure.support_max, h[i] * reach);
-    context->source[to] = (int32_t)(first + i);
+    chunk->size[i] *= staging->size_scale;
+    chunk->source[i] = (int32_t)(first + i);
   }
+}
+
+/* Drops particles that are not used. */
+static void mcor_pack_stage_chunk(
+  const mcor_context* context, const mcor_input* input, mcor_stage_chunk* chunk)
+{
+  int to = 0;
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    if (mcor_is_used(context, input, chunk->source[i]))
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        chunk->x[a][to] = chunk->x[a][i];
+      }
+      chunk->h[to] = chunk->h[i];
+      chunk->size[to] = chunk->size[i];
+      chunk->source[to++] = chunk->source[i];
+    }
+  }
+  chunk->count = to;
+}
+
+static void mcor_put_stage_chunk(
+  mcor_context* context, const mcor_input* input, mcor_stage_chunk* chunk, mcor_staging* staging)
+{
+  const mcor_measure* m = &context->measure;
+  const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
+  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
+  const int to = staging->count;
+  uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_put_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
+  }
+  mcor_put_reals(context, staging->size, to, chunk->size, chunk->count);
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    solid[i] = input->solid && input->solid[chunk->source[i]];
+    level[i] = m->support_min < m->support_max
+      ? (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach)
+      : 0;
+    chunk->h[i] = scaled_cube / chunk->h[i];
+  }
+  mcor_put_reals(context, staging->inv_h, to, chunk->h, chunk->count);
+  memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
+  staging->count += chunk->count;
 }
 
 static mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging)
 {
-  const size_t n = (size_t)input->count;
   staging->size_scale = mcor_size_scale(context, input);
-  staging->xyz = malloc(n * 3 * context->cl.fix_size);
-  staging->inv_h = malloc(n * context->cl.real_size);
-  staging->size = malloc(n * context->cl.real_size);
-  staging->solid = malloc(n);
-  staging->level = malloc(n);
   free(context->source);
-  context->source = malloc(n * sizeof(int32_t));
-  MCOR_RETURN_IF(!staging->xyz || !staging->inv_h || !staging->size || !staging->solid ||
-      !staging->level || !context->source,
-    context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld particles could not be allocated.",
-    (long long)input->count);
+  context->source = malloc((size_t)input->count * sizeof(int32_t));
+  MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld particles could not be allocated.", (long long)input->count);
+  MCOR_TRY(mcor_map_staging(context, input->count, staging));
+  mcor_stage_chunk chunk;
   for (int64_t first = 0; first < input->count; first += MCOR_CHUNK)
   {
     const int64_t rest = input->count - first;
-    mcor_stage_chunk(context, input, first, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, staging);
+    chunk.count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    mcor_read_stage_chunk(context, input, first, staging, &chunk);
+    if (input->solid)
+    {
+      mcor_pack_stage_chunk(context, input, &chunk);
+    }
+    mcor_put_stage_chunk(context, input, &chunk, staging);
   }
   return MCOR_OK;
 }
@@ -176,11 +262,12 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
   const mcor_lattice* lattice = &context->lattice;
+  uint8_t* particle_level = staging->level;
   bool occurs[MCOR_LEVEL_LIMIT] = { false };
   uint8_t number[MCOR_LEVEL_LIMIT];
   for (int i = 0; i < staging->count; ++i)
   {
-    occurs[staging->level[i]] = true;
+    occurs[particle_level[i]] = true;
   }
   uint64_t base = 0;
   grid->level_count = 0;
@@ -209,7 +296,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   }
   for (int i = 0; i < staging->count; ++i)
   {
-    staging->level[i] = number[staging->level[i]];
+    particle_level[i] = number[particle_level[i]];
   }
   return base;
 }
@@ -235,18 +322,16 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)staging->count;
-  mcor_buffer *xyz = &context->scratch[0], *inv_h = &context->scratch[1],
-              *size = &context->scratch[2], *solid = &context->scratch[3],
-              *level = &context->scratch[4];
+  const mcor_buffer *xyz = &context->scratch[MCOR_STAGE_XYZ],
+                    *inv_h = &context->scratch[MCOR_STAGE_INV_H],
+                    *size = &context->scratch[MCOR_STAGE_SIZE],
+                    *solid = &context->scratch[MCOR_STAGE_SOLID],
+                    *level = &context->scratch[MCOR_STAGE_LEVEL];
   const uint64_t cells = mcor_make_levels(context, staging);
   const int count = grid->count = staging->count;
+  MCOR_TRY(mcor_unmap_staging(context, staging));
   MCOR_TRY(mcor_write(
     context, &grid->level_buffer, grid->levels, (size_t)grid->level_count * sizeof(mcor_level)));
-  MCOR_TRY(mcor_write(context, level, staging->level, n));
-  MCOR_TRY(mcor_write(context, xyz, staging->xyz, 3 * n * context->cl.fix_size));
-  MCOR_TRY(mcor_write(context, inv_h, staging->inv_h, n * context->cl.real_size));
-  MCOR_TRY(mcor_write(context, size, staging->size, n * context->cl.real_size));
-  MCOR_TRY(mcor_write(context, solid, staging->solid, n));
   MCOR_TRY(mcor_reserve(context, &grid->cell_keys, n * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(level), MCOR_BUFFER(xyz),
@@ -271,8 +356,9 @@ static mcor_status mcor_compute_volumes(mcor_context* context)
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
   const size_t bytes = ((size_t)count + MCOR_PADDING) * context->cl.real_size;
-  mcor_buffer *size = &context->scratch[2], *solid = &context->scratch[3],
-              *mass = &context->scratch[4], *density = &context->scratch[5];
+  mcor_buffer *size = &context->scratch[MCOR_STAGE_SIZE],
+              *solid = &context->scratch[MCOR_STAGE_SOLID],
+              *mass = &context->scratch[MCOR_STAGE_LEVEL], *density = &context->scratch[5];
   MCOR_TRY(mcor_reserve(context, mass, bytes));
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
@@ -300,8 +386,9 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   {
     status = mcor_sort_particles(context, &staging);
   }
-  mcor_free_staging(&staging);
+  const mcor_status unmapped = mcor_unmap_staging(context, &staging);
   MCOR_TRY(status);
+  MCOR_TRY(unmapped);
   return mcor_needs_density(input) ? mcor_compute_volumes(context) : MCOR_OK;
 }
 
@@ -313,27 +400,26 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;
   mcor_buffer* raw = &context->scratch[0];
-  void* values = malloc(bytes + 1);
-  MCOR_RETURN_IF(!values, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %d values could not be allocated.", grid->count);
-  double chunk[MCOR_CHUNK];
-  int64_t chunk_end = 0;
-  for (int i = 0; i < grid->count; ++i)
+  void* values;
+  MCOR_TRY(mcor_reserve(context, raw, bytes));
+  MCOR_TRY(mcor_map(context, raw, bytes, true, &values));
+  int done = 0;
+  for (int64_t first = 0; first < input->count; first += MCOR_CHUNK)
   {
-    const int64_t source = context->source[i];
-    if (source >= chunk_end)
+    const int64_t rest = input->count - first;
+    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
+    array ? mcor_read_array(array, first, count, component, chunk)
+          : mcor_read_scalar(input, first, count, chunk);
+    int n = 0;
+    for (; done + n < grid->count && context->source[done + n] < first + count; ++n)
     {
-      const int64_t first = source / MCOR_CHUNK * MCOR_CHUNK, rest = input->count - first;
-      const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
-      array ? mcor_read_array(array, first, count, component, chunk)
-            : mcor_read_scalar(input, first, count, chunk);
-      chunk_end = first + MCOR_CHUNK;
+      used[n] = chunk[context->source[done + n] - first] - shift;
     }
-    mcor_put_real(context, values, i, chunk[source % MCOR_CHUNK] - shift);
+    mcor_put_reals(context, values, done, used, n);
+    done += n;
   }
-  mcor_status status = mcor_write(context, raw, values, bytes);
-  free(values);
-  MCOR_TRY(status);
+  MCOR_TRY(mcor_unmap(context, raw, &values));
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
     MCOR_INT(to_offset));
@@ -343,7 +429,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
 #define MCOR_MEDIAN_PASSES 3
 
 /* About the median of the scalar of fluid particles: a histogram of its range, then of the bin that
- * holds the median. Counts do not depend on the order of the particles. */
+ * holds the median, if many are in that bin. Counts do not depend on the order of the particles. */
 static double mcor_scalar_median(const mcor_context* context, const mcor_input* input)
 {
   double low = context->measure.scalar_min, high = context->measure.scalar_max;
@@ -379,6 +465,10 @@ static double mcor_scalar_median(const mcor_context* context, const mcor_input* 
     }
     low += bin * width;
     high = low + width;
+    if (bins[bin] < context->measure.fluid_count / 16)
+    {
+      break;
+    }
   }
   return 0.5 * low + 0.5 * high;
 }

@@ -127,27 +127,40 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 #undef MCOR_NEED
 }
 
+/* Whether all elements are finite, and above 0 where they must be; written to be vectorised. */
+static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
+{
+  int illegal = 0;
+  if (array->type == MCOR_FLOAT64)
+  {
+    const double *x = array->data, least = positive ? 0 : -DBL_MAX;
+    for (int64_t i = 0; i < elements; ++i)
+    {
+      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > least : x[i] >= least));
+    }
+  }
+  else
+  {
+    const float *x = array->data, least = positive ? 0 : -FLT_MAX;
+    for (int64_t i = 0; i < elements; ++i)
+    {
+      illegal |= !((x[i] <= FLT_MAX) & (positive ? x[i] > least : x[i] >= least));
+    }
+  }
+  return !illegal;
+}
+
 /* Index of the first element of a component that is not finite, or not above 0 where it must be; -1
  * if there is none. */
 static int64_t mcor_find_illegal(
   const mcor_array* array, int64_t count, int component, bool positive)
 {
-  double chunk[MCOR_CHUNK];
-  for (int64_t first = 0; first < count; first += MCOR_CHUNK)
+  for (int64_t i = 0; i < count; ++i)
   {
-    const int n = count - first < MCOR_CHUNK ? (int)(count - first) : MCOR_CHUNK;
-    int illegal = 0;
-    mcor_read_array(array, first, n, component, chunk);
-    for (int i = 0; i < n; ++i)
+    const double x = mcor_array_at(array, i, component);
+    if (!isfinite(x) || (positive && !(x > 0)))
     {
-      illegal |= (chunk[i] - chunk[i] != 0) | (positive & (chunk[i] <= 0));
-    }
-    for (int i = 0; illegal && i < n; ++i)
-    {
-      if (!isfinite(chunk[i]) || (positive && !(chunk[i] > 0)))
-      {
-        return first + i;
-      }
+      return i;
     }
   }
   return -1;
@@ -161,6 +174,10 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_array* arr
   const bool same = strcmp(name, role) == 0;
   MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
     "The %s array %s has an unknown element type.", role, name);
+  if (array->data && mcor_is_legal(array, count * components, positive))
+  {
+    return MCOR_OK;
+  }
   for (int c = 0; c < components; ++c)
   {
     const int64_t i = mcor_find_illegal(array, array->data ? count : 1, c, positive);

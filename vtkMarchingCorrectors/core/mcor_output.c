@@ -11,28 +11,20 @@
 
 #define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_attribute.cl */
 
-/* What the device hands over for the vertices of one iso value. */
+/* Views of what the device hands over for the vertices of one iso value. */
 typedef struct mcor_download
 {
   int count;
-  cl_int* node;
-  cl_float* normal;
-  void *offset, *gradient, *numbers; /* real [count][4] */
+  void* views[5]; /* node, offset, normal, gradient, numbers: see mcor_output_vertices */
+  const cl_int* node;
+  const cl_float* normal;
+  const void *offset, *gradient, *numbers;
 } mcor_download;
 
 static double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
 {
   return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
                                                 : ((const double*)array)[i];
-}
-
-static void mcor_free_download(mcor_download* download)
-{
-  free(download->node);
-  free(download->normal);
-  free(download->offset);
-  free(download->gradient);
-  free(download->numbers);
 }
 
 /* Keeps the vertices that a triangle uses, in order; renumbers the triangles. */
@@ -61,22 +53,31 @@ static mcor_status mcor_compact(mcor_context* context, int* count)
     MCOR_BUFFER(&out[2]), MCOR_BUFFER(&out[3]), MCOR_BUFFER(&out[4]));
 }
 
-static mcor_status mcor_download_vertices(mcor_context* context, mcor_download* d)
+static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
 {
   const size_t n = (size_t)d->count, reals = n * 4 * context->cl.real_size;
-  d->node = malloc(n * 4 * sizeof(cl_int) + 1);
-  d->normal = malloc(n * 4 * sizeof(cl_float) + 1);
-  d->offset = malloc(reals + 1);
-  d->gradient = malloc(reals + 1);
-  d->numbers = malloc(reals + 1);
-  MCOR_RETURN_IF(!d->node || !d->normal || !d->offset || !d->gradient || !d->numbers, context,
-    MCOR_OUT_OF_CAPACITY, "Host memory for %d vertices could not be allocated.", d->count);
-  const mcor_buffer* out = context->out;
-  MCOR_TRY(mcor_read(context, &out[0], 0, d->node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_read(context, &out[1], 0, d->offset, reals));
-  MCOR_TRY(mcor_read(context, &out[2], 0, d->normal, n * 4 * sizeof(cl_float)));
-  MCOR_TRY(mcor_read(context, &out[3], 0, d->gradient, reals));
-  return mcor_read(context, &out[4], 0, d->numbers, reals);
+  const size_t bytes[5] = { n * 4 * sizeof(cl_int), reals, n * 4 * sizeof(cl_float), reals, reals };
+  for (int i = 0; i < 5; ++i)
+  {
+    MCOR_TRY(mcor_map(context, &context->out[i], bytes[i], false, &d->views[i]));
+  }
+  d->node = d->views[0];
+  d->offset = d->views[1];
+  d->normal = d->views[2];
+  d->gradient = d->views[3];
+  d->numbers = d->views[4];
+  return MCOR_OK;
+}
+
+static mcor_status mcor_unmap_vertices(mcor_context* context, mcor_download* d)
+{
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < 5; ++i)
+  {
+    const mcor_status unmapped = mcor_unmap(context, &context->out[i], &d->views[i]);
+    status = status == MCOR_OK ? unmapped : status;
+  }
+  return status;
 }
 
 /* Room for `count` more elements of `width` bytes; *array may be NULL. */
@@ -199,16 +200,6 @@ typedef struct mcor_component
   int attribute, component;
 } mcor_component;
 
-/* Memory for what was evaluated at the points just put out, read from a device buffer. */
-static mcor_status mcor_read_points(
-  mcor_context* context, const mcor_buffer* buffer, size_t bytes, void** host)
-{
-  *host = malloc(bytes + 1);
-  MCOR_RETURN_IF(!*host, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory of %zu bytes for arrays of the surface could not be allocated.", bytes);
-  return mcor_read(context, buffer, 0, *host, bytes);
-}
-
 static mcor_status mcor_add_nearest(mcor_context* context, int points, mcor_surface* surface)
 {
   mcor_buffer* indices = &context->out[6];
@@ -219,15 +210,15 @@ static mcor_status mcor_add_nearest(mcor_context* context, int points, mcor_surf
     MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]),
     MCOR_INT(context->measure.support_min == context->measure.support_max),
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
-  cl_int* host;
-  const mcor_status status = mcor_read_points(context, indices, bytes, (void**)&host);
+  void* view;
+  MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
+  const cl_int* index = view;
   int64_t* to = surface->nearest_particle + surface->point_count;
-  for (int i = 0; i < points && status == MCOR_OK; ++i)
+  for (int i = 0; i < points; ++i)
   {
-    to[i] = host[i] < 0 ? -1 : context->source[host[i]];
+    to[i] = index[i] < 0 ? -1 : context->source[index[i]];
   }
-  free(host);
-  return status;
+  return mcor_unmap(context, indices, &view);
 }
 
 /* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
@@ -248,9 +239,9 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
     MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
     MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]), MCOR_INT(count),
     MCOR_INT(stride), MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values)));
-  void* host;
-  const mcor_status status = mcor_read_points(context, values, bytes, &host);
-  for (int c = 0; c < count && status == MCOR_OK; ++c)
+  void* view;
+  MCOR_TRY(mcor_map(context, values, bytes, false, &view));
+  for (int c = 0; c < count; ++c)
   {
     const int a = components[c].attribute;
     const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
@@ -258,11 +249,10 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
       surface->attributes[a] + surface->point_count * width + components[c].component;
     for (int64_t i = 0; i < points; ++i)
     {
-      to[i * width] = mcor_get_real(context, host, i * count + c);
+      to[i * width] = mcor_get_real(context, view, i * count + c);
     }
   }
-  free(host);
-  return status;
+  return mcor_unmap(context, values, &view);
 }
 
 static mcor_status mcor_add_attributes(
@@ -304,9 +294,9 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_RETURN_IF(base + download->count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; 2147483647 is the limit.",
     (long long)(base + download->count));
-  MCOR_TRY(mcor_download_vertices(context, download));
   MCOR_TRY(mcor_grow_surface(context, input, surface, download->count, triangles));
   MCOR_TRY(mcor_add_attributes(context, input, download->count, surface));
+  MCOR_TRY(mcor_map_vertices(context, download));
   int32_t* to = surface->triangles + 3 * surface->triangle_count;
   MCOR_TRY(mcor_read(
     context, &context->mesh.triangles, 0, to, (size_t)triangles * 3 * sizeof(int32_t)));
@@ -330,6 +320,6 @@ mcor_status mcor_append_output(
 {
   mcor_download download = { 0 };
   const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
-  mcor_free_download(&download);
-  return status;
+  const mcor_status unmapped = mcor_unmap_vertices(context, &download);
+  return status != MCOR_OK ? status : unmapped;
 }

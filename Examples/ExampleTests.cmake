@@ -25,6 +25,13 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 
+# All tables with tiny sets. VTK's own Python; splashsurf is compared only where that has it.
+if (MCOR_VTK_PYTHON)
+  mcor_add_example_test(benchmark vtk "${MCOR_VTK_PYTHON}"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Benchmark/benchmark.py" $<TARGET_FILE:marching-correctors> --quick
+    --markdown "${out}/benchmark.md" --json "${out}/benchmark.json")
+endif ()
+
 if (MCOR_BUILD_PLUGIN)
   find_program(MCOR_PVPYTHON pvpython DOC "ParaView's Python interpreter")
   mark_as_advanced(MCOR_PVPYTHON)

@@ -1,223 +1,151 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times marching-correctors against what one would use otherwise, on one set of particles.
+"""The benchmark of marching-correctors; see README.md beside it.
 
-  benchmark.py PROGRAM [--particles 670000] [--runs 5] [--json FILE]
+  benchmark.py PROGRAM [--tables a,b] [--sizes 60k,670k] [--runs 5] [--markdown FILE] [--json FILE]
 
-PROGRAM is marching-correctors. The Python that runs this script needs numpy and vtk (Debian:
-python3-numpy python3-vtk9); splashsurf is measured too where pysplashsurf can be imported.
+  a   isosurface of a scalar, against vtkSPHInterpolator + vtkFlyingEdges3D
+  b   free surface with one attribute and normals, against splashsurf
+  c   Tables I to V of the paper, each figure beside the paper's
+  d   phases against the device's measured bandwidth and peak
+  e   reuse for other iso values and scalars, growth with the number of particles, first start
 
-The particles are the wavy tank of Data/make_tank.py: 70 neighbours each, constant smoothing length,
-a smooth scalar. All use the cubic spline, the same smoothing length and the same cube size, half the
-smoothing length.
-
-  isosurface     Swirl = 0. marching-correctors: complete seeds, corrected vertices, normals, all other
-                 arrays interpolated, trimmed. VTK: vtkSPHInterpolator (this scalar alone) to an image
-                 of the particles' bounds, then vtkFlyingEdges3D: uncorrected vertices.
-  free surface   weight sum 0.5. marching-correctors as above. splashsurf: threshold 0.5, one
-                 interpolated attribute, SPH normals, uncorrected vertices.
-
-Every measurement is a process of its own. Reading the particles and writing the surface are not timed.
-marching-correctors is started once for all its runs, each from scratch; the time of its first run,
-which also loads (or, at the first start ever, compiles) the OpenCL program, is given apart. Memory is
-the largest resident set of the process, with the particles.
+Times are medians over --runs, in seconds. Every measurement is a process of its own; reading the
+particles and writing the surface are not timed. Memory is the largest resident set of the process.
 """
 import argparse
 import json
-import os
+import math
 import pathlib
 import platform
-import resource
-import statistics
-import subprocess
 import sys
 import tempfile
-import time
 
-HERE = pathlib.Path(__file__).resolve().parent
-CUBE_FACTOR = 0.5
-THRESHOLD = 0.5  # of the weight sum, at the free surface
+import comparison
+import limits
+import paper_tables
+import report
+import reuse
+import sets
+from program import Program
+
+TABLES = {"a": comparison.isosurface, "b": comparison.free_surface, "c": paper_tables.paper_tables,
+          "d": limits.limits, "e": reuse.reuse}
+MIDDLE = 670000
+QUICK_SIZES = (4000, 8000)
+QUICK_PAPER = {"rings": 20000, "tsunami": 6000, "dam": 6000}
 
 
-def read_particles(path):
+class Benchmark:
+    """What the tables need: particle sets, the program, how often, how large, where to write."""
+
+    def __init__(self, arguments, folder):
+        self.report = report.Report()
+        self.sets = sets.Folder(arguments.sets or folder / "sets")
+        self.quick = arguments.quick
+        self.runs = arguments.runs or (1 if self.quick else 5)
+        self.sizes = sorted(arguments.sizes or (QUICK_SIZES if self.quick else
+                                                (60000, 670000, 3000000, 10000000)))
+        # Tables d and e look at one size more closely.
+        self.middle = MIDDLE if MIDDLE in self.sizes else self.sizes[-1]
+        self.paper_counts = dict(QUICK_PAPER if self.quick else {}, **arguments.paper_sizes)
+        self.limit = arguments.limit
+        self.program = Program(arguments.program, arguments.device, self.runs, folder)
+
+    def describe(self):
+        """Machine, device, versions."""
+        out = self.report
+        found = self.program.run(self.sets.get(sets.tank(self.sizes[0])), comparison.ISOSURFACE)
+        device = self.program.helper("benchmark-limits", found["device"], found["platform"], 1)
+        facts = {"machine": report.machine(),
+                 "device": f"{found['device']}, {device['compute_units']} compute units",
+                 "platform": f"{found['platform']}, {device['platform_version']}",
+                 "driver": device["driver_version"],
+                 "program": f"{found['name']}, on VTK {found['vtk']}",
+                 "python": platform.python_version(), **versions(), "runs": self.runs}
+        out.text("# Benchmark")
+        out.text()
+        for name, fact in facts.items():
+            out.text(f"- {name}: {fact}")
+        return facts
+
+
+def versions():
+    """Of what is compared, as far as this Python has it."""
     import vtk
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(path)
-    reader.Update()
-    return reader.GetOutput()
+    found = {"VTK compared": vtk.vtkVersion.GetVTKVersion(), "splashsurf": "not installed"}
+    try:
+        from importlib.metadata import PackageNotFoundError, version
+        found["splashsurf"] = version("pysplashsurf")
+    except PackageNotFoundError:
+        pass
+    return found
 
 
-def peak_bytes():
-    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+def find_nonsense(value, path="results"):
+    """Paths of numbers that no measurement gives."""
+    if isinstance(value, dict):
+        return [bad for key, v in value.items() for bad in find_nonsense(v, f"{path}.{key}")]
+    if isinstance(value, (list, tuple)):
+        return [bad for i, v in enumerate(value) for bad in find_nonsense(v, f"{path}[{i}]")]
+    if isinstance(value, (int, float)) and not math.isfinite(value):
+        return [path]
+    return [path] if path.endswith("seconds") and not value > 0 else []
 
 
-def leg_vtk(path):
-    """vtkSPHInterpolator + vtkFlyingEdges3D, as one process."""
-    import vtk
-    particles = read_particles(path)
-    h = particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
-    cube = CUBE_FACTOR * h
-    low = [int(b // cube) - 2 for b in particles.GetBounds()[::2]]
-    high = [int(b // cube) + 3 for b in particles.GetBounds()[1::2]]
-    image = vtk.vtkImageData()
-    image.SetOrigin(*(cube * i for i in low))
-    image.SetSpacing(cube, cube, cube)
-    image.SetDimensions(*(b - a + 1 for a, b in zip(low, high)))
+def parse(argv):
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 
-    begin = time.perf_counter()
-    kernel = vtk.vtkSPHCubicKernel()
-    kernel.SetSpatialStep(h)
-    kernel.SetDimension(3)
-    interpolator = vtk.vtkSPHInterpolator()
-    interpolator.SetInputData(image)
-    interpolator.SetSourceData(particles)
-    interpolator.SetLocator(vtk.vtkStaticPointLocator())
-    interpolator.SetKernel(kernel)
-    interpolator.SetMassArrayName("Mass")
-    interpolator.SetDensityArrayName("Density")
-    interpolator.SetShepardNormalization(True)
-    for i in range(particles.GetPointData().GetNumberOfArrays()):
-        name = particles.GetPointData().GetArrayName(i)
-        if name not in ("Swirl", "Mass", "Density"):
-            interpolator.AddExcludedArray(name)
-    contour = vtk.vtkFlyingEdges3D()
-    contour.SetInputConnection(interpolator.GetOutputPort())
-    contour.SetInputArrayToProcess(0, 0, 0, 0, "Swirl")
-    contour.SetValue(0, 0.0)
-    contour.Update()
-    seconds = time.perf_counter() - begin
-    return {"seconds": seconds, "triangles": contour.GetOutput().GetNumberOfCells(),
-            "bytes": peak_bytes(), "version": vtk.vtkVersion.GetVTKVersion()}
+    def names(text):
+        chosen = text.split(",")
+        if not set(chosen) <= set(TABLES):
+            raise argparse.ArgumentTypeError(f"tables are {', '.join(TABLES)}")
+        return sorted(chosen)
 
+    def counts(text):
+        return tuple(sets.count_of(word) for word in text.split(","))
 
-def leg_splashsurf(path):
-    """splashsurf's free surface, as one process."""
-    from importlib.metadata import version
+    def paper_counts(text):
+        chosen = dict(word.split("=") for word in text.split(","))
+        if not set(chosen) <= set(paper_tables.PAPER):
+            raise argparse.ArgumentTypeError(f"sets are {', '.join(paper_tables.PAPER)}")
+        return {name: sets.count_of(count) for name, count in chosen.items()}
 
-    import numpy
-    import pysplashsurf
-    from vtk.util.numpy_support import vtk_to_numpy
-    particles = read_particles(path)
-    points = numpy.array(vtk_to_numpy(particles.GetPoints().GetData()), dtype=numpy.float32)
-    data = particles.GetPointData()
-    swirl = numpy.array(vtk_to_numpy(data.GetArray("Swirl")), dtype=numpy.float32)
-    h = data.GetArray("SmoothingLength").GetRange()[1]
-    volume = data.GetArray("Mass").GetRange()[1] / data.GetArray("Density").GetRange()[1]
-    radius = volume ** (1 / 3) / 2
-
-    begin = time.perf_counter()
-    mesh, _ = pysplashsurf.reconstruction_pipeline(
-        points, attributes_to_interpolate={"Swirl": swirl}, particle_radius=radius,
-        smoothing_length=h / radius, cube_size=CUBE_FACTOR * h / radius,
-        iso_surface_threshold=THRESHOLD, compute_normals=True, sph_normals=True)
-    seconds = time.perf_counter() - begin
-    return {"seconds": seconds, "triangles": len(mesh.mesh.triangles), "bytes": peak_bytes(),
-            "version": version("pysplashsurf")}
-
-
-LEGS = {"vtk": leg_vtk, "splashsurf": leg_splashsurf}
-
-
-def run_leg(name, path, runs):
-    """Runs a leg several times, each in a process of its own. None if it cannot run here."""
-    results = []
-    for _ in range(runs):
-        process = subprocess.run([sys.executable, __file__, "--leg", name, path],
-                                 capture_output=True, text=True)
-        if process.returncode != 0:
-            reason = (process.stderr.strip().splitlines() or ["no reason given"])[-1]
-            print(f"{name}: not measured: {reason}", file=sys.stderr)
-            return None
-        results.append(json.loads(process.stdout.splitlines()[-1]))
-    seconds = [r["seconds"] for r in results]
-    return {"name": name + " " + results[0]["version"], "seconds": statistics.median(seconds),
-            "all": seconds, "triangles": results[0]["triangles"],
-            "bytes": max(r["bytes"] for r in results)}
-
-
-def run_program(program, path, options, runs, folder):
-    """Our program, all runs in one process, as --repeat does it."""
-    report = folder / "statistics.json"
-    subprocess.run([program, path, folder / "surface.vtp", *options, "--quiet", "--repeat",
-                    str(runs + 1), "--stats", report], check=True)
-    found = json.loads(report.read_text())
-    first, *rest = (run["wall_seconds"] for run in found["runs"])
-    phases = {name: statistics.median(run["seconds"][name] for run in found["runs"][1:])
-              for name in found["seconds"]}
-    return {"name": found["program"], "seconds": statistics.median(rest), "all": rest,
-            "first": first, "triangles": found["statistics"]["triangles"],
-            "bytes": found["peak_resident_bytes"], "phases": phases, "device": found["device"],
-            "platform": found["platform"], "vtk": found["vtk"],
-            "particles": found["statistics"]["fluid_particles"],
-            "cube_size": found["parameters"]["cube_size"]}
-
-
-def machine():
-    """Processor, cores and memory, as Linux tells them."""
-    model = platform.processor()
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            model = line.split(":", 1)[1].strip()
-            break
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2 ** 30
-    system = platform.freedesktop_os_release()["PRETTY_NAME"]
-    return f"{model}, {len(os.sched_getaffinity(0))} cores, {memory:.0f} GiB, {system}"
-
-
-def print_table(title, ours, theirs):
-    print(f"\n{title}\n")
-    print("| | seconds (median) | fastest .. slowest | triangles | peak memory | ratio of times |")
-    print("|---|---|---|---|---|---|")
-    for row in filter(None, (ours, theirs)):
-        print(f"| {row['name']} | {row['seconds']:.3f} | {min(row['all']):.3f} .. "
-              f"{max(row['all']):.3f} | {row['triangles']:,} | {row['bytes'] / 2 ** 20:.0f} MiB | "
-              f"{row['seconds'] / ours['seconds']:.1f} |")
-    phases = ", ".join(f"{name.replace('_', ' ')} {seconds:.3f}"
-                       for name, seconds in ours["phases"].items())
-    print(f"\nFirst run of the process: {ours['first']:.3f} s. Phases (s): {phases}.")
-
-
-def measure(arguments, folder):
-    tank = folder / "tank.vtp"
-    subprocess.run([sys.executable, HERE.parent / "Data" / "make_tank.py",
-                    str(arguments.particles), tank], check=True, stdout=subprocess.DEVNULL)
-    device = ["--device", arguments.device] if arguments.device else []
-    scalar = run_program(arguments.program, tank, ["--scalar", "Swirl", "--iso", "0", *device],
-                         arguments.runs, folder)
-    vtk = run_leg("vtk", tank, arguments.runs)
-    free = run_program(arguments.program, tank,
-                       ["--free-surface", "--iso", str(THRESHOLD), *device], arguments.runs, folder)
-    splashsurf = run_leg("splashsurf", tank, arguments.runs)
-    return {"machine": machine(), "scalar": scalar, "vtk": vtk, "free": free,
-            "splashsurf": splashsurf}
+    parser.add_argument("program", help="the program marching-correctors, in its build tree")
+    parser.add_argument("--tables", type=names, default=sorted(TABLES), help="default: all")
+    parser.add_argument("--sizes", type=counts, help="particles; default 60k,670k,3M,10M")
+    parser.add_argument("--paper-sizes", type=paper_counts, default={}, metavar="SET=COUNT,...",
+                        help="table c: rings=10M,tsunami=1.2M,dam=670k; 0 leaves a set out")
+    parser.add_argument("--runs", type=int, help="timed runs of each (default 5)")
+    parser.add_argument("--limit", type=float, default=900, metavar="SECONDS",
+                        help="a competitor that would take longer is left out (default 900)")
+    parser.add_argument("--quick", action="store_true", help="tiny sets, one run: a test")
+    parser.add_argument("--device", help="OpenCL device, see marching-correctors --list-devices")
+    parser.add_argument("--sets", type=pathlib.Path, metavar="FOLDER",
+                        help="keep particle sets here, and use those that are there already")
+    parser.add_argument("--markdown", type=pathlib.Path, help="write what is printed to this file")
+    parser.add_argument("--json", type=pathlib.Path, help="write all results to this file")
+    return parser.parse_args(argv)
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", help="the program marching-correctors")
-    parser.add_argument("--particles", type=int, default=670000)
-    parser.add_argument("--runs", type=int, default=5, help="timed runs of each")
-    parser.add_argument("--device", help="OpenCL device, see marching-correctors --list-devices")
-    parser.add_argument("--json", type=pathlib.Path, help="write all results to this file")
-    arguments = parser.parse_args()
+    arguments = parse(sys.argv[1:])
     with tempfile.TemporaryDirectory(prefix="mcor-benchmark-") as folder:
-        results = measure(arguments, pathlib.Path(folder))
-    ours = results["scalar"]
-    print(f"Machine: {results['machine']}")
-    print(f"Device: {ours['device']} ({ours['platform']}); marching-correctors on VTK {ours['vtk']}; "
-          f"Python {platform.python_version()}")
-    print(f"Particles: {ours['particles']:,}; cube size {ours['cube_size']:.6g}; "
-          f"{arguments.runs} runs each")
-    print_table("Isosurface of a scalar", ours, results["vtk"])
-    print_table("Free surface", results["free"], results["splashsurf"])
-    if arguments.json:
-        arguments.json.write_text(json.dumps(results, indent=2) + "\n")
+        benchmark = Benchmark(arguments, pathlib.Path(folder))
+        results = {"facts": benchmark.describe()}
+        for name in arguments.tables:
+            results[name] = TABLES[name](benchmark)
+            # Also after an interruption, what has been measured is there.
+            if arguments.markdown:
+                arguments.markdown.write_text("\n".join(benchmark.report.lines) + "\n")
+            if arguments.json:
+                arguments.json.write_text(json.dumps(results, indent=2) + "\n")
+    nonsense = find_nonsense(results)
+    if nonsense:
+        sys.exit("benchmark.py: impossible figures: " + ", ".join(nonsense))
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--leg"]:
-        print(json.dumps(LEGS[sys.argv[2]](sys.argv[3])))
-    else:
-        main()
+    main()

@@ -186,6 +186,8 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text, Text) { o.WeightSum = true; } },
     { "--gradients", "", "add the array Gradients",
       [](Options& o, Text, Text) { o.Gradients = true; } },
+    { "--no-attributes", "", "leave out the particles' other arrays",
+      [](Options& o, Text, Text) { o.Attributes = false; } },
     { "--stats", "FILE.json", "write the statistics of the run",
       [](Options& o, Text, Text v) { o.StatisticsFile = v; } },
     { "--screenshot", "FILE.png", "write a picture of the surface (may need a display)",

@@ -41,6 +41,7 @@ struct CommandLineOptions
   double VertexThreshold = 0.5;
   bool WeightSum = false;
   bool Gradients = false;
+  bool Attributes = true;
 
   std::string Device;
   bool ListDevices = false;

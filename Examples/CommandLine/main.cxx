@@ -140,6 +140,7 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetVertexThreshold(options.VertexThreshold);
   filter->SetComputeWeightSum(options.WeightSum);
   filter->SetComputeGradients(options.Gradients);
+  filter->SetInterpolateAttributes(options.Attributes);
   filter->SetDevice(options.Device.c_str());
 }
 

@@ -68,7 +68,7 @@ class Usage(CommandLineTest):
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
                 --field --seeds --preview --node-threshold --vertex-threshold --weight-sum
-                --gradients --device --list-devices --stats --screenshot --repeat --quiet --help
+                --gradients --no-attributes --device --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
@@ -405,6 +405,11 @@ class Options(CommandLineTest):
             self.assertIn(f'Name="{name}"', more)
         for name in ("Normals", "Velocity", "Kind", "Radius"):
             self.assertIn(f'Name="{name}"', plain)
+        self.succeed(*ISO, "--no-attributes")
+        bare = self.output.read_text()
+        self.assertIn('Name="Normals"', bare)
+        for name in ("Velocity", "Kind"):
+            self.assertNotIn(f'Name="{name}"', bare)
 
     def test_repeat(self):
         found = self.succeed(*ISO, "--repeat", "3")

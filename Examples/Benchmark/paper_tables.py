@@ -1,0 +1,229 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Table c: Tables I to V of the paper, in the paper's form, each figure beside the paper's own.
+
+The paper: B. Schindler, R. Fuchs, J. Waser, R. Peikert: Marching Correctors - Fast and Precise
+Polygonal Isosurfaces of SPH Data, 2011; one core of a Xeon E5430 and a GeForce GTX 295. Its data
+sets are not public; ours have their number of particles, neighbours and kernels, and iso values
+that give surfaces of about the same number of triangles. Field and seeds are the paper's (sum,
+pairs), but for the vortex rings with a scaled kernel: our particles are a lattice of spacing h, so
+that no two are closer than the scaled h, and the seeds are complete.
+
+What the rows are, in phases of marching-correctors:
+
+  grid construction         input (checks, transfer to the device), search grid
+  seed cell selection       seeds
+  surface extraction        extraction, correction, trimming, output of a run with --preview; its
+                            correction phase evaluates the weights that trimming needs
+  s.e. with correction      the same phases of a run without --preview; normals are the gradients
+  totals                    seed cell selection and surface extraction, without the grid
+"""
+import dataclasses
+
+import report
+import sets
+from program import need_surface, sum_of
+
+H_SCALES = (1.0, 0.75, 0.5)
+CUBE_FACTORS = (0.5, 1.0)
+METHOD = ("--field", "sum", "--no-attributes")
+
+
+@dataclasses.dataclass(frozen=True)
+class Data:
+    """A data set of the paper, and what the paper says of it. Six entries: the columns of its
+    tables, h scale 1, 0.75 and 0.5 by cubes of 0.5 h and h. None: not in the paper."""
+    table: str
+    title: str
+    make: object
+    count: int
+    scalar: str
+    iso: float
+    lattice: bool  # particles are as far apart as h
+    coarse_iso: float  # for few thousand particles, which do not resolve the other surface
+    grid: tuple
+    seeds: tuple
+    preview: tuple
+    corrected: tuple = (None,) * 6
+    total: tuple = ()
+    total_corrected: tuple = (None,) * 6
+    # Tables IV and V, h scale 1: cubes of 0.5 h, h
+    cube: tuple = ()
+    cells: tuple = ()
+    lengths: tuple = ()
+
+
+# The totals are those printed in the paper, also where they are not the sum of the rows above them.
+PAPER = {
+    "rings": Data(
+        "I", "vortex rings", sets.vortex_rings, 10000000, "VorticityMagnitude", 50, True, 20,
+        grid=(1.13, 1.13, 1.4, 1.4, 2.15, 2.15),
+        seeds=(0.72, 0.72, 0.55, 0.55, 0.35, 0.35),
+        preview=(3.48, 0.73, 2.90, 0.59, 1.94, 0.39),
+        total=(4.20, 1.45, 3.45, 1.14, 2.29, 0.74)),
+    "tsunami": Data(
+        "II", "tsunami: a tank with 200 neighbours", sets.dense_tank, 1200000, "Pressure", 5500,
+        False, 2500,
+        grid=(0.08, 0.08, 0.1, 0.1, 0.16, 0.16),
+        seeds=(0.7, 0.7, 0.36, 0.36, 0.17, 0.17),
+        preview=(2.65, 0.5, 1.72, 0.34, 0.94, 0.19),
+        corrected=(3.45, 0.7, 3.02, 0.65, 1.84, 0.43),
+        total=(3.35, 1.20, 2.08, 0.7, 1.11, 0.36),
+        total_corrected=(4.15, 1.40, 3.38, 1.01, 2.11, 0.60),
+        cube=(0.028, 0.056),
+        cells=((2401980, 303408), (73602, 14917), (47007, 8012), (29388, 7183), (56543, 14535)),
+        lengths=((0.000218, 0.000807), (0.009890, 0.018360), (0.000402, 0.001253))),
+    "dam": Data(
+        "III", "dam break: variable smoothing length", sets.dam_break, 670000, "Lambda2", -170,
+        False, -100,
+        grid=(0.07, 0.07, 0.1, 0.1, 0.17, 0.17),
+        seeds=(0.08, 0.08, 0.05, 0.05, 0.04, 0.04),
+        preview=(0.73, 0.17, 0.54, 0.13, 0.38, 0.09),
+        corrected=(2.13, 0.48, 1.63, 0.37, 0.98, 0.23),
+        total=(0.81, 0.25, 0.59, 0.18, 0.42, 0.13),
+        total_corrected=(2.21, 0.56, 1.68, 0.42, 1.02, 0.27),
+        cube=(0.006, 0.012),
+        cells=((6802912, 855456), (98811, 41327), (38286, 11151), (156810, 36319), (307278, 73739)),
+        lengths=((0.000130, 0.000453), (0.001997, 0.005511), (0.000182, 0.000550)))}
+
+CELL_ROWS = (("Virtual cells", "virtual_cells"), ("Seed cells", "seed_cells"),
+             ("Non-intersected cells", "seed_cells_not_intersected"),
+             ("Total cells used", "cells_used"), ("Isosurface triangles", "triangles"))
+LENGTH_ROWS = (("Mean vector norm", "correction_mean"), ("Max vector norm", "correction_max"),
+               ("St.dev. vector norm", "correction_standard_deviation"))
+
+
+def beside(ours, paper, text):
+    """Ours (the paper's; ours / the paper's)."""
+    if paper is None:
+        return f"{text(ours)} (-)"
+    return f"{text(ours)} ({text(paper)}; {report.ratio(ours / paper)})"
+
+
+def percent(value):
+    return f"{100 * value:.0f} %"
+
+
+def time_row(name, ours, paper, text=report.seconds):
+    return [name, *(beside(a, b, text) for a, b in zip(ours, paper))]
+
+
+def cost(corrected, total):
+    """What correction adds, as a share of the total without."""
+    return [None if a is None else (a - b) / b for a, b in zip(corrected, total)]
+
+
+def run_columns(benchmark, data, count, iso):
+    which = data.make(count)
+    path = benchmark.sets.get(which)
+    columns = []
+    for scale in H_SCALES:
+        for factor in CUBE_FACTORS:
+            seeds = "complete" if data.lattice and scale < 1 else "pairs"
+            options = ("--scalar", data.scalar, "--iso", iso, *which.options, *METHOD,
+                       "--seeds", seeds, "--h-scale", scale, "--cube-factor", factor)
+            columns.append({"h_scale": scale, "cube_factor": factor, "seeds": seeds,
+                            "corrected": benchmark.program.run(path, options),
+                            "preview": benchmark.program.run(path, (*options, "--preview"))})
+            if scale == 1:  # a kernel shorter than the particles' distance may leave nothing
+                need_surface(columns[-1]["corrected"], which.name)
+    return columns
+
+
+def extraction(result):
+    return sum_of(result, "extraction", "correction", "trimming", "output")
+
+
+def print_times(out, data, columns):
+    """Table I, II or III."""
+    first = columns[0]["corrected"]["statistics"]
+    iso = columns[0]["corrected"]["parameters"]["iso_values"][0]
+    out.text(f"### Table {data.table}: {data.title}")
+    out.text()
+    h = first["smoothing_length_range"]
+    out.text(f"{first['fluid_particles']:,} particles, {data.scalar} = {iso:g}, h {h[0]:.4g} .. "
+             f"{h[1]:.4g}. Seconds; in brackets the paper's and ours / the paper's.")
+    out.text()
+    preview = [column["preview"] for column in columns]
+    corrected = [column["corrected"] for column in columns]
+    seeds = [sum_of(r, "seeds") for r in preview]
+    total = [sum_of(r, "seeds") + extraction(r) for r in preview]
+    total_corrected = [sum_of(r, "seeds") + extraction(r) for r in corrected]
+    rows = [
+        time_row("Grid construction", [sum_of(r, "input", "search_grid") for r in preview],
+                 data.grid),
+        time_row("Seed cell selection", seeds, data.seeds),
+        time_row("Surface extraction", [extraction(r) for r in preview], data.preview),
+        time_row("S.e. with correction", [extraction(r) for r in corrected], data.corrected),
+        time_row("Total w/o corr.", total, data.total),
+        time_row("Total with corr.", total_corrected, data.total_corrected),
+        time_row("Cost of correction / total w/o", cost(total_corrected, total),
+                 cost(data.total_corrected, data.total), percent),
+        ["Seeds", *(c["seeds"] for c in columns)],
+        ["Triangles", *(f"{r['triangles']:,}" for r in corrected)],
+        ["Vertices", *(f"{r['statistics']['points']:,}" for r in corrected)],
+        ["Peak memory", *(report.mebibytes(r["bytes"]) for r in corrected)]]
+    out.table(["h scaling factor; grid size",
+               *(f"{c['h_scale']:g}; {c['cube_factor']:g}h" for c in columns)], rows)
+
+
+def with_table_iv(results):
+    """The two data sets that Tables IV and V have."""
+    return [(PAPER[name], columns) for name, columns in results.items() if PAPER[name].cube]
+
+
+def header_iv(results):
+    return ["", *(f"{data.title.split(':')[0]}, {factor:g}h" for data, _ in with_table_iv(results)
+                  for factor in CUBE_FACTORS)]
+
+
+def print_cells(out, results):
+    out.text("### Table IV: cells")
+    out.text()
+    out.text("h scaling factor 1; in brackets the paper's and ours / the paper's.")
+    out.text()
+    rows = [["Grid size", *(beside(columns[i]["corrected"]["parameters"]["cube_size"], data.cube[i],
+                                   "{:.4g}".format)
+                            for data, columns in with_table_iv(results) for i in range(2))]]
+    for row, (name, key) in enumerate(CELL_ROWS):
+        rows.append([name, *(beside(columns[i]["corrected"]["statistics"][key], data.cells[row][i],
+                                    "{:,.0f}".format)
+                             for data, columns in with_table_iv(results) for i in range(2))])
+    out.table(header_iv(results), rows)
+
+
+def print_lengths(out, results):
+    out.text("### Table V: correction")
+    out.text()
+    out.text("Per grid size, h scaling factor 1; in brackets the paper's and ours / the paper's.")
+    out.text()
+    rows = []
+    for row, (name, key) in enumerate(LENGTH_ROWS):
+        cells = []
+        for data, columns in with_table_iv(results):
+            for i in range(2):
+                ours = columns[i]["corrected"]
+                cells.append(beside(ours["statistics"][key] / ours["parameters"]["cube_size"],
+                                    data.lengths[row][i] / data.cube[i], "{:.4f}".format))
+        rows.append([f"{name} / grid size", *cells])
+    for name, key in LENGTH_ROWS:
+        rows.append([f"{name} (ours, in m)",
+                     *(f"{columns[i]['corrected']['statistics'][key]:.3g}"
+                       for _, columns in with_table_iv(results) for i in range(2))])
+    out.table(header_iv(results), rows)
+
+
+def paper_tables(benchmark):
+    out = benchmark.report
+    out.heading("c. The paper's tables")
+    results = {}
+    for name, data in PAPER.items():
+        count = benchmark.paper_counts.get(name, data.count)
+        if count:
+            iso = data.coarse_iso if benchmark.quick else data.iso
+            results[name] = run_columns(benchmark, data, count, iso)
+            print_times(out, data, results[name])
+    if with_table_iv(results):
+        print_cells(out, results)
+        print_lengths(out, results)
+    return results

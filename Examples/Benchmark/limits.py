@@ -15,8 +15,9 @@ The model counts what the method asks for, not what this implementation does:
   operations per particle of the formulas (cubic spline; +, -, *, max and a square root are one
   each). Particles in the support: volume of the support over the mean volume of a particle, inside
   the fluid; at the free surface there are fewer, so that this is a little too high.
-- Not counted: finding the particles in reach, sorting, Marching Cubes, boxes that the seeds' bound
-  excludes. These make a phase's distance from its limit.
+- Seeds: the bound over a brick of 4^3 nodes, for the bricks that remain.
+- Not counted: finding the particles in reach, sorting, Marching Cubes, bricks that the seeds' bound
+  excludes. These are part of a phase's distance from its limit.
 """
 import math
 
@@ -42,19 +43,17 @@ SLOPE = 5                         # 3 max(1 - q, 0)^2 - 3/4 max(2 - q, 0)^2, squ
 NODE_OPERATIONS = DISTANCE + KERNEL + 4
 GRADIENT_OPERATIONS = DISTANCE + KERNEL + SLOPE + 2 + 3 + 2 * 8  # slope / r, vector, two sums of 4
 ATTRIBUTE_OPERATIONS = DISTANCE + KERNEL + 2 + 2 * ATTRIBUTES
-BOX_OPERATIONS = 3 * 4 + DISTANCE + KERNEL + 4  # per axis |x| -+ half size, max; sum, sum of sizes
-CELLS_PER_BOX = 4  # 2 x 2 x 1
+BOUND_OPERATIONS = 3 * 3 + DISTANCE + KERNEL + 4  # per axis |x|, -+ half size, max; two sums
 
 
 def support_volume(h):
     return 4 / 3 * math.pi * (2 * h) ** 3
 
 
-def reach_volume(h, a, b, c):
-    """Of all points within 2 h of a box."""
+def reach_volume(h, edge):
+    """Of all points within 2 h of a cube."""
     r = 2 * h
-    return (a * b * c + 2 * r * (a * b + b * c + c * a) + math.pi * r * r * (a + b + c) +
-            support_volume(h))
+    return edge ** 3 + 6 * r * edge ** 2 + 3 * math.pi * r * r * edge + support_volume(h)
 
 
 def mean_volume(particles):
@@ -72,14 +71,13 @@ def work(result, volume):
     marched, marched_triangles = s["vertices_corrected"], s["triangles_before_trimming"]
     h, cube = s["smoothing_length_range"][0], result["parameters"]["cube_size"]
     neighbours = support_volume(h) / volume
-    box_particles = reach_volume(h, 2 * cube, 2 * cube, cube) / volume
+    brick_particles = reach_volume(h, 3 * cube) / volume
     near = min(n, s["bricks"] * (4 * cube) ** 3 / volume)  # bricks of 4^3 cells
     surface = vertices * (6 + ATTRIBUTES) * FLOAT + triangles * (3 + 1) * 8  # as VTK stores it
     return {
         "input": (n * (CALLER_ARRAYS + PARTICLE), 0),
         "search_grid": (n * 2 * PARTICLE, 0),
-        "seeds": (n * PARTICLE + s["seed_cells"] / 8,
-                  s["seed_cells"] / CELLS_PER_BOX * box_particles * BOX_OPERATIONS),
+        "seeds": (n * PARTICLE + s["bricks"], s["bricks"] * brick_particles * BOUND_OPERATIONS),
         "extraction": (near * PARTICLE + s["nodes_evaluated"] * NODE + marched * VERTEX +
                        marched_triangles * TRIANGLE,
                        s["nodes_evaluated"] * neighbours * NODE_OPERATIONS),

@@ -26,7 +26,6 @@ from program import need_surface, sum_of
 
 H_SCALES = (1.0, 0.75, 0.5)
 CUBE_FACTORS = (0.5, 1.0)
-METHOD = ("--field", "sum", "--no-attributes")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -116,17 +115,24 @@ def cost(corrected, total):
 def run_columns(benchmark, data, count, iso):
     which = data.make(count)
     path = benchmark.sets.get(which)
+
+    def run(column, field, *more):
+        return benchmark.program.run(path, (
+            "--scalar", data.scalar, "--iso", iso, *which.options, "--no-attributes",
+            "--field", field, "--seeds", column["seeds"], "--h-scale", column["h_scale"],
+            "--cube-factor", column["cube_factor"], *more))
+
     columns = []
     for scale in H_SCALES:
         for factor in CUBE_FACTORS:
             seeds = "complete" if data.lattice and scale < 1 else "pairs"
-            options = ("--scalar", data.scalar, "--iso", iso, *which.options, *METHOD,
-                       "--seeds", seeds, "--h-scale", scale, "--cube-factor", factor)
-            columns.append({"h_scale": scale, "cube_factor": factor, "seeds": seeds,
-                            "corrected": benchmark.program.run(path, options),
-                            "preview": benchmark.program.run(path, (*options, "--preview"))})
+            column = {"h_scale": scale, "cube_factor": factor, "seeds": seeds}
+            column["corrected"] = run(column, "sum")
+            column["preview"] = run(column, "sum", "--preview")
             if scale == 1:  # a kernel shorter than the particles' distance may leave nothing
-                need_surface(columns[-1]["corrected"], which.name)
+                need_surface(column["corrected"], which.name)
+                column["shepard"] = run(column, "shepard")
+            columns.append(column)
     return columns
 
 
@@ -195,21 +201,19 @@ def print_cells(out, results):
 def print_lengths(out, results):
     out.text("### Table V: correction")
     out.text()
-    out.text("Per grid size, h scaling factor 1; in brackets the paper's and ours / the paper's.")
+    out.text("Per grid size, h scaling factor 1; in brackets the paper's and ours / the paper's. "
+             "The last rows are those of the Shepard field instead of the sum.")
     out.text()
     rows = []
-    for row, (name, key) in enumerate(LENGTH_ROWS):
-        cells = []
-        for data, columns in with_table_iv(results):
-            for i in range(2):
-                ours = columns[i]["corrected"]
-                cells.append(beside(ours["statistics"][key] / ours["parameters"]["cube_size"],
-                                    data.lengths[row][i] / data.cube[i], "{:.4f}".format))
-        rows.append([f"{name} / grid size", *cells])
-    for name, key in LENGTH_ROWS:
-        rows.append([f"{name} (ours, in m)",
-                     *(f"{columns[i]['corrected']['statistics'][key]:.3g}"
-                       for _, columns in with_table_iv(results) for i in range(2))])
+    for field, note in (("corrected", ""), ("shepard", ", Shepard")):
+        for row, (name, key) in enumerate(LENGTH_ROWS):
+            cells = []
+            for data, columns in with_table_iv(results):
+                for i in range(2):
+                    ours = columns[i][field]
+                    cells.append(beside(ours["statistics"][key] / ours["parameters"]["cube_size"],
+                                        data.lengths[row][i] / data.cube[i], "{:.4f}".format))
+            rows.append([f"{name}{note}", *cells])
     out.table(header_iv(results), rows)
 
 

@@ -93,7 +93,8 @@ def first_start(benchmark):
     out.text(f"### First start ever, and later starts ({sets.text_of(count)})")
     out.text()
     out.text("Process: from start to end, with reading the particles and writing the surface. "
-             "First start ever: no built programs are cached (POCL_CACHE_DIR, CUDA_CACHE_PATH).")
+             "First start ever: no built programs are cached (POCL_CACHE_DIR, CUDA_CACHE_PATH). PoCL "
+             "compiles a kernel once more at its first launch, which counts in the phases.")
     out.text()
     path = benchmark.sets.get(sets.tank(count))
     starts = []

@@ -78,11 +78,12 @@ def growth(benchmark):
         fits = (("input_seconds", "particles"), ("grid_seconds", "particles"),
                 ("rest_seconds", "cells"), ("particle_bytes", "particles"),
                 ("surface_bytes", "cells"), ("bytes", "particles"))
-        exponents = {value: exponent([r[size] for r in results], [r[value] for r in results])
-                     for value, size in fits}
+        for value, size in fits:
+            slope = exponent([r[size] for r in results], [r[value] for r in results])
+            exponents[f"{value} in {size}"] = slope
         rows.append(["exponent", ""] + [
-            "-" if exponents[value] is None else f"{exponents[value]:.2f} in {size}"
-            for value, size in fits])
+            "-" if slope is None else f"{slope:.2f} in {name.split()[-1]}"
+            for name, slope in exponents.items()])
     out.table(header, rows)
     return {"sizes": results, "exponents": exponents}
 

@@ -11,7 +11,8 @@ static mcor_status mcor_mark(mcor_context* context, double iso, int mark_cells)
   const int lanes = context->cl.lanes;
   return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY,
     (context->grid.count + lanes - 1) / lanes, MCOR_GRID_ARGS(context), MCOR_BRICK_ARGS(context),
-    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso), MCOR_INT(mark_cells), MCOR_BUFFER(&bricks->marks),
+    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(&bricks->marks),
     MCOR_BUFFER(&bricks->now.cells));
 }
 

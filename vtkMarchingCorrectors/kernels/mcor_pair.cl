@@ -69,22 +69,26 @@ void mcor_pair_mark_line(
   }
 }
 
+/* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that rounding
+ * does not decide where particles lie on a lattice of that spacing. */
+#define MCOR_PAIR_REACH ((real)1.0001)
+
 /* Places in the tile of particles on the other side of the iso value and closer to particle j than its
  * smoothing length. A pair in which each is closer than the other's is left to the particle above. */
 int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int j,
-  real iso, int* list)
+  real iso, real h_scale, int* list)
 {
   const real x = (real)(grid->px[j] - query->low[0]) * grid->unit;
   const real y = (real)(grid->py[j] - query->low[1]) * grid->unit;
   const real z = (real)(grid->pz[j] - query->low[2]) * grid->unit;
-  const real inv_h = grid->inv_h[j];
+  const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
   const bool is_above = grid->value[j] >= iso;
   const fixv above = is_above ? (fixv)MCOR_TRUE : (fixv)0;
   int count = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
     const realv dx = MCOR_LOAD(i, tile->x) - x, dy = MCOR_LOAD(i, tile->y) - y,
-                dz = MCOR_LOAD(i, tile->z) - z, other = MCOR_LOAD(i, tile->inv_h);
+                dz = MCOR_LOAD(i, tile->z) - z, other = MCOR_LOAD(i, tile->inv_h) * scale;
     const realv r2 = dx * dx + dy * dy + dz * dz;
     const fixv chosen = r2 * inv_h * inv_h < (real)1 &&
       (MCOR_LOAD(i, tile->value) >= iso) != above && MCOR_LOAD(i, tile->weight) != 0 &&
@@ -99,10 +103,11 @@ int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_ti
 /* Marks for particle j and the particles of the tile that pair with it: the cells on the lines, or the
  * bricks of the box around these. */
 void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
-  const mcor_tile* tile, int j, real iso, int mark_cells, __global uchar* marks, __global uint* cells)
+  const mcor_tile* tile, int j, real iso, real h_scale, int mark_cells,
+  __global uchar* marks, __global uint* cells)
 {
   int list[MCOR_TILE + 16];
-  const int count = mcor_pair_list(grid, query, tile, j, iso, list);
+  const int count = mcor_pair_list(grid, query, tile, j, iso, h_scale, list);
   const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
   int a[3], low[3], high[3];
   for (int c = 0; c < 3; ++c)
@@ -139,7 +144,8 @@ void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mco
 /* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
  * each. mark_cells 0: marks bricks for pairs that straddle the iso value; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
-  const real iso, const int mark_cells, __global uchar* marks, __global uint* cells)
+  const real iso, const real h_scale, const int mark_cells, __global uchar* marks,
+  __global uint* cells)
 {
   const int begin = get_global_id(0) * MCOR_LANES;
   if (begin >= particle_count)
@@ -150,7 +156,7 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
   const int end = min(begin + MCOR_LANES, particle_count);
   mcor_query query;
   const real coarsest = mcor_query_particles(&grid, &query, begin, end - begin);
-  query.radius = (float)(1 / coarsest);
+  query.radius = (float)(MCOR_PAIR_REACH / (coarsest * h_scale));
   if (mcor_query_sides(&grid, &query, sides) != 3)
   {
     return;
@@ -164,7 +170,8 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
     {
       if (!MCOR_SOLIDS || p_weight[j] != 0)
       {
-        mcor_pair_mark_particle(&grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, mark_cells, marks, cells);
+        mcor_pair_mark_particle(
+          &grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, marks, cells);
       }
     }
   }

@@ -18,6 +18,39 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
   return mcor_reserve(context, &data->weight, values);
 }
 
+void mcor_release_bricks(mcor_context* context, mcor_brick_data* data)
+{
+  mcor_buffer* const buffers[] = { &data->bricks, &data->known, &data->cells, &data->value,
+    &data->weight };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+  data->count = 0;
+}
+
+/* Fills the new set, and moves what is known of the last one there. */
+static mcor_status mcor_fill_bricks(
+  mcor_context* context, const mcor_brick_data* last, int count, int words)
+{
+  mcor_bricks* bricks = &context->bricks;
+  MCOR_TRY(mcor_reserve_bricks(context, &bricks->now, count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_LIGHT, words, MCOR_BRICK_ARGS(context),
+    MCOR_BUFFER(&bricks->now.bricks)));
+  if (last->count > 0)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_move", MCOR_LIGHT, last->count,
+      MCOR_BRICK_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&last->bricks),
+      MCOR_BUFFER(&last->known), MCOR_BUFFER(&last->cells), MCOR_BUFFER(&last->value),
+      MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.cells),
+      MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
+  }
+  MCOR_TRY(mcor_reserve(
+    context, &bricks->neighbours, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_LIGHT, count, MCOR_BRICK_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
+}
+
 /* Makes all marked bricks exist, besides those that do already, and keeps
  * what is known of the latter. */
 mcor_status mcor_place_bricks(mcor_context* context)
@@ -39,22 +72,9 @@ mcor_status mcor_place_bricks(mcor_context* context)
   {
     return MCOR_OK; /* the set only ever grows */
   }
-  const mcor_brick_data last = bricks->now;
-  bricks->now = bricks->last;
-  bricks->last = last;
-  MCOR_TRY(mcor_reserve_bricks(context, &bricks->now, count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_LIGHT, words, MCOR_BRICK_ARGS(context),
-    MCOR_BUFFER(&bricks->now.bricks)));
-  if (last.count > 0)
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_move", MCOR_LIGHT, last.count,
-      MCOR_BRICK_ARGS(context), MCOR_INT(last.count), MCOR_BUFFER(&last.bricks),
-      MCOR_BUFFER(&last.known), MCOR_BUFFER(&last.cells), MCOR_BUFFER(&last.value),
-      MCOR_BUFFER(&last.weight), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.cells),
-      MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
-  }
-  MCOR_TRY(mcor_reserve(
-    context, &bricks->neighbours, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
-  return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_LIGHT, count, MCOR_BRICK_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
+  mcor_brick_data last = bricks->now;
+  bricks->now = (mcor_brick_data){ 0 };
+  const mcor_status status = mcor_fill_bricks(context, &last, count, words);
+  mcor_release_bricks(context, &last);
+  return status;
 }

@@ -47,6 +47,18 @@ mcor_status mcor_create_context(const char* device, mcor_context** context)
   return status;
 }
 
+/* What is needed within a phase only, and is as large as the particles after the search grid. */
+static void mcor_release_scratch(mcor_context* context)
+{
+  for (size_t i = 0; i < sizeof context->scratch / sizeof context->scratch[0]; ++i)
+  {
+    mcor_release(context, &context->scratch[i]);
+  }
+  mcor_release(context, &context->sort_keys);
+  mcor_release(context, &context->sort_values);
+  mcor_release(context, &context->sort_histogram);
+}
+
 void mcor_release_memory(mcor_context* context)
 {
   if (!context)
@@ -58,29 +70,23 @@ void mcor_release_memory(mcor_context* context)
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
     &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides, &b->block_keys,
-    &b->block_buckets, &b->states, &b->marks, &b->bits, &b->base, &b->now.bricks, &b->now.known,
-    &b->now.cells, &b->now.value, &b->now.weight, &b->last.bricks, &b->last.known, &b->last.cells,
-    &b->last.value, &b->last.weight, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
+    &b->block_buckets, &b->states, &b->marks, &b->bits, &b->base, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
     &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
     &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->triangles,
     &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
-    &m->scanned, &context->scan_sums, &context->sort_keys, &context->sort_values,
-    &context->sort_histogram, &context->attributes, &context->groups };
+    &m->scanned, &context->scan_sums, &context->attributes, &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
   }
-  for (size_t i = 0; i < sizeof context->scratch / sizeof context->scratch[0]; ++i)
-  {
-    mcor_release(context, &context->scratch[i]);
-  }
+  mcor_release_scratch(context);
+  mcor_release_bricks(context, &b->now);
   for (size_t i = 0; i < sizeof context->out / sizeof context->out[0]; ++i)
   {
     mcor_release(context, &context->out[i]);
   }
   free(context->source);
   context->source = NULL;
-  b->now.count = b->last.count = 0;
   context->grid_valid = context->value_valid = context->nodes_valid = false;
 }
 
@@ -188,6 +194,7 @@ static mcor_status mcor_prepare(
   {
     MCOR_TRY(mcor_set_scalar(context, input));
   }
+  mcor_release_scratch(context);
   if (!context->nodes_valid)
   {
     MCOR_TRY(mcor_make_blocks(context));

@@ -98,7 +98,7 @@ typedef struct mcor_bricks
   mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer marks;      /* the same; of this iso value: 1 where a brick is needed */
   mcor_buffer bits, base; /* [block_count][16] */
-  mcor_brick_data now, last; /* last: the other half of a double buffer */
+  mcor_brick_data now;
   mcor_buffer neighbours, need;
 } mcor_bricks;
 
@@ -178,6 +178,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, mcor_buffer* to, int to_offset);
+void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);

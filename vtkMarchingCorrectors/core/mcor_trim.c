@@ -96,9 +96,9 @@ mcor_status mcor_trim(mcor_context* context, double iso)
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts),
     MCOR_BUFFER(&mesh->cut_index), MCOR_BUFFER(&mesh->trimmed)));
-  const mcor_buffer untrimmed = mesh->triangles;
+  mcor_release(context, &mesh->triangles);
   mesh->triangles = mesh->trimmed;
-  mesh->trimmed = untrimmed;
+  mesh->trimmed = (mcor_buffer){ 0 };
   mesh->triangle_count = remaining;
   return cut_count > 0 ? mcor_place_cuts(context, cut_count, iso) : MCOR_OK;
 }

@@ -18,21 +18,22 @@ typedef struct
   realv weight, wx, wy, wz;
 } mcor_field_at;
 
+bool mcor_same_brick(int4 a, int4 b)
+{
+  return a.x >> 2 == b.x >> 2 && a.y >> 2 == b.y >> 2 && a.z >> 2 == b.z >> 2;
+}
+
 /* Points that are evaluated together should lie close together, as then fewer particles reach them:
- * a group is up to MCOR_LANES successive points of one brick. Points are sorted by brick. */
+ * a group is up to MCOR_LANES successive points of one brick. Points are sorted by brick, so that
+ * looking back in steps of MCOR_LANES finds how far from the brick's first point this one is. */
 bool mcor_group_starts(__global const int4* node, int i)
 {
-  int before = 0; /* points of the same brick just before this one */
-  while (before < i)
+  int j = i;
+  while (MCOR_LANES > 1 && j >= MCOR_LANES && mcor_same_brick(node[j - MCOR_LANES], node[i]))
   {
-    const int4 a = node[i - before - 1], b = node[i];
-    if (a.x >> 2 != b.x >> 2 || a.y >> 2 != b.y >> 2 || a.z >> 2 != b.z >> 2)
-    {
-      break;
-    }
-    ++before;
+    j -= MCOR_LANES;
   }
-  return before % MCOR_LANES == 0;
+  return MCOR_LANES == 1 || j == 0 || !mcor_same_brick(node[j - 1], node[i]);
 }
 
 /* One work-item = one point, of `count` from `first`. Writes 1 where a group starts. */

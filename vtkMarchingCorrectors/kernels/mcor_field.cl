@@ -229,12 +229,13 @@ real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, i
   return coarsest;
 }
 
-/* MCOR_LANES elements from p[i] on. Compilers make one load of vloadn for reals, but not for integers. */
+/* MCOR_LANES elements from p[i] on. Compilers may make several accesses of vloadn and vstoren. */
 #if MCOR_LANES == 1
 #define MCOR_LOAD(i, p) ((p)[i])
 #define MCOR_LOAD_FIX(i, p) ((p)[i])
 #else
 typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
+typedef realv __attribute__((aligned(4))) mcor_loose_realv;
 #define MCOR_LOAD(i, p) MCOR_CAT(vload, MCOR_LANES)(0, (p) + (i))
 #define MCOR_LOAD_FIX(i, p) (*(__global const mcor_loose_fixv*)((p) + (i)))
 #endif
@@ -291,7 +292,7 @@ typedef ushort mcor_mask;
   ((mcor_mask)__builtin_ia32_cmpd512_mask(                                                         \
     (keep), (int16)0, 4, (mcor_mask)((1u << (lanes)) - 1))) /* 4: not equal */
 #define MCOR_PACK_REAL(mask, v, to)                                                                \
-  vstore16(__builtin_ia32_compresssf512_mask((v), (float16)0, (mask)), 0, (to))
+  (*(mcor_loose_realv*)(to) = __builtin_ia32_compresssf512_mask((v), (float16)0, (mask)))
 #define MCOR_PACK_INDEX(mask, first, to)                                                           \
   (*(mcor_loose_fixv*)(to) = __builtin_ia32_compresssi512_mask(                                    \
      (first) + mcor_lane_index(), (int16)0, (mask)))
@@ -344,9 +345,10 @@ int mcor_mask_count(const mcor_mask* mask)
 #define MCOR_MASK_COUNT(mask) mcor_mask_count(&(mask))
 #endif
 
-/* Tests MCOR_LANES particles from j on, of which `lanes` are meant, and appends those that reach
- * the query's box. */
-void mcor_tile_append(const mcor_grid* grid, const mcor_query* query, int j, int lanes, mcor_tile* tile)
+/* Tests MCOR_LANES particles from j on, of which `lanes` are meant, and puts those that reach the
+ * query's box behind the tile's first `count`. Returns the new count. */
+int mcor_tile_append(const mcor_grid* grid, const mcor_query* query, int j, int lanes, int count,
+  mcor_tile* tile)
 {
   const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - query->low[0]) * grid->unit;
   const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - query->low[1]) * grid->unit;
@@ -366,17 +368,17 @@ void mcor_tile_append(const mcor_grid* grid, const mcor_query* query, int j, int
   const fixv reaches = (dx * dx + dy * dy + dz * dz) * scale * scale < reach * reach * (real)1.0001;
 #endif
   const mcor_mask mask = MCOR_MASK(reaches, lanes);
-  MCOR_PACK_INDEX(mask, j, tile->list + tile->count);
-  MCOR_PACK_REAL(mask, x, tile->x + tile->count);
-  MCOR_PACK_REAL(mask, y, tile->y + tile->count);
-  MCOR_PACK_REAL(mask, z, tile->z + tile->count);
-  MCOR_PACK_REAL(mask, inv_h, tile->inv_h + tile->count);
-  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->weight), tile->weight + tile->count);
-  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->value), tile->value + tile->count);
+  MCOR_PACK_INDEX(mask, j, tile->list + count);
+  MCOR_PACK_REAL(mask, x, tile->x + count);
+  MCOR_PACK_REAL(mask, y, tile->y + count);
+  MCOR_PACK_REAL(mask, z, tile->z + count);
+  MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
+  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->weight), tile->weight + count);
+  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->value), tile->value + count);
 #if MCOR_SOLIDS
-  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->trim_weight), tile->trim_weight + tile->count);
+  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->trim_weight), tile->trim_weight + count);
 #endif
-  tile->count += MCOR_MASK_COUNT(mask);
+  return count + MCOR_MASK_COUNT(mask);
 }
 
 /* Sets the lanes beyond the end, which loads of MCOR_LANES particles see, to particles without
@@ -395,9 +397,9 @@ void mcor_tile_pad(mcor_tile* tile)
 
 void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
 {
-  tile->count = 0;
+  int count = 0;
   tile->delivered = false;
-  while (tile->count <= MCOR_TILE - MCOR_LANES)
+  while (count <= MCOR_TILE - MCOR_LANES)
   {
     if (query->begin >= query->end && !mcor_query_next_row(grid, query))
     {
@@ -405,9 +407,10 @@ void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
       break;
     }
     const int lanes = min(MCOR_LANES, query->end - query->begin);
-    mcor_tile_append(grid, query, query->begin, lanes, tile);
+    count = mcor_tile_append(grid, query, query->begin, lanes, count, tile);
     query->begin += lanes;
   }
+  tile->count = count;
   mcor_tile_pad(tile);
 }
 

@@ -222,6 +222,7 @@ void vtkMarchingCorrectors::FillOptions(
     : this->ShepardNormalization    ? MCOR_SHEPARD
                                     : MCOR_SUM;
   options.seeds = this->SeedMode == PAIRS && !this->FreeSurface ? MCOR_PAIRS : MCOR_COMPLETE;
+  options.topology = this->Topology == TOPOLOGY_FIELD ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   options.h_scale = this->HScaleFactor;
   options.cube_size_factor = this->CubeSizeFactor;
   options.cube_size = this->CubeSize;
@@ -346,6 +347,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Cube Size Factor: " << this->CubeSizeFactor << "\n";
   os << indent << "Cube Size: " << this->CubeSize << "\n";
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
+  os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
   os << indent << "Node Threshold: " << this->NodeThreshold << "\n";
   os << indent << "Vertex Threshold: " << this->VertexThreshold << "\n";

@@ -62,13 +62,14 @@
  * point arrays (see InterpolateAttributes). The output field data holds the statistics of the run,
  * one array each: "Device", "Platform", "Seconds" (one component per phase and the total),
  * "FluidParticles", "SolidParticles", "VirtualCells", "LatticeOrigin", "LatticeCells", "SeedCells",
- * "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds", "Points",
- * "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+ * "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",
+ * "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles",
+ * "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
  * "DeviceBytesPeak", "SmoothingLengthRange", "ScalarRange", and the parameters: "IsoValues",
  * "Field", "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray", "DensityArray", "Kernel",
- * "SeedMode", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
+ * "SeedMode", "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
  * "VertexThreshold", "Tolerance", "IterationLimit", "Preview".
  *
  * All lengths are in the unit of the point coordinates (L below).
@@ -137,6 +138,12 @@ public:
   {
     COMPLETE = 0, ///< every cell that a bound cannot exclude
     PAIRS = 1     ///< cells between particle pairs on both sides of the iso value
+  };
+
+  enum TopologyType
+  {
+    TOPOLOGY_TABLE = 0, ///< Marching Cubes' table alone
+    TOPOLOGY_FIELD = 1  ///< as the field is on ambiguous faces and in ambiguous cells
   };
 
   /**
@@ -367,6 +374,19 @@ public:
 
   ///@{
   /**
+   * How the corners of a cell are connected where their values alone leave it open, see
+   * TopologyType. TOPOLOGY_TABLE (the default) keeps the higher values apart on ambiguous faces, and
+   * makes no tunnels through cells. TOPOLOGY_FIELD evaluates the field there, so that bridges and
+   * tunnels as thin as a cube are those of the field. The surface is a manifold with both.
+   */
+  vtkSetClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
+  vtkGetMacro(Topology, int);
+  void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
+  void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
+  ///@}
+
+  ///@{
+  /**
    * Quick look: vertices by linear interpolation, no correction, normals of the triangles. Off by
    * default.
    */
@@ -587,6 +607,7 @@ protected:
   double CubeSizeFactor = 0.5;
   double CubeSize = 0.0;
   int SeedMode = COMPLETE;
+  int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
   double NodeThreshold = 0.1;
   double VertexThreshold = 0.5;

@@ -294,6 +294,10 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   AddCount(fieldData, "Bricks", { s.bricks });
   AddCount(fieldData, "NodesEvaluated", { s.nodes_evaluated });
   AddCount(fieldData, "MarchRounds", { s.march_rounds });
+  AddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });
+  AddCount(fieldData, "JoinedFaces", { s.joined_faces });
+  AddCount(fieldData, "AmbiguousCells", { s.ambiguous_cells });
+  AddCount(fieldData, "Tunnels", { s.tunnels });
   AddCount(fieldData, "Points", { this->Surface.point_count });
   AddCount(fieldData, "Triangles", { this->Surface.triangle_count });
   AddCount(fieldData, "TrianglesBeforeTrimming", { s.triangles_before_trimming });
@@ -330,6 +334,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   AddArrayName(fieldData, "DensityArray", this->Input.Density);
   AddText(fieldData, "Kernel", mcor_sph_kernel_name(o.sph_kernel));
   AddText(fieldData, "SeedMode", o.seeds == MCOR_PAIRS ? "pairs" : "complete");
+  AddText(fieldData, "Topology", o.topology == MCOR_TOPOLOGY_FIELD ? "field" : "table");
   AddText(fieldData, "Precision", o.precision == MCOR_FLOAT64 ? "double" : "single");
   AddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
   AddReal(fieldData, "HScaleFactor", { o.h_scale });

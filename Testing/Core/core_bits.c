@@ -18,23 +18,30 @@ typedef struct bits_case
   mcor_seed_mode seeds;
   int solids, volumes;
   double iso;
+  mcor_topology topology;
 } bits_case;
 
 static const bits_case cases[] = { { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32,
-                                     MCOR_COMPLETE, 1, 0, 0.5 },
-  { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, 1, 1, 0.5 },
-  { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, 0, 1, 1.5 },
-  { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE, 0, 0, 0.5 } };
+                                     MCOR_COMPLETE, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE },
+  { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, 1, 1, 0.5,
+    MCOR_TOPOLOGY_TABLE },
+  { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, 0, 1, 1.5, MCOR_TOPOLOGY_TABLE },
+  { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE, 0, 0, 0.5,
+    MCOR_TOPOLOGY_TABLE },
+  { "topology", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE, 1, 0, 0.1,
+    MCOR_TOPOLOGY_FIELD } };
 
 static int run_case(mcor_context* context, const bits_case* at, int small)
 {
-  const double iso = small && at->field != MCOR_WEIGHT_SUM ? 6 : at->iso;
+  const bool noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
+  const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? 6 : at->iso;
   core_set set = core_make_block(small ? 4 : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.smoothing_length[i] *= 1 + random_unit(&seed);
     set.solid[i] = random_bits(&seed) % 8 == 0;
+    set.scalar[i] = noise ? 2 * random_unit(&seed) - 1 : set.scalar[i];
   }
   set.has_solids = at->solids;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
@@ -47,6 +54,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
   options.field = at->field;
   options.precision = at->precision;
   options.seeds = at->seeds;
+  options.topology = at->topology;
+  options.cube_size_factor = noise ? 1.2 : options.cube_size_factor;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
   options.boundary_flag = options.nearest_particle = 1;
   mcor_surface surface = { 0 };
@@ -56,7 +65,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
     fprintf(stderr, "%s: %lld triangles. %s\n", at->name, (long long)surface.triangle_count,
       mcor_last_error(context));
   }
-  const int good = status == MCOR_OK && surface.triangle_count > 0;
+  const int good = status == MCOR_OK && surface.triangle_count > 0 &&
+    (!noise || (surface.statistics.joined_faces > 0 && surface.statistics.ambiguous_cells > 0));
   printf("%s: %lld points, %lld triangles, %016llx\n", at->name, (long long)surface.point_count,
     (long long)surface.triangle_count, (unsigned long long)core_hash(&surface));
   fflush(stdout);

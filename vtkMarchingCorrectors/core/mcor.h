@@ -78,6 +78,16 @@ extern "C"
                     * as complete for MCOR_WEIGHT_SUM, which has no values at particles */
   } mcor_seed_mode;
 
+  /* How the nodes of an ambiguous face (two above the iso value and two below, diagonally) and the
+   * interior of a cell are connected. Vertices are the same; the surface is a manifold with both. */
+  typedef enum mcor_topology
+  {
+    MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
+    MCOR_TOPOLOGY_FIELD = 1  /* as the field is at the saddle of the face's bilinear interpolant, and
+                              * at those of the cell's trilinear one: bridges and tunnels as wide as a
+                              * cube are those of the field */
+  } mcor_topology;
+
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
@@ -138,6 +148,7 @@ extern "C"
     mcor_sph_kernel sph_kernel;
     mcor_field field;
     mcor_seed_mode seeds;
+    mcor_topology topology;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
@@ -190,6 +201,9 @@ extern "C"
     int64_t cells_used;      /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t march_rounds;
+    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
+     * table; cells with two loops that might be a tunnel, and those where they are. */
+    int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Correction, Table V: distance between linear and corrected vertex, unit L. */
     double correction_mean, correction_max, correction_deviation;
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;

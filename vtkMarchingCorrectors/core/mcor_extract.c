@@ -16,6 +16,7 @@ void mcor_set_default_options(mcor_options* options)
   *options = (mcor_options){ .sph_kernel = MCOR_CUBIC_SPLINE,
     .field = MCOR_SHEPARD,
     .seeds = MCOR_COMPLETE,
+    .topology = MCOR_TOPOLOGY_TABLE,
     .h_scale = 1,
     .cube_size_factor = 0.5,
     .node_threshold = 0.1,
@@ -74,7 +75,8 @@ void mcor_release_memory(mcor_context* context)
     &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
     &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->triangles,
     &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
-    &m->scanned, &context->scan_sums, &context->attributes, &context->groups };
+    &m->scanned, &m->decisions, &m->sample_base, &m->sample_node, &m->sample_offset,
+    &m->sample_side, &context->scan_sums, &context->attributes, &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
@@ -98,6 +100,8 @@ void mcor_free_context(mcor_context* context)
   }
   mcor_release_memory(context);
   mcor_release(context, &context->case_table);
+  mcor_release(context, &context->topology_cases);
+  mcor_release(context, &context->topology_rows);
   mcor_close_device(context);
   free(context);
 }

@@ -112,6 +112,8 @@ typedef struct mcor_mesh
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer triangles, trimmed, remaining, cuts, cut_keys, cut_distinct, cut_index;
   mcor_buffer scanned;
+  /* Of MCOR_TOPOLOGY_FIELD. decisions: see MCOR_DECISION_MASKS. */
+  mcor_buffer decisions, sample_base, sample_node, sample_offset, sample_side;
 } mcor_mesh;
 
 struct mcor_context
@@ -123,6 +125,7 @@ struct mcor_context
   mcor_lattice lattice;
   mcor_measure measure;
   mcor_buffer case_table;
+  mcor_buffer topology_cases, topology_rows; /* empty until MCOR_TOPOLOGY_FIELD is first used */
   mcor_buffer scratch[6];     /* within one function */
   mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
   mcor_buffer out[8], attributes;
@@ -192,6 +195,9 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_count_bits(
   mcor_context* context, const mcor_buffer* masks, int count, int* total);
 mcor_status mcor_march(mcor_context* context, double iso);
+mcor_status mcor_resolve_topology(mcor_context* context, double iso);
+mcor_status mcor_count_resolved(mcor_context* context);
+mcor_status mcor_emit_resolved(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_trim(mcor_context* context, double iso);
 mcor_status mcor_append_output(
@@ -201,6 +207,28 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 /* 256 rows of 16: up to 15 edges, 3 a triangle; then the number of triangles. An edge is
  * axis << 3 | lower corner; corner and axis bits 1 x, 2 y, 4 z. */
 void mcor_make_case_table(uint8_t table[256][16]);
+
+/* One way to triangulate a cell. Twin of the offsets in mcor_topology.cl. */
+typedef struct mcor_cell_row
+{
+  uint8_t edges[36]; /* as above */
+  uint8_t triangles;
+  uint8_t tunnel[2]; /* the row of the same case, counted from its first, where a tunnel joins two
+                      * regions below, above; 0: there is none */
+  uint8_t unused;
+} mcor_cell_row;
+
+#define MCOR_TOPOLOGY_ROWS 1200
+typedef struct mcor_topology_table
+{
+  /* First row << 6 | ambiguous faces, bit axis * 2 + side. Bit i of a row's number from there: whether
+   * the corners above are joined on the i-th ambiguous face. Rows with tunnels come last. */
+  cl_int cases[256];
+  int row_count;
+  mcor_cell_row rows[MCOR_TOPOLOGY_ROWS];
+} mcor_topology_table;
+
+void mcor_make_topology_table(mcor_topology_table* table);
 
 extern const char mcor_source_mcor_prelude_cl[];
 extern const char mcor_source_mcor_sph_kernel_h[];
@@ -213,6 +241,7 @@ extern const char mcor_source_mcor_seed_cl[];
 extern const char mcor_source_mcor_march_cl[];
 extern const char mcor_source_mcor_pair_cl[];
 extern const char mcor_source_mcor_correct_cl[];
+extern const char mcor_source_mcor_topology_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_output_cl[];
 extern const char mcor_source_mcor_attribute_cl[];

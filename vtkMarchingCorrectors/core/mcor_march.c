@@ -87,6 +87,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_find_cells(context, iso));
   const int count = bricks->now.count;
   const size_t n = (size_t)count;
+  const bool resolved = context->options->topology == MCOR_TOPOLOGY_FIELD;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, n * 9 * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
@@ -94,6 +95,11 @@ mcor_status mcor_march(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
     MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base)));
+  if (resolved)
+  {
+    MCOR_TRY(mcor_resolve_topology(context, iso));
+    MCOR_TRY(mcor_count_resolved(context));
+  }
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
@@ -106,6 +112,10 @@ mcor_status mcor_march(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->edges),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  if (resolved)
+  {
+    return mcor_emit_resolved(context);
+  }
   return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),

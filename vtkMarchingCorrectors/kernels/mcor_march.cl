@@ -284,6 +284,28 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
   }
 }
 
+/* Writes the triangles of a cell, given by a row of the case table; returns where the next ones go. */
+__global int* mcor_march_emit(__global const uchar* row, int count, __global const int* neighbours,
+  __global const ulong* edges, __global const int* vertex_base, int slot, int cell,
+  __global int* to)
+{
+  for (int i = 0; i < 3 * count; ++i)
+  {
+    /* An edge is its axis and its lower corner within the cell, bits x, y, z. */
+    const int axis = row[i] >> 3, corner = row[i] & 7;
+    const int x = (cell & 3) + (corner & 1), y = (cell >> 2 & 3) + (corner >> 1 & 1),
+              z = (cell >> 4) + (corner >> 2);
+    const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
+    const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
+    const int n = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
+    __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
+    const int first_other = axis == 0 ? 1 : 0;
+    const int second_fan = (int)(e[6 + axis] >> n & 1) & (corner >> first_other & 1);
+    *to++ = vertex_base[owner] + mcor_march_rank(e, n, axis) + second_fan;
+  }
+  return to;
+}
+
 /* One work-item = one brick. Reads used cells, node masks and edge numbering. Writes triangles. */
 __kernel void mcor_march_triangles(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const ulong* edges,
@@ -297,25 +319,12 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
   }
   ulong m[8];
   mcor_brick_masks(above, neighbours, slot, 0, m);
-  int to = triangle_base[slot] * 3;
+  __global int* to = triangles + triangle_base[slot] * 3L;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
     __global const uchar* row = case_table + mcor_march_case(m, cell) * 16;
-    for (int i = 0; i < 3 * row[15]; ++i)
-    {
-      /* An edge is its axis and its lower corner within the cell, bits x, y, z. */
-      const int axis = row[i] >> 3, corner = row[i] & 7;
-      const int x = (cell & 3) + (corner & 1), y = (cell >> 2 & 3) + (corner >> 1 & 1),
-                z = (cell >> 4) + (corner >> 2);
-      const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
-      const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
-      const int n = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
-      __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
-      const int first_other = axis == 0 ? 1 : 0;
-      const int second_fan = (int)(e[6 + axis] >> n & 1) & (corner >> first_other & 1);
-      triangles[to++] = vertex_base[owner] + mcor_march_rank(e, n, axis) + second_fan;
-    }
+    to = mcor_march_emit(row, row[15], neighbours, edges, vertex_base, slot, cell, to);
   }
 }
 

@@ -1,0 +1,492 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Topology by the field: saddle points against a search, bridges and tunnels of known shape, noise. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- saddles -------------------------------------------------------------------------------- */
+
+/* Corner values -> number of saddles in the cell, and where they are. */
+static const char source[] =
+  "__kernel void test_saddles(const int count, __global const real* in, __global real* out)\n"
+  "{\n"
+  "  const int i = get_global_id(0);\n"
+  "  if (i >= count)\n"
+  "    return;\n"
+  "  real f[8];\n"
+  "  for (int c = 0; c < 8; ++c)\n"
+  "    f[c] = in[8 * i + c];\n"
+  "  mcor_trilinear t;\n"
+  "  mcor_topology_find_saddles(f, &t);\n"
+  "  const real4 middle = mcor_topology_middle(f);\n"
+  "  __global real* o = out + 10 * i;\n"
+  "  o[0] = t.saddle_count;\n"
+  "  for (int s = 0; s < 2; ++s)\n"
+  "  {\n"
+  "    o[1 + 3 * s] = s < t.saddle_count ? t.saddle[s].x : 0;\n"
+  "    o[2 + 3 * s] = s < t.saddle_count ? t.saddle[s].y : 0;\n"
+  "    o[3 + 3 * s] = s < t.saddle_count ? t.saddle[s].z : 0;\n"
+  "  }\n"
+  "  o[7] = middle.x;\n"
+  "  o[8] = middle.y;\n"
+  "  o[9] = middle.z;\n"
+  "}\n";
+
+/* Gradient and mixed second derivatives of the trilinear interpolant. */
+static void trilinear(const double f[8], const double x[3], double gradient[3], double mixed[3])
+{
+  memset(gradient, 0, 3 * sizeof gradient[0]);
+  memset(mixed, 0, 3 * sizeof mixed[0]);
+  for (int c = 0; c < 8; ++c)
+  {
+    double share[3], slope[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      share[a] = c >> a & 1 ? x[a] : 1 - x[a];
+      slope[a] = c >> a & 1 ? 1 : -1;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const int u = (a + 1) % 3, v = (a + 2) % 3;
+      gradient[a] += f[c] * slope[a] * share[u] * share[v];
+      mixed[a] += f[c] * share[a] * slope[u] * slope[v]; /* with respect to u and v */
+    }
+  }
+}
+
+/* One Newton step; 0 where there is none. */
+static int newton_step(const double f[8], double x[3])
+{
+  double g[3], m[3];
+  trilinear(f, x, g, m);
+  if (m[0] == 0 || m[1] == 0 || m[2] == 0)
+  {
+    return 0;
+  }
+  /* The matrix of second derivatives has zeros on its diagonal, as the interpolant is linear along
+   * each axis. */
+  for (int a = 0; a < 3; ++a)
+  {
+    const int u = (a + 1) % 3, v = (a + 2) % 3;
+    x[a] += (m[a] * g[a] - m[u] * g[u] - m[v] * g[v]) / (2 * m[u] * m[v]);
+  }
+  return 1;
+}
+
+/* Saddles at least `margin` inside the cell, by Newton's method from many points. */
+static int search_saddles(const double f[8], double margin, double saddles[2][3])
+{
+  int count = 0;
+  for (int start = 0; start < 125; ++start)
+  {
+    double x[3] = { start % 5 * 0.25, start / 5 % 5 * 0.25, start / 25 * 0.25 }, g[3], m[3];
+    for (int i = 0; i < 60 && newton_step(f, x); ++i)
+    {
+    }
+    trilinear(f, x, g, m);
+    int found = fabs(g[0]) + fabs(g[1]) + fabs(g[2]) < 1e-9;
+    for (int a = 0; a < 3; ++a)
+    {
+      found = found && x[a] > margin && x[a] < 1 - margin;
+    }
+    for (int s = 0; s < count; ++s)
+    {
+      found = found && fabs(x[0] - saddles[s][0]) + fabs(x[1] - saddles[s][1]) +
+          fabs(x[2] - saddles[s][2]) > 1e-6;
+    }
+    if (found && count < 2)
+    {
+      memcpy(saddles[count++], x, 3 * sizeof x[0]);
+    }
+  }
+  return count;
+}
+
+static double distance_to(const double x[3], const double* out)
+{
+  return fmax(fabs(x[0] - out[0]), fmax(fabs(x[1] - out[1]), fabs(x[2] - out[2])));
+}
+
+static void check_saddles(const double f[8], const double out[10])
+{
+  double saddles[2][3];
+  const int count = search_saddles(f, 1e-3, saddles), found = (int)out[0];
+  for (int s = 0; s < count; ++s)
+  {
+    CORE_CHECK((found > 0 && distance_to(saddles[s], out + 1) < 1e-6) ||
+        (found > 1 && distance_to(saddles[s], out + 4) < 1e-6),
+      "saddle %g %g %g of values %g %g %g %g %g %g %g %g is missing", saddles[s][0], saddles[s][1],
+      saddles[s][2], f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]);
+  }
+  for (int s = 0; s < found; ++s)
+  {
+    double g[3], m[3];
+    trilinear(f, out + 1 + 3 * s, g, m);
+    CORE_CHECK(fabs(g[0]) + fabs(g[1]) + fabs(g[2]) < 1e-6, "gradient %g %g %g", g[0], g[1], g[2]);
+  }
+}
+
+/* The mean of the crossings, for values that are -1 or 1: of the edges' middles. */
+static void check_middle(const double f[8], const double out[10])
+{
+  double sum[3] = { 0, 0, 0 };
+  int count = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      if (!(c >> a & 1) && f[c] != f[c | 1 << a])
+      {
+        ++count;
+        for (int b = 0; b < 3; ++b)
+        {
+          sum[b] += a == b ? 0.5 : c >> b & 1;
+        }
+      }
+    }
+  }
+  for (int b = 0; b < 3; ++b)
+  {
+    CORE_CHECK(count == 0 || fabs(out[7 + b] - sum[b] / count) < 1e-12, "middle %g", out[7 + b]);
+  }
+}
+
+static void test_saddles(void** state)
+{
+  enum
+  {
+    N = 4096,
+    SIGNS = 256 /* the first ones have the values -1 and 1 alone, with sums that cancel */
+  };
+  mcor_context* context = *state;
+  static double in[N][8], out[N][10];
+  uint64_t seed = 5;
+  int with_saddles[3] = { 0, 0, 0 };
+  for (int i = 0; i < N; ++i)
+  {
+    for (int c = 0; c < 8; ++c)
+    {
+      const double value = 2 * random_unit(&seed) - 1, sign = i >> c & 1 ? 1 : -1;
+      in[i][c] = i < SIGNS ? sign : i % 2 ? value : fabs(value) * sign;
+    }
+  }
+  mcor_buffer values = { 0 }, results = { 0 };
+  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64);
+  core_extend_program(context, source);
+  CORE_OK(context, mcor_write(context, &values, in, sizeof in));
+  CORE_OK(context, mcor_reserve(context, &results, sizeof out));
+  CORE_OK(context,
+    MCOR_LAUNCH(context, "test_saddles", MCOR_LIGHT, N, MCOR_INT(N), MCOR_BUFFER(&values),
+      MCOR_BUFFER(&results)));
+  CORE_OK(context, mcor_read(context, &results, 0, out, sizeof out));
+  for (int i = 0; i < N; ++i)
+  {
+    if (i < SIGNS)
+    {
+      check_middle(in[i], out[i]);
+    }
+    else
+    {
+      check_saddles(in[i], out[i]);
+    }
+    ++with_saddles[(int)out[i][0]];
+  }
+  assert_true(with_saddles[1] > 100 && with_saddles[2] > 20);
+  /* Opposite corners: the saddle is in the middle, though the cubic term is 0. */
+  const double* opposite = out[0x81];
+  assert_true(opposite[0] == 1 && fabs(opposite[1] - 0.5) + fabs(opposite[2] - 0.5) < 1e-12);
+  mcor_release(context, &values);
+  mcor_release(context, &results);
+}
+
+/* ---- known shapes --------------------------------------------------------------------------- */
+
+/* Particles around the origin, closer together than the cubes, whose scalar is given by `value`. */
+static core_set make_particles(double (*value)(const double x[3], const double end[3], double sign),
+  const double end[3], double sign)
+{
+  enum
+  {
+    N = 24
+  };
+  const double spacing = 0.5;
+  core_set set = core_make_set(N * N * N);
+  for (int i = 0; i < N * N * N; ++i)
+  {
+    double* x = set.position + 3 * i;
+    const int at[3] = { i % N, i / N % N, i / N / N };
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] = spacing * (at[a] - 0.5 * (N - 1)) + 0.5 * end[a];
+    }
+    set.smoothing_length[i] = 1.3 * spacing;
+    set.volume[i] = spacing * spacing * spacing;
+    set.scalar[i] = sign * value(x, end, sign);
+  }
+  return set;
+}
+
+/* A straight thread from the origin to `end`, thinner than a cube. */
+static double thread(const double x[3], const double end[3], double sign)
+{
+  double along = 0, length2 = 0, distance2 = 0;
+  (void)sign;
+  for (int a = 0; a < 3; ++a)
+  {
+    along += x[a] * end[a];
+    length2 += end[a] * end[a];
+  }
+  along = fmin(fmax(along / length2, 0), 1);
+  for (int a = 0; a < 3; ++a)
+  {
+    distance2 += (x[a] - along * end[a]) * (x[a] - along * end[a]);
+  }
+  return 1.2 * 1.2 - distance2;
+}
+
+/* Two balls around the ends that do not touch. */
+static double balls(const double x[3], const double end[3], double sign)
+{
+  double first = 0, second = 0;
+  (void)sign;
+  for (int a = 0; a < 3; ++a)
+  {
+    first += x[a] * x[a];
+    second += (x[a] - end[a]) * (x[a] - end[a]);
+  }
+  return 1.2 * 1.2 - fmin(first, second);
+}
+
+/* Checks a closed surface, and returns its parts. */
+static int64_t count_parts(
+  mcor_context* context, const core_set* set, double cube, mcor_topology topology)
+{
+  const double iso = 0;
+  const mcor_input input = core_input(set);
+  mcor_options options = core_options(&iso);
+  options.cube_size = cube;
+  options.topology = topology;
+  mcor_surface surface = core_extract(context, &input, &options);
+  mesh_report report = core_check_mesh(&surface);
+  const int64_t parts = report.components;
+  CORE_CHECK(report.boundary_edges == 0 && report.euler == 2 * parts,
+    "%lld boundary edges, %lld components, Euler number %lld", (long long)report.boundary_edges,
+    (long long)parts, (long long)report.euler);
+  mesh_free_report(&report);
+  mcor_free_surface(&surface);
+  return parts;
+}
+
+/* Diagonals of a cube's faces and of the cube itself. */
+static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, { -3, 0, 3 },
+  { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
+
+/* Above or below the iso value, a thread stays whole, as it does on a fine lattice; the table cuts it,
+ * except where it connects nodes below on a face. */
+static void test_threads(void** state)
+{
+  for (size_t i = 0; i < sizeof diagonals / sizeof diagonals[0]; ++i)
+  {
+    for (int sign = -1; sign <= 1; sign += 2)
+    {
+      core_set set = make_particles(thread, diagonals[i], sign);
+      assert_int_equal(count_parts(*state, &set, 0.37, MCOR_TOPOLOGY_TABLE), 1);
+      assert_int_equal(count_parts(*state, &set, 3, MCOR_TOPOLOGY_FIELD), 1);
+      assert_int_equal(
+        count_parts(*state, &set, 3, MCOR_TOPOLOGY_TABLE), sign < 0 && i < 6 ? 1 : 2);
+      core_free_set(&set);
+    }
+  }
+}
+
+/* Balls that do not touch stay apart; the table connects those below across a face. */
+static void test_balls(void** state)
+{
+  for (size_t i = 0; i < sizeof diagonals / sizeof diagonals[0]; ++i)
+  {
+    for (int sign = -1; sign <= 1; sign += 2)
+    {
+      core_set set = make_particles(balls, diagonals[i], sign);
+      assert_int_equal(count_parts(*state, &set, 0.37, MCOR_TOPOLOGY_TABLE), 2);
+      assert_int_equal(count_parts(*state, &set, 3, MCOR_TOPOLOGY_FIELD), 2);
+      assert_int_equal(
+        count_parts(*state, &set, 3, MCOR_TOPOLOGY_TABLE), sign < 0 && i < 6 ? 1 : 2);
+      core_free_set(&set);
+    }
+  }
+}
+
+/* ---- noise ---------------------------------------------------------------------------------- */
+
+static double noise(const double x[3])
+{
+  uint64_t seed = 0;
+  memcpy(&seed, x, sizeof seed);
+  return 2 * random_unit(&seed) - 1;
+}
+
+typedef struct noise_case
+{
+  mcor_sph_kernel kernel;
+  mcor_field field;
+  mcor_type precision;
+  double cube_factor, iso;
+  int solids;
+  mcor_seed_mode seeds;
+} noise_case;
+
+static const noise_case noise_cases[] = {
+  { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 1, 0.01, 0, MCOR_COMPLETE },
+  { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 2, 0.01, 1, MCOR_COMPLETE },
+  { MCOR_QUADRATIC, MCOR_SHEPARD, MCOR_FLOAT64, 1.3, 0, 0, MCOR_PAIRS },
+  { MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32, 1.5, 0.02, 1, MCOR_COMPLETE },
+  { MCOR_WENDLAND_C2, MCOR_SUM, MCOR_FLOAT64, 1, -0.01, 0, MCOR_PAIRS },
+};
+
+static core_set make_noise(const noise_case* at)
+{
+  uint64_t seed = 9;
+  core_set set = core_make_block(14, 0.4, 3, noise);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] = 0.8;
+    set.solid[i] = random_bits(&seed) % 10 == 0;
+  }
+  set.has_solids = at->solids;
+  return set;
+}
+
+/* An oriented manifold without degenerate triangles; the two vertices of an edge at which only two
+ * opposite cells are valid coincide. */
+static mesh_report check_manifold(const mcor_surface* surface)
+{
+  mesh_report report;
+  CORE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
+               surface->triangle_count, &report),
+    "out of memory");
+  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
+  {
+    CORE_CHECK(fault == MESH_COINCIDENT_POINT || report.faults[fault] == 0, "%lld of: %s; %s",
+      (long long)report.faults[fault], mesh_fault_name(fault), report.first[fault]);
+  }
+  return report;
+}
+
+static void check_counts(const mcor_statistics* s)
+{
+  CORE_CHECK(s->ambiguous_faces > 200 && s->joined_faces > 50 && s->ambiguous_cells > 30 &&
+      s->tunnels > 0 && s->joined_faces < s->ambiguous_faces && s->tunnels < s->ambiguous_cells,
+    "%lld faces, %lld joined, %lld cells, %lld tunnels", (long long)s->ambiguous_faces,
+    (long long)s->joined_faces, (long long)s->ambiguous_cells, (long long)s->tunnels);
+}
+
+/* Compares the surfaces of table and field before trimming. */
+static void check_noise(const mcor_surface* table, const mcor_surface* field)
+{
+  mesh_report by_table = check_manifold(table), by_field = check_manifold(field);
+  check_counts(&field->statistics);
+  assert_int_equal(table->statistics.ambiguous_faces, 0);
+  assert_int_equal(table->point_count, field->point_count);
+  assert_memory_equal(
+    table->points, field->points, (size_t)table->point_count * 3 * sizeof(double));
+  assert_int_equal(by_table.boundary_edges, by_field.boundary_edges);
+  mesh_free_report(&by_table);
+  mesh_free_report(&by_field);
+}
+
+/* The same vertices, connected in another way: a manifold all the same, and watertight where the
+ * table's surface is. */
+static void test_noise(void** state)
+{
+  for (size_t i = 0; i < sizeof noise_cases / sizeof noise_cases[0]; ++i)
+  {
+    const noise_case* at = noise_cases + i;
+    core_set set = make_noise(at);
+    const mcor_input input = core_input(&set);
+    mcor_options options = core_options(&at->iso);
+    options.sph_kernel = at->kernel;
+    options.field = at->field;
+    options.precision = at->precision;
+    options.cube_size_factor = at->cube_factor;
+    options.seeds = at->seeds;
+    mcor_surface whole[2];
+    for (int topology = 0; topology < 2; ++topology)
+    {
+      options.topology = (mcor_topology)topology;
+      options.vertex_threshold = 0;
+      whole[topology] = core_extract(*state, &input, &options);
+    }
+    check_noise(whole, whole + 1);
+    options.vertex_threshold = 0.5;
+    mcor_surface trimmed = core_extract(*state, &input, &options);
+    mesh_report report = check_manifold(&trimmed);
+    mesh_free_report(&report);
+    mcor_free_surface(&trimmed);
+    mcor_free_surface(whole);
+    mcor_free_surface(whole + 1);
+    core_free_set(&set);
+  }
+}
+
+/* A free surface of scattered drops is closed. */
+static void test_free_surface(void** state)
+{
+  int64_t joined = 0, tunnels = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed)
+  {
+    core_set set = core_make_random(400, 6, 0.4, seed % 2 ? 0.4 : 0.9, seed);
+    const double iso = 0.05 * (double)seed;
+    const mcor_input input = core_input(&set);
+    mcor_options options = core_options(&iso);
+    options.field = MCOR_WEIGHT_SUM;
+    options.cube_size_factor = 1.2;
+    options.topology = MCOR_TOPOLOGY_FIELD;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    mesh_report report = core_check_mesh(&surface);
+    assert_int_equal(report.boundary_edges, 0);
+    joined += surface.statistics.joined_faces;
+    tunnels += surface.statistics.tunnels;
+    mesh_free_report(&report);
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
+  CORE_CHECK(joined > 100 && tunnels > 10, "%lld joined, %lld tunnels", (long long)joined,
+    (long long)tunnels);
+}
+
+/* The order of the particles, and what ran before on the context, do not matter. */
+static void test_same_bits(void** state)
+{
+  core_set set = make_noise(noise_cases + 1);
+  int64_t* order = core_make_order(set.count, 5);
+  core_set permuted = core_permute(&set, order);
+  const double iso = noise_cases[1].iso;
+  mcor_options options = core_options(&iso);
+  options.cube_size_factor = 1.5;
+  uint64_t hash[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    const mcor_input input = core_input(i % 2 ? &permuted : &set);
+    options.topology = i == 2 ? MCOR_TOPOLOGY_TABLE : MCOR_TOPOLOGY_FIELD;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    hash[i] = core_hash(&surface);
+    mcor_free_surface(&surface);
+  }
+  assert_true(hash[0] == hash[1] && hash[0] == hash[3] && hash[0] != hash[2]);
+  free(order);
+  core_free_set(&set);
+  core_free_set(&permuted);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_saddles),
+    cmocka_unit_test(test_threads), cmocka_unit_test(test_balls), cmocka_unit_test(test_noise),
+    cmocka_unit_test(test_free_surface), cmocka_unit_test(test_same_bits) };
+  return cmocka_run_group_tests_name("topology", tests, core_set_up, core_tear_down);
+}

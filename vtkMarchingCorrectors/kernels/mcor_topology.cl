@@ -1,0 +1,412 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Topology by the field: on an ambiguous face, nodes above and below the iso value are diagonal to
+ * each other; which of them are connected is asked of the field itself, where the bilinear
+ * interpolant of the face has its saddle. The face is evaluated once, by the brick that owns its
+ * lowest node, so that both cells read the same answer. Then cells with two loops are asked in the
+ * same way, at the saddles of the trilinear interpolant, whether the loops make a tunnel. */
+
+/* Masks per brick: ambiguous faces with their lowest node in the brick, by axis of their normal, of
+ * which those stay whose nodes above are joined; cells whose samples are all below, all above. */
+#define MCOR_DECISION_MASKS 5
+
+/* Twin of mcor_cell_row: bytes of a row, and where its triangle count and its tunnels are. */
+#define MCOR_ROW 40
+#define MCOR_ROW_TRIANGLES 36
+#define MCOR_ROW_TUNNEL 37
+
+/* What the field is at a sample. */
+#define MCOR_SAMPLE_BELOW 0
+#define MCOR_SAMPLE_ABOVE 1
+#define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
+
+ulong mcor_from_next(int axis, ulong m, ulong next)
+{
+  return axis == 0 ? mcor_from_next_x(m, next)
+                   : axis == 1 ? mcor_from_next_y(m, next) : mcor_from_next_z(m, next);
+}
+
+ulong mcor_from_last(int axis, ulong m, ulong last)
+{
+  return axis == 0 ? mcor_from_last_x(m, last)
+                   : axis == 1 ? mcor_from_last_y(m, last) : mcor_from_last_z(m, last);
+}
+
+/* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next to used
+ * cells, and their number. */
+__kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
+  __global const ulong* used, __global const ulong* above, __global ulong* decisions,
+  __global int* counts)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong m[8], lower[8];
+  mcor_brick_masks(used, neighbours, slot, 7, lower);
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  int count = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3, du = 1 << u, dv = 1 << v;
+    const ulong m10 = mcor_from_next(u, m[0], m[du]), m01 = mcor_from_next(v, m[0], m[dv]);
+    const ulong m11 = mcor_from_next(v, m10, mcor_from_next(u, m[dv], m[du | dv]));
+    const ulong reached = lower[0] | mcor_from_last(axis, lower[0], lower[1 << axis]);
+    const ulong ambiguous = reached & (m[0] ^ m10) & (m[0] ^ m01) & ~(m[0] ^ m11);
+    decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
+    count += (int)popcount(ambiguous);
+  }
+  counts[slot] = count;
+}
+
+/* Value of node n of a brick, moved by the bits of `corner` along x, y, z. */
+real mcor_topology_value(
+  __global const real* node_value, __global const int* neighbours, int slot, int n, int corner)
+{
+  const int x = (n & 3) + (corner & 1), y = (n >> 2 & 3) + (corner >> 1 & 1),
+            z = (n >> 4) + (corner >> 2);
+  const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
+  const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
+  return node_value[owner * 64L + ((x & 3) | (y & 3) << 2 | (z & 3) << 4)];
+}
+
+/* Part of a whole; 0 / 0 where a device knows no denormal numbers. */
+real mcor_topology_part(real part, real whole)
+{
+  return whole != 0 ? part / whole : (real)0.5;
+}
+
+int4 mcor_topology_node(__global const int4* bricks, int slot, int n)
+{
+  return (int4)(bricks[slot].x * MCOR_BRICK + (n & 3), bricks[slot].y * MCOR_BRICK + (n >> 2 & 3),
+    bricks[slot].z * MCOR_BRICK + (n >> 4), 0);
+}
+
+/* One work-item = one brick. Reads its ambiguous faces and node values. Writes the saddle of each:
+ * node and offset. */
+__kernel void mcor_topology_saddles(const int brick_count, __global const int4* bricks,
+  __global const int* neighbours, __global const ulong* decisions,
+  __global const real* node_value, __global const int* base, const real iso,
+  __global int4* sample_node, __global real4* sample_offset)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  int to = base[slot];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3, du = 1 << u, dv = 1 << v;
+    for (ulong rest = decisions[slot * (long)MCOR_DECISION_MASKS + axis]; rest; rest &= rest - 1)
+    {
+      const int n = mcor_ctz(rest);
+      const real f00 = mcor_topology_value(node_value, neighbours, slot, n, 0) - iso;
+      const real f10 = mcor_topology_value(node_value, neighbours, slot, n, du) - iso;
+      const real f01 = mcor_topology_value(node_value, neighbours, slot, n, dv) - iso;
+      const real f11 = mcor_topology_value(node_value, neighbours, slot, n, du | dv) - iso;
+      /* All differences have the same sign. */
+      const real sum = (f00 - f01) + (f11 - f10);
+      const real at[3] = { 0, mcor_topology_part(f00 - f01, sum),
+        mcor_topology_part(f00 - f10, sum) };
+      sample_node[to] = mcor_topology_node(bricks, slot, n);
+      sample_offset[to++] =
+        (real4)(at[(3 - axis) % 3], at[(4 - axis) % 3], at[(5 - axis) % 3], 0);
+    }
+  }
+}
+
+/* One work-item = one group of samples. Writes on which side of the iso value the field is. */
+__kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* sample_node,
+  __global const real4* sample_offset, const real iso, __global uchar* side)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const int begin = groups[group], end = groups[group + 1];
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  mcor_field_at at;
+  mcor_tile tile;
+  int unused[MCOR_LANES];
+  mcor_points_load(sample_node, begin, end, fix_bits, &points, &query, unused);
+  mcor_points_load_offsets(sample_offset, begin, end, 0, fix_bits, &points, &query);
+  mcor_tile_init(&tile);
+  mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
+  for (int lane = 0; begin + lane < end; ++lane)
+  {
+    const real value = MCOR_GET(at.value, lane);
+    side[begin + lane] = (uchar)(value == (real)1e30f
+        ? MCOR_SAMPLE_NONE
+        : value >= 0 ? MCOR_SAMPLE_ABOVE : MCOR_SAMPLE_BELOW);
+  }
+}
+
+/* One work-item = one brick. Reads the sides of its faces' saddles. Keeps the joined faces only, and
+ * writes their number. */
+__kernel void mcor_topology_join(const int brick_count, __global const int* base,
+  __global const uchar* side, __global ulong* decisions, __global int* joined_count)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  int from = base[slot], count = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    __global ulong* faces = decisions + slot * (long)MCOR_DECISION_MASKS + axis;
+    ulong joined = 0;
+    for (ulong rest = *faces; rest; rest &= rest - 1)
+    {
+      joined |= side[from++] == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
+    }
+    *faces = joined;
+    count += (int)popcount(joined);
+  }
+  joined_count[slot] = count;
+}
+
+/* First row of a cell's case, plus that of its decisions on faces. above: node masks of the brick and
+ * its upper neighbours. */
+int mcor_topology_row(const ulong* above, __global const int* neighbours,
+  __global const ulong* decisions, __global const int* cases, int slot, int cell)
+{
+  const int entry = cases[mcor_march_case(above, cell)];
+  int row = entry >> 6, bit = 1;
+  for (int face = 0; face < 6; ++face)
+  {
+    if (entry >> face & 1)
+    {
+      const int axis = face >> 1, shift = 2 * axis;
+      const int outside = face & 1 & ((cell >> shift & 3) == 3);
+      const int owner = outside ? neighbours[slot * 14 + (1 << axis) - 1] : slot;
+      const int n = outside ? cell - (3 << shift) : cell + ((face & 1) << shift);
+      row += decisions[owner * (long)MCOR_DECISION_MASKS + axis] >> n & 1 ? bit : 0;
+      bit <<= 1;
+    }
+  }
+  return row;
+}
+
+/* One work-item = one brick. Reads used cells and joined faces. Writes the cells that may have a
+ * tunnel, and the number of their samples, two each. */
+__kernel void mcor_topology_cells(const int brick_count, __global const int* neighbours,
+  __global const ulong* used, __global const ulong* above, __global const int* cases,
+  __global const uchar* rows, __global ulong* decisions, __global int* counts)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong m[8], cells = 0;
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    __global const uchar* row = rows +
+      mcor_topology_row(m, neighbours, decisions, cases, slot, mcor_ctz(rest)) * MCOR_ROW +
+      MCOR_ROW_TUNNEL;
+    cells |= row[0] | row[1] ? rest & -rest : 0;
+  }
+  decisions[slot * (long)MCOR_DECISION_MASKS + 3] = cells;
+  counts[slot] = 2 * (int)popcount(cells);
+}
+
+/* The trilinear interpolant of corner values f, and the saddles of it that lie in the cell. */
+typedef struct
+{
+  real x, y, z, xy, yz, xz, xyz; /* its coefficients */
+  int saddle_count;
+  real4 saddle[2];
+} mcor_trilinear;
+
+/* A root of (xyz t + q)^2 = p^2, the one of xyz t + q = p. The other root gives it where this
+ * subtraction cancels; their product is n / (a xyz). */
+real mcor_topology_root(real p, real q, real xyz, real n, real a)
+{
+  const real above = p * q > 0 ? n : p - q, below = p * q > 0 ? -a * (p + q) : xyz;
+  return fabs(above) < fabs(below) ? above / below : (real)-1;
+}
+
+/* Where all three derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy, they say
+ * Q R = -a, P R = -b, P Q = -c. */
+void mcor_topology_find_saddles(const real* f, mcor_trilinear* t)
+{
+  t->x = f[1] - f[0];
+  t->y = f[2] - f[0];
+  t->z = f[4] - f[0];
+  t->xy = f[3] - f[2] - t->x;
+  t->yz = f[6] - f[4] - t->y;
+  t->xz = f[5] - f[4] - t->x;
+  t->xyz = ((f[7] - f[6]) - (f[5] - f[4])) - ((f[3] - f[2]) - (f[1] - f[0]));
+  t->saddle_count = 0;
+  const real a = t->x * t->xyz - t->xy * t->xz, b = t->y * t->xyz - t->xy * t->yz,
+             c = t->z * t->xyz - t->yz * t->xz;
+  const bool some = a * b * c < 0;
+  const real p = some ? sqrt(-b * c / a) : 0, q = some ? sqrt(-a * c / b) : 0,
+             r = some ? sqrt(-a * b / c) : 0;
+  const real nx = t->x * t->yz * t->yz + t->y * t->z * t->xyz - t->y * t->yz * t->xz - t->z * t->xy * t->yz;
+  const real ny = t->y * t->xz * t->xz + t->x * t->z * t->xyz - t->x * t->yz * t->xz - t->z * t->xy * t->xz;
+  const real nz = t->z * t->xy * t->xy + t->x * t->y * t->xyz - t->x * t->xy * t->yz - t->y * t->xy * t->xz;
+  for (int sign = -1; some && sign <= 1; sign += 2)
+  {
+    const real x = mcor_topology_root(sign * p, t->yz, t->xyz, nx, a);
+    const real y = mcor_topology_root(c > 0 ? -sign * q : sign * q, t->xz, t->xyz, ny, b);
+    const real z = mcor_topology_root(b > 0 ? -sign * r : sign * r, t->xy, t->xyz, nz, c);
+    if (x > 0 && y > 0 && z > 0)
+    {
+      t->saddle[t->saddle_count++] = (real4)(x, y, z, 0);
+    }
+  }
+}
+
+/* Mean of the points where linear interpolation along the cell's edges is 0: between two loops. */
+real4 mcor_topology_middle(const real* f)
+{
+  real4 sum = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int other = c | 1 << axis;
+      if (other != c && (f[c] >= 0) != (f[other] >= 0))
+      {
+        const real t = mcor_topology_part(f[c], f[c] - f[other]);
+        sum += (real4)(axis == 0 ? t : (real)(c & 1), axis == 1 ? t : (real)(c >> 1 & 1),
+          axis == 2 ? t : (real)(c >> 2), 1);
+      }
+    }
+  }
+  return (real4)(sum.x / sum.w, sum.y / sum.w, sum.z / sum.w, 0);
+}
+
+/* One work-item = one brick. Reads the cells that may have a tunnel, and node values. Writes two
+ * samples for each: the saddles inside, the same one twice, or the middle. */
+__kernel void mcor_topology_middles(const int brick_count, __global const int4* bricks,
+  __global const int* neighbours, __global const ulong* decisions,
+  __global const real* node_value, __global const int* base, const real iso,
+  __global int4* sample_node, __global real4* sample_offset)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  int to = base[slot];
+  for (ulong rest = decisions[slot * (long)MCOR_DECISION_MASKS + 3]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    real f[8], largest = (real)1e-37f;
+    for (int c = 0; c < 8; ++c)
+    {
+      f[c] = mcor_topology_value(node_value, neighbours, slot, cell, c) - iso;
+      largest = fmax(largest, fabs(f[c]));
+    }
+    for (int c = 0; c < 8; ++c)
+    {
+      f[c] /= largest;
+    }
+    mcor_trilinear t;
+    mcor_topology_find_saddles(f, &t);
+    const real4 middle = mcor_topology_middle(f);
+    for (int i = 0; i < 2; ++i)
+    {
+      sample_node[to] = mcor_topology_node(bricks, slot, cell);
+      sample_offset[to++] = t.saddle_count > 0 ? t.saddle[min(i, t.saddle_count - 1)] : middle;
+    }
+  }
+}
+
+/* One work-item = one brick. Reads the sides of its cells' samples. Writes the cells whose samples
+ * agree: below, above. */
+__kernel void mcor_topology_agree(
+  const int brick_count, __global const int* base, __global const uchar* side, __global ulong* decisions)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  __global ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
+  ulong below = 0, above = 0;
+  int from = base[slot];
+  for (ulong rest = cells[0]; rest; rest &= rest - 1, from += 2)
+  {
+    const bool agree = side[from] == side[from + 1];
+    below |= agree && side[from] == MCOR_SAMPLE_BELOW ? rest & -rest : 0;
+    above |= agree && side[from] == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
+  }
+  cells[0] = below;
+  cells[1] = above;
+}
+
+/* The row of a cell with all that was decided. *tunnel: whether it has a tunnel. */
+__global const uchar* mcor_topology_cell(const ulong* above, __global const int* neighbours,
+  __global const ulong* decisions, __global const int* cases, __global const uchar* rows, int slot,
+  int cell, int* tunnel)
+{
+  __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
+  const int first = cases[mcor_march_case(above, cell)] >> 6;
+  const int row = mcor_topology_row(above, neighbours, decisions, cases, slot, cell);
+  __global const uchar* choice = rows + row * MCOR_ROW + MCOR_ROW_TUNNEL;
+  const int other =
+    cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
+  *tunnel = other != 0;
+  return rows + (other ? first + other : row) * MCOR_ROW;
+}
+
+/* One work-item = one brick. Reads all decisions. Writes the numbers of triangles and of tunnels. */
+__kernel void mcor_topology_count(const int brick_count, __global const int* neighbours,
+  __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
+  __global const int* cases, __global const uchar* rows, __global int* triangle_count,
+  __global int* tunnel_count)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  int triangles = 0, tunnels = 0, tunnel;
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    triangles += mcor_topology_cell(
+      m, neighbours, decisions, cases, rows, slot, mcor_ctz(rest), &tunnel)[MCOR_ROW_TRIANGLES];
+    tunnels += tunnel;
+  }
+  triangle_count[slot] = triangles;
+  tunnel_count[slot] = tunnels;
+}
+
+/* One work-item = one brick. Reads all decisions and the edge numbering. Writes triangles. */
+__kernel void mcor_topology_triangles(const int brick_count, __global const int* neighbours,
+  __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
+  __global const ulong* edges, __global const int* cases, __global const uchar* rows,
+  __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
+{
+  const int slot = get_global_id(0);
+  if (slot >= brick_count || used[slot] == 0)
+  {
+    return;
+  }
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  __global int* to = triangles + triangle_base[slot] * 3L;
+  int tunnel;
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    __global const uchar* row =
+      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel);
+    to = mcor_march_emit(
+      row, row[MCOR_ROW_TRIANGLES], neighbours, edges, vertex_base, slot, cell, to);
+  }
+}

@@ -170,6 +170,10 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) {
         o.Seeds = ToChoice(n, v, { "pairs", "complete" });
       } },
+    { "--topology", "table|field", "ambiguous cells: by the table (default), or as the field is",
+      [](Options& o, Text n, Text v) {
+        o.Topology = ToChoice(n, v, { "table", "field" });
+      } },
     { "--preview", "", "no correction, normals of the triangles",
       [](Options& o, Text, Text) { o.Preview = true; } },
     { "--node-threshold", "T", "discard cells with a node of lower weight (default 0.1)",

@@ -32,6 +32,7 @@ struct CommandLineOptions
   std::string Kernel = "cubic";
   std::string Field = "shepard";
   std::string Seeds = "complete";
+  std::string Topology = "table";
   std::string Precision = "single";
   double HScale = 1.0;
   double CubeFactor = 0.5;

@@ -23,13 +23,14 @@ namespace
 
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
-const char* const ParameterNames[] = { "IsoValues", "Field", "Kernel", "SeedMode", "Precision",
-  "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "VertexThreshold", "Tolerance",
+const char* const ParameterNames[] = { "IsoValues", "Field", "Kernel", "SeedMode", "Topology",
+  "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "VertexThreshold", "Tolerance",
   "IterationLimit", "Preview" };
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "SmoothingLengthRange",
   "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells", "SeedCells",
-  "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds", "Points",
-  "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+  "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",
+  "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles",
+  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
   "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
   "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
   "DeviceBytesPeak" };

@@ -130,6 +130,8 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetShepardNormalization(options.Field == "shepard");
   filter->SetSeedMode(
     options.Seeds == "pairs" ? vtkMarchingCorrectors::PAIRS : vtkMarchingCorrectors::COMPLETE);
+  filter->SetTopology(options.Topology == "field" ? vtkMarchingCorrectors::TOPOLOGY_FIELD
+                                                 : vtkMarchingCorrectors::TOPOLOGY_TABLE);
   filter->SetPrecision(options.Precision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
                                                      : vtkAlgorithm::SINGLE_PRECISION);
   filter->SetHScaleFactor(options.HScale);

@@ -67,7 +67,7 @@ class Usage(CommandLineTest):
         self.assertEqual(result.returncode, 0)
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
-                --field --seeds --preview --node-threshold --vertex-threshold --weight-sum
+                --field --seeds --topology --preview --node-threshold --vertex-threshold --weight-sum
                 --gradients --no-attributes --device --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
@@ -101,6 +101,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--kernel", "gauss"], "--kernel is one of cubic, .*, not 'gauss'"),
             ([*good, *ISO, "--field", "mean"], "--field is one of shepard, sum, not 'mean'"),
             ([*good, *ISO, "--seeds", "all"], "--seeds is one of pairs, complete, not 'all'"),
+            ([*good, *ISO, "--topology", "x"], "--topology is one of table, field, not 'x'"),
             ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, not 'x'"),
             ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
@@ -380,6 +381,7 @@ class Options(CommandLineTest):
             (["--cube-size", "0.05"], "cube_size", 0.05),
             (["--field", "sum"], "field", "sum"),
             (["--seeds", "pairs"], "seed_mode", "pairs"),
+            (["--topology", "field"], "topology", "field"),
             (["--preview"], "preview", 1),
             (["--node-threshold", "0.2"], "node_threshold", 0.2),
             (["--vertex-threshold", "0.6"], "vertex_threshold", 0.6),

@@ -185,6 +185,7 @@ void TestFieldData()
   CHECK(Text(surface, "Kernel") == "cubic");
   CHECK(Text(surface, "Field") == "shepard");
   CHECK(Text(surface, "SeedMode") == "complete");
+  CHECK(Text(surface, "Topology") == "table" && Number(surface, "AmbiguousFaces") == 0.0);
   CHECK(Text(surface, "Scalar") == "Radius");
   CHECK(Text(surface, "SmoothingLengthArray") == "SmoothingLength");
   CHECK(Text(surface, "VolumeArray") == "Volume");

@@ -44,6 +44,7 @@ std::vector<Step> Steps()
     { "other thresholds", [](Filter* f, vtkPolyData*) { f->SetVertexThreshold(0.6); } },
     { "sum", [](Filter* f, vtkPolyData*) { f->ShepardNormalizationOff(); } },
     { "pairs", [](Filter* f, vtkPolyData*) { f->SetSeedModeToPairs(); } },
+    { "topology", [](Filter* f, vtkPolyData*) { f->SetTopologyToField(); } },
     { "free surface", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOn(); } },
     { "scalar again", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOff(); } },
     { "particle moved, data set told",

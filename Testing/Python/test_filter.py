@@ -99,6 +99,9 @@ class TestFilter(unittest.TestCase):
         self.assertEqual(extract.GetKernel(), vtkMarchingCorrectors.QUINTIC_SPLINE)
         extract.SetSeedModeToPairs()
         self.assertEqual(extract.GetSeedMode(), vtkMarchingCorrectors.PAIRS)
+        self.assertEqual(extract.GetTopology(), vtkMarchingCorrectors.TOPOLOGY_TABLE)
+        extract.SetTopologyToField()
+        self.assertEqual(extract.GetTopology(), vtkMarchingCorrectors.TOPOLOGY_FIELD)
         self.assertIn(":", vtkMarchingCorrectors.ListDevices())
         self.assertIn("Cube Size Factor: 0.5", str(extract))
 

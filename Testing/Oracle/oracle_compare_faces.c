@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "oracle_compare_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- orientation ---------------------------------------------------------------------------- */
@@ -172,17 +173,58 @@ static int64_t compare_count_sides(const compare_state* state, int64_t e0, int64
   return count;
 }
 
-/* Two crossings: connected, once for each valid cell at the face. Four: in either of two ways. */
-static int compare_face_connected(
-  const compare_state* state, const int64_t crossings[4], int count, int64_t cells)
+/* On a face with four crossings, whether the nodes above iso are joined: 0 or 1, or -1 where that is
+ * within rounding. With topology by the field, the field at the bilinear interpolant's saddle says. */
+static int compare_face_joined(const compare_state* state, int64_t node, int axis)
+{
+  const oracle_reference* r = state->reference;
+  const oracle_lattice* lattice = &r->lattice;
+  const int64_t step[3] = { 1, lattice->size[0], lattice->size[0] * lattice->size[1] };
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  const double f00 = lattice->value[node];
+  const double f10 = lattice->value[node + step[u]];
+  const double f01 = lattice->value[node + step[v]];
+  const double f11 = lattice->value[node + step[u] + step[v]];
+  const double sum = f00 - f01 - f10 + f11;
+  double point[3];
+  oracle_sample sample;
+  if (state->options->topology == MCOR_TOPOLOGY_TABLE)
+  {
+    return 0;
+  }
+  oracle_node_position(lattice, node, point);
+  point[u] += lattice->cube * (f00 - f01) / sum;
+  point[v] += lattice->cube * (f00 - f10) / sum;
+  oracle_evaluate(&r->field, NULL, point, &sample);
+  /* Rounding of the value, and of the node values, which moves the point. */
+  const double moved = lattice->cube * r->limits.close / fabs(sum);
+  const double rounding = r->limits.close + oracle_rounding(&r->field, point, r->unit) +
+    moved * (fabs(sample.gradient[u]) + fabs(sample.gradient[v]));
+  if (fabs(sample.value - r->limits.iso) <= rounding ||
+    (r->field.kind == ORACLE_SHEPARD && fabs(sample.weight) < 1e-9))
+  {
+    return -1;
+  }
+  return sample.value > r->limits.iso;
+}
+
+/* Two crossings: connected, once for each valid cell at the face. Four: in one of two ways. */
+static int compare_face_connected(const compare_state* state, const int64_t crossings[4],
+  int count, int64_t cells, int64_t node, int axis)
 {
   if (count == 2)
   {
     return compare_count_sides(state, crossings[0], crossings[1]) == cells;
   }
+  const int joined = compare_face_joined(state, node, axis);
+  const int lowest_above =
+    (state->reference->lattice.flags[node] & ORACLE_NODE_ABOVE) != 0;
   for (int way = 0; way < 2; ++way)
   {
-    if (compare_count_sides(state, crossings[way], crossings[way + 1]) == cells &&
+    /* Way 1 goes around the lowest node. */
+    if ((joined < 0 || way == (joined != lowest_above)) &&
+      compare_count_sides(state, crossings[way], crossings[way + 1]) == cells &&
       compare_count_sides(state, crossings[way + 2], crossings[(way + 3) % 4]) == cells)
     {
       return 1;
@@ -230,7 +272,8 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
     return;
   }
   if (valid > 0 && possible == certain && count >= 2 &&
-    !compare_face_connected(state, crossings, count, valid))
+    !compare_face_connected(state, crossings, count, valid,
+      oracle_node_index(lattice, ijk[0], ijk[1], ijk[2]), axis))
   {
     ++state->result->segments_missing;
     compare_note_edge(state, "not connected on the face of", edges[0]);

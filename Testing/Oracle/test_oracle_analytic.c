@@ -26,6 +26,7 @@ typedef struct variant
   double iso; /* used if has_iso */
   int has_iso, rough, skip_pairs;
   int has_euler, euler;
+  mcor_topology topology;
 } variant;
 
 static void fill_case(oracle_case* at, const variant* v, const particle_set* set, const double* iso)
@@ -39,14 +40,16 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
   at->options.cube_size = v->cube_size;
   at->options.h_scale = v->h_scale > 0.0 ? v->h_scale : 1.0;
   at->options.precision = v->in_double ? MCOR_FLOAT64 : MCOR_FLOAT32;
+  at->options.topology = v->topology;
   at->rough = v->rough;
   at->has_euler = v->has_euler;
   at->euler = v->euler;
   at->skip_pairs = v->skip_pairs || v->field == MCOR_WEIGHT_SUM; /* w has no pairs to straddle */
-  snprintf(at->name, sizeof(at->name), "%s/%s/%s/c%g/h%g%s%s", v->set,
+  snprintf(at->name, sizeof(at->name), "%s/%s/%s/c%g/h%g%s%s%s", v->set,
     mcor_sph_kernel_name(v->kernel), field_names[v->field],
     v->cube_size > 0.0 ? v->cube_size : at->options.cube_size_factor, at->options.h_scale,
-    v->suffix ? v->suffix : "", v->in_double ? "/double" : "");
+    v->suffix ? v->suffix : "", v->topology == MCOR_TOPOLOGY_FIELD ? "/by_field" : "",
+    v->in_double ? "/double" : "");
 }
 
 /* Loads the set of the variant, lets `change` (or nothing) alter the case, runs it. */
@@ -120,6 +123,10 @@ static const variant set_variants[] = {
   { .set = "noise", .kernel = MCOR_QUADRATIC, .cube_factor = 1.0 },
   { .set = "noise", .kernel = MCOR_M_PRIME_4, .cube_factor = 1.0 },
   { .set = "noise", .in_double = 1 },
+  { .set = "noise", .topology = MCOR_TOPOLOGY_FIELD },
+  { .set = "noise", .cube_factor = 1.0, .topology = MCOR_TOPOLOGY_FIELD },
+  { .set = "noise", .field = MCOR_SUM, .cube_factor = 1.0, .topology = MCOR_TOPOLOGY_FIELD },
+  { .set = "noise", .cube_factor = 1.0, .in_double = 1, .topology = MCOR_TOPOLOGY_FIELD },
   { .set = "sheets" },
   { .set = "sheets", .field = MCOR_SUM },
   { .set = "sheets", .field = MCOR_WEIGHT_SUM },
@@ -132,6 +139,7 @@ static const variant set_variants[] = {
   { .set = "drops", .field = MCOR_WEIGHT_SUM, .cube_factor = 1.0 },
   { .set = "drops", .field = MCOR_WEIGHT_SUM, .h_scale = 0.5 },
   { .set = "drops", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
+  { .set = "drops", .field = MCOR_WEIGHT_SUM, .cube_factor = 1.0, .topology = MCOR_TOPOLOGY_FIELD },
   { .set = "puddle" },
   { .set = "puddle", .field = MCOR_SUM },
   { .set = "puddle", .field = MCOR_WEIGHT_SUM },

@@ -38,6 +38,7 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
   }
   at->input.ignore_solids = random_bits(state) % 2 == 0;
   at->input.has_volume = random_bits(state) % 4 != 0;
+  at->options.topology = random_bits(state) % 2 == 0 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   at->skip_pairs = at->options.field == MCOR_WEIGHT_SUM;
   at->rough = at->no_table = 1;
 }

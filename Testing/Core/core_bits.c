@@ -35,7 +35,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
 {
   const bool noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
   const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? 6 : at->iso;
-  core_set set = core_make_block(small ? 4 : 10, 0.3, 8, core_ball);
+  core_set set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -55,7 +55,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
   options.precision = at->precision;
   options.seeds = at->seeds;
   options.topology = at->topology;
-  options.cube_size_factor = noise ? 1.2 : options.cube_size_factor;
+  options.cube_size_factor = noise ? 0.7 : options.cube_size_factor;
+  options.h_scale = noise ? 0.5 : options.h_scale;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
   options.boundary_flag = options.nearest_particle = 1;
   mcor_surface surface = { 0 };

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: saddle points against a search, bridges and tunnels of known shape, noise. */
+/* Topology by the field: saddle points against a search, bridges and tunnels of known shape,
+ * noise. */
 
 #include "core_fixture.h"
 
@@ -96,8 +97,8 @@ static int search_saddles(const double f[8], double margin, double saddles[2][3]
     }
     for (int s = 0; s < count; ++s)
     {
-      found = found && fabs(x[0] - saddles[s][0]) + fabs(x[1] - saddles[s][1]) +
-          fabs(x[2] - saddles[s][2]) > 1e-6;
+      found = found &&
+        fabs(x[0] - saddles[s][0]) + fabs(x[1] - saddles[s][1]) + fabs(x[2] - saddles[s][2]) > 1e-6;
     }
     if (found && count < 2)
     {
@@ -286,8 +287,8 @@ static int64_t count_parts(
 static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, { -3, 0, 3 },
   { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
 
-/* Above or below the iso value, a thread stays whole, as it does on a fine lattice; the table cuts it,
- * except where it connects nodes below on a face. */
+/* Above or below the iso value, a thread stays whole, as it does on a fine lattice; the table
+ * cuts it, except where it connects nodes below on a face. */
 static void test_threads(void** state)
 {
   for (size_t i = 0; i < sizeof diagonals / sizeof diagonals[0]; ++i)

@@ -3,13 +3,13 @@
 
 /* The 256 cases of Marching Cubes, derived rather than listed. On each face, every run of corners
  * above the iso value is cut off by one segment; this depends on the face's corners alone, so two
- * cells agree on their common face. Segments join to loops, loops are cut into triangles. A diagonal
- * within a face would meet the neighbour's in an edge of four triangles; none is used.
+ * cells agree on their common face. Segments join to loops, loops are cut into triangles. A
+ * diagonal within a face would meet the neighbour's in an edge of four triangles; none is used.
  *
- * The topology table has these cases for all decisions on ambiguous faces, whose corners are above
- * and below in turn: they are cut off as before, or joined, and then those below are cut off. Two
- * loops around the same region may become a tunnel. Not all of this can be triangulated without a
- * diagonal within a face; see mcor_allow_side. */
+ * The topology table has these cases for all decisions on ambiguous faces, whose corners are
+ * above and below in turn: they are cut off as before, or joined, and then those below are cut
+ * off. Two loops around the same region may become a tunnel. Not all of this can be triangulated
+ * without a diagonal within a face; see mcor_allow_side. */
 
 #include "mcor_internal.h"
 
@@ -50,9 +50,9 @@ static int mcor_face_ambiguous(int cube_case, int face)
     mcor_corner_above(cube_case, corner[3]) != first;
 }
 
-/* next[edge]: the edge that follows on the loop, -1 where the edge is not crossed. The direction makes
- * triangles face the corners below. joined: bit axis * 2 + side of the ambiguous faces whose corners
- * above are joined. */
+/* next[edge]: the edge that follows on the loop, -1 where the edge is not crossed. The
+ * direction makes triangles face the corners below. joined: bit axis * 2 + side of the ambiguous
+ * faces whose corners above are joined. */
 static void mcor_link_edges(int cube_case, int joined, int next[MCOR_CELL_EDGES])
 {
   for (int e = 0; e < MCOR_CELL_EDGES; ++e)
@@ -101,11 +101,11 @@ static int mcor_common_face(int edge_a, int edge_b)
 
 #define MCOR_NO_DIAGONALS (-1)
 
-/* Whether triangles of a cell may have a side between the vertices of two edges, besides the loops.
- * With a case, also between two opposite edges of an ambiguous face: of the face's two such sides, the
- * cell below may use one and the cell above the other, so that none is used by both. Which one
- * depends on the face's lowest corner; this makes the three faces around a corner alike, without
- * which few tunnels could be made. */
+/* Whether triangles of a cell may have a side between the vertices of two edges, besides the
+ * loops. With a case, also between two opposite edges of an ambiguous face: of the face's two
+ * such sides, the cell below may use one and the cell above the other, so that none is used by
+ * both. Which one depends on the face's lowest corner; this makes the three faces around a
+ * corner alike, without which few tunnels could be made. */
 static int mcor_allow_side(int edge_a, int edge_b, int cube_case)
 {
   const int face = mcor_common_face(edge_a, edge_b), axis = edge_a >> 3, side = face & 1;
@@ -279,7 +279,8 @@ static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
     return;
   }
   const int i = a % strip->first_length;
-  const int j = (strip->start + strip->second_length - b % strip->second_length) % strip->second_length;
+  const int j =
+    (strip->start + strip->second_length - b % strip->second_length) % strip->second_length;
   if (strip->used[i][j] || !mcor_allow_side(strip->first[i], strip->second[j], strip->cube_case))
   {
     return;
@@ -330,10 +331,10 @@ static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor
   return 1;
 }
 
-/* Looks for the one pair of loops that a tunnel may connect such that it joins two regions on a side
- * (1 above), the region between the loops being on the other side. 0 if there is none, or more. */
-static int mcor_find_pair(
-  const mcor_loops* loops, int joined, int side, int* first, int* second)
+/* Looks for the one pair of loops that a tunnel may connect such that it joins two regions on a
+ * side (1 above), the region between the loops being on the other side. 0 if there is none, or
+ * more. */
+static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* first, int* second)
 {
   int region[8], around[4], pairs = 0;
   mcor_find_regions(loops->cube_case, joined, region);
@@ -354,8 +355,8 @@ static int mcor_find_pair(
   return pairs == 1;
 }
 
-/* The rows of a case for one set of decisions: discs in all loops to `row`; then, from `to` on, those
- * with a tunnel. Returns how many these are. */
+/* The rows of a case for one set of decisions: discs in all loops to `row`; then, from `to` on,
+ * those with a tunnel. Returns how many these are. */
 static int mcor_fill_rows(
   int cube_case, int joined, mcor_cell_row* first_row, mcor_cell_row* row, mcor_cell_row* to)
 {

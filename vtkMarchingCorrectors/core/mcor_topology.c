@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: what Marching Cubes leaves ambiguous is decided by samples of the field. */
+/* Topology by the field: what Marching Cubes leaves ambiguous is decided by samples of the
+ * field. */
 
 #include "mcor_internal.h"
 
@@ -29,7 +30,8 @@ static mcor_status mcor_upload_topology_table(mcor_context* context)
   return status;
 }
 
-/* Makes room for the samples that sample_base counts and lets `locate` place them; evaluates them. */
+/* Makes room for the samples that sample_base counts and lets `locate` place them; evaluates
+ * them. */
 static mcor_status mcor_take_samples(
   mcor_context* context, const char* locate, double iso, int* sample_count)
 {
@@ -44,9 +46,8 @@ static mcor_status mcor_take_samples(
   MCOR_TRY(mcor_reserve(context, &mesh->sample_side, n));
   MCOR_TRY(MCOR_LAUNCH(context, locate, MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&bricks->now.value),
-    MCOR_BUFFER(&mesh->sample_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->sample_node),
-    MCOR_BUFFER(&mesh->sample_offset)));
+    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->sample_base),
+    MCOR_REAL(iso), MCOR_BUFFER(&mesh->sample_node), MCOR_BUFFER(&mesh->sample_offset)));
   MCOR_TRY(mcor_make_groups(context, &mesh->sample_node, 0, *sample_count, &groups));
   return MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->sample_node),
@@ -65,8 +66,8 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&mesh->sample_base), MCOR_BUFFER(&mesh->sample_side),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(counts)));
+    MCOR_BUFFER(&mesh->sample_base), MCOR_BUFFER(&mesh->sample_side), MCOR_BUFFER(&mesh->decisions),
+    MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &joined));
   context->statistics->ambiguous_faces += faces;
   context->statistics->joined_faces += joined;
@@ -113,8 +114,7 @@ mcor_status mcor_count_resolved(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
     MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&context->topology_cases),
-    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(counts)));
+    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &tunnels));
   context->statistics->tunnels += tunnels;
   return MCOR_OK;
@@ -126,8 +126,7 @@ mcor_status mcor_emit_resolved(mcor_context* context)
   const int count = context->bricks.now.count;
   return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&context->topology_cases), MCOR_BUFFER(&context->topology_rows),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
+    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->topology_cases),
+    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }

@@ -33,8 +33,8 @@ ulong mcor_from_last(int axis, ulong m, ulong last)
                    : axis == 1 ? mcor_from_last_y(m, last) : mcor_from_last_z(m, last);
 }
 
-/* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next to used
- * cells, and their number. */
+/* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next
+ * to used cells, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global ulong* decisions,
   __global int* counts)
@@ -148,8 +148,8 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   }
 }
 
-/* One work-item = one brick. Reads the sides of its faces' saddles. Keeps the joined faces only, and
- * writes their number. */
+/* One work-item = one brick. Reads the sides of its faces' saddles. Keeps the joined faces
+ * only, and writes their number. */
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
   __global const uchar* side, __global ulong* decisions, __global int* joined_count)
 {
@@ -173,8 +173,8 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
   joined_count[slot] = count;
 }
 
-/* First row of a cell's case, plus that of its decisions on faces. above: node masks of the brick and
- * its upper neighbours. */
+/* First row of a cell's case, plus that of its decisions on faces. above: node masks of the
+ * brick and its upper neighbours. */
 int mcor_topology_row(const ulong* above, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -235,6 +235,12 @@ real mcor_topology_root(real p, real q, real xyz, real n, real a)
   return fabs(above) < fabs(below) ? above / below : (real)-1;
 }
 
+/* Product of both roots, times a xyz. */
+real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, real xyz)
+{
+  return yz * (x * yz - y * xz - z * xy) + y * z * xyz;
+}
+
 /* Where all three derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy, they say
  * Q R = -a, P R = -b, P Q = -c. */
 void mcor_topology_find_saddles(const real* f, mcor_trilinear* t)
@@ -252,9 +258,9 @@ void mcor_topology_find_saddles(const real* f, mcor_trilinear* t)
   const bool some = a * b * c < 0;
   const real p = some ? sqrt(-b * c / a) : 0, q = some ? sqrt(-a * c / b) : 0,
              r = some ? sqrt(-a * b / c) : 0;
-  const real nx = t->x * t->yz * t->yz + t->y * t->z * t->xyz - t->y * t->yz * t->xz - t->z * t->xy * t->yz;
-  const real ny = t->y * t->xz * t->xz + t->x * t->z * t->xyz - t->x * t->yz * t->xz - t->z * t->xy * t->xz;
-  const real nz = t->z * t->xy * t->xy + t->x * t->y * t->xyz - t->x * t->xy * t->yz - t->y * t->xy * t->xz;
+  const real nx = mcor_topology_product(t->x, t->y, t->z, t->yz, t->xz, t->xy, t->xyz);
+  const real ny = mcor_topology_product(t->y, t->z, t->x, t->xz, t->xy, t->yz, t->xyz);
+  const real nz = mcor_topology_product(t->z, t->x, t->y, t->xy, t->yz, t->xz, t->xyz);
   for (int sign = -1; some && sign <= 1; sign += 2)
   {
     const real x = mcor_topology_root(sign * p, t->yz, t->xyz, nx, a);
@@ -326,8 +332,8 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
 
 /* One work-item = one brick. Reads the sides of its cells' samples. Writes the cells whose samples
  * agree: below, above. */
-__kernel void mcor_topology_agree(
-  const int brick_count, __global const int* base, __global const uchar* side, __global ulong* decisions)
+__kernel void mcor_topology_agree(const int brick_count, __global const int* base,
+  __global const uchar* side, __global ulong* decisions)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -362,7 +368,8 @@ __global const uchar* mcor_topology_cell(const ulong* above, __global const int*
   return rows + (other ? first + other : row) * MCOR_ROW;
 }
 
-/* One work-item = one brick. Reads all decisions. Writes the numbers of triangles and of tunnels. */
+/* One work-item = one brick. Reads all decisions. Writes the numbers of triangles and of
+ * tunnels. */
 __kernel void mcor_topology_count(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
   __global const int* cases, __global const uchar* rows, __global int* triangle_count,

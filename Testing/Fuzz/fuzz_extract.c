@@ -170,6 +170,7 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   const unsigned cube = fuzz_byte(bytes);
   o->cube_size_factor =
     cube < 248 ? 0.5 + 0.25 * (cube % 3) : fuzz_positive(bytes) * fuzz_scale(bytes);
+  o->topology = (mcor_topology)(cube >> 5 & 1);
   o->cube_size = cube > 252 ? fuzz_positive(bytes) * fuzz_scale(bytes) : 0;
   o->tolerance = cube % 16 == 15 ? fuzz_positive(bytes) * 1e-3 : 1e-6;
   o->iteration_limit = cube % 16 == 14 ? (int)fuzz_byte(bytes) * 2 - 1 : 30;

@@ -173,8 +173,9 @@ static int64_t compare_count_sides(const compare_state* state, int64_t e0, int64
   return count;
 }
 
-/* On a face with four crossings, whether the nodes above iso are joined: 0 or 1, or -1 where that is
- * within rounding. With topology by the field, the field at the bilinear interpolant's saddle says. */
+/* On a face with four crossings, whether the nodes above iso are joined: 0 or 1, or -1 where
+ * that is within rounding. With topology by the field, the field at the bilinear interpolant's
+ * saddle says. */
 static int compare_face_joined(const compare_state* state, int64_t node, int axis)
 {
   const oracle_reference* r = state->reference;
@@ -210,16 +211,15 @@ static int compare_face_joined(const compare_state* state, int64_t node, int axi
 }
 
 /* Two crossings: connected, once for each valid cell at the face. Four: in one of two ways. */
-static int compare_face_connected(const compare_state* state, const int64_t crossings[4],
-  int count, int64_t cells, int64_t node, int axis)
+static int compare_face_connected(const compare_state* state, const int64_t crossings[4], int count,
+  int64_t cells, int64_t node, int axis)
 {
   if (count == 2)
   {
     return compare_count_sides(state, crossings[0], crossings[1]) == cells;
   }
   const int joined = compare_face_joined(state, node, axis);
-  const int lowest_above =
-    (state->reference->lattice.flags[node] & ORACLE_NODE_ABOVE) != 0;
+  const int lowest_above = (state->reference->lattice.flags[node] & ORACLE_NODE_ABOVE) != 0;
   for (int way = 0; way < 2; ++way)
   {
     /* Way 1 goes around the lowest node. */
@@ -272,8 +272,8 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
     return;
   }
   if (valid > 0 && possible == certain && count >= 2 &&
-    !compare_face_connected(state, crossings, count, valid,
-      oracle_node_index(lattice, ijk[0], ijk[1], ijk[2]), axis))
+    !compare_face_connected(
+      state, crossings, count, valid, oracle_node_index(lattice, ijk[0], ijk[1], ijk[2]), axis))
   {
     ++state->result->segments_missing;
     compare_note_edge(state, "not connected on the face of", edges[0]);

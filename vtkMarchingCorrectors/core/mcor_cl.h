@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-#define MCOR_KERNEL_LIMIT 64
+#define MCOR_KERNEL_LIMIT 96
 
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
 typedef struct mcor_buffer

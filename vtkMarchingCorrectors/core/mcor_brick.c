@@ -51,23 +51,16 @@ static mcor_status mcor_fill_bricks(
     MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
 }
 
-/* Makes all marked bricks exist, besides those that do already, and keeps
- * what is known of the latter. */
+/* Gives slots to all bricks that were asked for, and keeps what is known of those that had one. */
 mcor_status mcor_place_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const int words = bricks->block_count * MCOR_BLOCK_WORDS;
-  mcor_buffer* bits = &context->scratch[0];
   int count;
-  MCOR_TRY(mcor_reserve(context, bits, (size_t)words * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &bricks->base, ((size_t)words + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_bits", MCOR_LIGHT, words, MCOR_INT(words),
-    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(bits),
-    MCOR_BUFFER(&bricks->base)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_LIGHT, words, MCOR_INT(words),
+    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->base)));
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
-  const mcor_buffer old_bits = bricks->bits;
-  bricks->bits = *bits;
-  *bits = old_bits;
   if (count == bricks->now.count)
   {
     return MCOR_OK; /* the set only ever grows */

@@ -5,13 +5,16 @@
 
 #include "mcor_internal.h"
 
+#define MCOR_GROUP_CHUNK 64 /* as in mcor_correct.cl */
+
 /* Cuts points [first, first + count) into groups that are evaluated together. */
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)
 {
   mcor_buffer* flags = &context->scratch[0];
   MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_LIGHT, count, MCOR_INT(first),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_LIGHT,
+    (count + MCOR_GROUP_CHUNK - 1) / MCOR_GROUP_CHUNK, MCOR_INT(first),
     MCOR_INT(count), MCOR_BUFFER(node), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_scan(context, flags, count, group_count));
   MCOR_TRY(mcor_reserve(context, &context->groups, ((size_t)*group_count + 1) * sizeof(cl_int)));

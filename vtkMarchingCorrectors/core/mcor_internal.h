@@ -96,7 +96,6 @@ typedef struct mcor_bricks
   int block_count, block_shift;
   mcor_buffer block_keys, block_buckets;
   mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
-  mcor_buffer marks;      /* the same; of this iso value: 1 where a brick is needed */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now;
   mcor_buffer neighbours, need;

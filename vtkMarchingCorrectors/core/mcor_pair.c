@@ -12,7 +12,7 @@ static mcor_status mcor_mark(mcor_context* context, double iso, int mark_cells)
   return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY,
     (context->grid.count + lanes - 1) / lanes, MCOR_GRID_ARGS(context), MCOR_BRICK_ARGS(context),
     MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(&bricks->marks),
+    MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(&bricks->bits),
     MCOR_BUFFER(&bricks->now.cells));
 }
 
@@ -43,7 +43,7 @@ mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
-    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
+    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
   *grown = flag != 0;
   return flag & 2 ? mcor_place_bricks(context) : MCOR_OK;

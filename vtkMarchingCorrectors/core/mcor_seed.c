@@ -78,8 +78,8 @@ static mcor_status mcor_find_states(mcor_context* context, double iso, int per_b
     MCOR_BUFFER(states));
 }
 
-/* Marks every brick whose nodes must be evaluated. */
-static mcor_status mcor_mark_complete(mcor_context* context, double iso)
+/* Asks for every brick whose nodes must be evaluated. */
+static mcor_status mcor_ask_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer *of_blocks = &context->scratch[0], *of_regions = &context->scratch[1],
@@ -92,9 +92,9 @@ static mcor_status mcor_mark_complete(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, quiet, (size_t)bricks->block_count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_quiet", MCOR_LIGHT, bricks->block_count,
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(of_blocks), MCOR_BUFFER(quiet)));
-  return MCOR_LAUNCH(context, "mcor_seed_mark", MCOR_LIGHT,
+  return MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
     bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_BLOCK_ARGS(context), MCOR_BUFFER(quiet),
-    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->marks));
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
 }
 
 /* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
@@ -108,7 +108,7 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states),
-    MCOR_BUFFER(&bricks->marks), MCOR_BUFFER(flag)));
+    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(flag)));
   MCOR_TRY(mcor_read(context, flag, 0, &value, sizeof value));
   *grown = value != 0;
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
@@ -131,14 +131,12 @@ static mcor_status mcor_find_sides(mcor_context* context, double iso)
 mcor_status mcor_select_seeds(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const size_t marks = (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
-  MCOR_RETURN_IF(marks > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
+  MCOR_RETURN_IF(bricks->block_count > INT32_MAX / MCOR_BLOCK_BRICKS, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: %d blocks of 32^3 cells hold particles. Use a larger cube size.",
     bricks->block_count);
-  MCOR_TRY(mcor_fill(context, &bricks->marks, 0, marks));
   MCOR_TRY(mcor_find_sides(context, iso));
   const bool pairs = mcor_uses_pairs(context);
-  MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_mark_complete(context, iso));
+  MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_ask_complete(context, iso));
   MCOR_TRY(mcor_place_bricks(context));
   return pairs ? mcor_mark_pair_cells(context, iso)
                : mcor_fill(context, &bricks->now.cells, 0xff,

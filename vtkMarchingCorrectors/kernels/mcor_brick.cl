@@ -152,23 +152,23 @@ __kernel void mcor_block_fill(MCOR_GRID_PARAMS, const int blocks_x, const int bl
   }
 }
 
-/* One work-item = one word of 32 bricks. Reads the marks and the bricks that exist already. Writes
- * which bricks are to exist. */
-__kernel void mcor_brick_bits(const int word_count, __global const uchar* marks,
-  __global const uint* old_bits, __global uint* bits, __global int* counts)
+/* Asks for the brick with mark number m; true if nothing had asked for it before. It has no slot until
+ * the host has placed it. */
+bool mcor_ask_brick(__global uint* brick_bits, int m)
+{
+  const uint bit = 1u << (m & 31);
+  return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
+}
+
+/* One work-item = one word of 32 bricks. Counts its bricks. */
+__kernel void mcor_brick_count(
+  const int word_count, __global const uint* brick_bits, __global int* counts)
 {
   const int word = get_global_id(0);
-  if (word >= word_count)
+  if (word < word_count)
   {
-    return;
+    counts[word] = (int)popcount(brick_bits[word]);
   }
-  uint result = old_bits[word];
-  for (int b = 0; b < 32; ++b)
-  {
-    result |= (uint)(marks[word * 32 + b] != 0) << b;
-  }
-  bits[word] = result;
-  counts[word] = (int)popcount(result);
 }
 
 /* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of

@@ -24,26 +24,30 @@ bool mcor_same_brick(int4 a, int4 b)
 }
 
 /* Points that are evaluated together should lie close together, as then fewer particles reach them:
- * a group is up to MCOR_LANES successive points of one brick. Points are sorted by brick, so that
- * looking back in steps of MCOR_LANES finds how far from the brick's first point this one is. */
-bool mcor_group_starts(__global const int4* node, int i)
-{
-  int j = i;
-  while (MCOR_LANES > 1 && j >= MCOR_LANES && mcor_same_brick(node[j - MCOR_LANES], node[i]))
-  {
-    j -= MCOR_LANES;
-  }
-  return MCOR_LANES == 1 || j == 0 || !mcor_same_brick(node[j - 1], node[i]);
-}
+ * a group is up to MCOR_LANES successive points of one brick. */
+#define MCOR_GROUP_CHUNK 64
 
-/* One work-item = one point, of `count` from `first`. Writes 1 where a group starts. */
+/* One work-item = MCOR_GROUP_CHUNK points, of `count` from `first`. Writes 1 where a group starts. */
 __kernel void mcor_group_count(
-  const int first, const int count, __global const int4* node, __global int* flags)
+  const int first, const int count, __global const int4* all_nodes, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i < count)
+  __global const int4* node = all_nodes + first;
+  const int begin = get_global_id(0) * MCOR_GROUP_CHUNK;
+  int before = 0; /* points of the same brick just before this one */
+  for (int i = begin; i < min(begin + MCOR_GROUP_CHUNK, count); ++i)
   {
-    flags[i] = mcor_group_starts(node + first, i);
+    if (i == begin)
+    {
+      while (before < i && mcor_same_brick(node[i - before - 1], node[i]))
+      {
+        ++before;
+      }
+    }
+    else
+    {
+      before = mcor_same_brick(node[i - 1], node[i]) ? before + 1 : 0;
+    }
+    flags[i] = before % MCOR_LANES == 0;
   }
 }
 

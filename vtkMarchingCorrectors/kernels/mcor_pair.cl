@@ -5,9 +5,9 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
-/* Marks the bricks that have nodes of the cells in a box. */
-void mcor_pair_mark_bricks(
-  MCOR_BLOCK_PARAMS, const int* low, const int* high, __global uchar* marks)
+/* Asks for the bricks that have nodes of the cells in a box. */
+void mcor_pair_ask_bricks(
+  MCOR_BLOCK_PARAMS, const int* low, const int* high, __global uint* asked)
 {
   for (int z = low[2] >> 2; z <= (high[2] + 1) >> 2; ++z)
   {
@@ -18,7 +18,7 @@ void mcor_pair_mark_bricks(
         const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z);
         if (m >= 0)
         {
-          marks[m] = 1;
+          mcor_ask_brick(asked, m);
         }
       }
     }
@@ -104,7 +104,7 @@ int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_ti
  * bricks of the box around these. */
 void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
   const mcor_tile* tile, int j, real iso, real h_scale, int mark_cells,
-  __global uchar* marks, __global uint* cells)
+  __global uint* asked, __global uint* cells)
 {
   int list[MCOR_TILE + 16];
   const int count = mcor_pair_list(grid, query, tile, j, iso, h_scale, list);
@@ -137,14 +137,14 @@ void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mco
   }
   if (count > 0 && !mark_cells)
   {
-    mcor_pair_mark_bricks(MCOR_BLOCK_ARGS, low, high, marks);
+    mcor_pair_ask_bricks(MCOR_BLOCK_ARGS, low, high, asked);
   }
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
- * each. mark_cells 0: marks bricks for pairs that straddle the iso value; 1: marks cells. */
+ * each. mark_cells 0: asks for bricks for pairs that straddle the iso value; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
-  const real iso, const real h_scale, const int mark_cells, __global uchar* marks,
+  const real iso, const real h_scale, const int mark_cells, __global uint* asked,
   __global uint* cells)
 {
   const int begin = get_global_id(0) * MCOR_LANES;
@@ -171,7 +171,7 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
       if (!MCOR_SOLIDS || p_weight[j] != 0)
       {
         mcor_pair_mark_particle(
-          &grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, marks, cells);
+          &grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, asked, cells);
       }
     }
   }
@@ -198,7 +198,7 @@ ulong mcor_pair_faces(const ulong* m, int first, int axis)
 
 /* Hands cells to a brick. flags: 1 a cell is new, 2 a brick must be placed. Where no particle reaches
  * there is no brick, and no node is valid. */
-void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uchar* marks,
+void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* asked,
   __global uint* cells, __global int* flags)
 {
   if (pushed == 0)
@@ -225,9 +225,8 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
     const int m = pushed & beside ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
                                       brick.y + (d >> 1 & 1), brick.z + (d >> 2))
                                   : -1;
-    if (m >= 0 && marks[m] == 0)
+    if (m >= 0 && mcor_ask_brick(asked, m))
     {
-      marks[m] = 1;
       atomic_or(flags, 2);
     }
   }
@@ -237,7 +236,7 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
  * used cells, within the brick to the end, and one step into its neighbours. */
 __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const int* neighbours, __global const ulong* above,
-  __global const ulong* valid, __global uchar* marks, __global uint* cells, __global int* flags)
+  __global const ulong* valid, __global uint* asked, __global uint* cells, __global int* flags)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -278,17 +277,17 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   const ulong used = now & crossed;
   const int4 brick = bricks[slot];
   __global const int* n = neighbours + slot * 14;
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, marks, cells, flags);
+  mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
   mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],
-    (used & faces[0] & MCOR_LOW_X) << 3, marks, cells, flags);
+    (used & faces[0] & MCOR_LOW_X) << 3, asked, cells, flags);
   mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(1, 0, 0, 0), n[0],
-    (used & upper[0]) >> 3 & MCOR_LOW_X, marks, cells, flags);
+    (used & upper[0]) >> 3 & MCOR_LOW_X, asked, cells, flags);
   mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, -1, 0, 0), n[8],
-    (used & faces[1] & MCOR_LOW_Y) << 12, marks, cells, flags);
+    (used & faces[1] & MCOR_LOW_Y) << 12, asked, cells, flags);
   mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 1, 0, 0), n[1],
-    (used & upper[1]) >> 12 & MCOR_LOW_Y, marks, cells, flags);
+    (used & upper[1]) >> 12 & MCOR_LOW_Y, asked, cells, flags);
   mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, -1, 0), n[10],
-    (used & faces[2] & MCOR_LOW_Z) << 48, marks, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, 1, 0), n[3], (used & upper[2]) >> 48, marks,
+    (used & faces[2] & MCOR_LOW_Z) << 48, asked, cells, flags);
+  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, 1, 0), n[3], (used & upper[2]) >> 48, asked,
     cells, flags);
 }

@@ -5,7 +5,7 @@
  * missed. Nodes are left out where the side of the iso value that they are on is certain without, or
  * where their weight is certain to be too low: whole blocks (32^3 nodes), regions (8^3) and bricks
  * (4^3) of them. A crossed edge has nodes on both sides. If both were left out, two neighbouring
- * bricks would be certain of different sides: those are evaluated after all (mcor_seed_mark). If one
+ * bricks would be certain of different sides: those are evaluated after all (mcor_seed_ask). If one
  * was, an evaluated brick would have a node on the other side than its neighbour: that is evaluated
  * then (mcor_seed_grow). */
 
@@ -397,10 +397,10 @@ int mcor_seed_neighbour(MCOR_BLOCK_PARAMS, int m, int4 brick, int d, __global co
   return *other < 0 ? MCOR_VOID : states[*other];
 }
 
-/* One work-item = one brick (of all in blocks). Reads the states. Writes its mark, 1 where it is to
- * be evaluated: where it is to be examined, or its neighbour is certain to be on the other side. */
-__kernel void mcor_seed_mark(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
-  __global const uchar* states, __global uchar* marks)
+/* One work-item = one brick (of all in blocks). Reads the states. Asks for the brick where it is to be
+ * examined, or its neighbour is certain to be on the other side. */
+__kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
+  __global const uchar* states, __global uint* brick_bits)
 {
   const int m = get_global_id(0);
   if (m >= block_count * MCOR_BLOCK_BRICKS || quiet[m / MCOR_BLOCK_BRICKS])
@@ -408,25 +408,28 @@ __kernel void mcor_seed_mark(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
     return;
   }
   const int state = states[m];
-  bool mark = state == MCOR_EXAMINE;
+  bool needed = state == MCOR_EXAMINE;
   if (state == MCOR_ABOVE || state == MCOR_BELOW)
   {
     const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
-    for (int d = 0; d < 27 && !mark; ++d)
+    for (int d = 0; d < 27 && !needed; ++d)
     {
       int other;
-      mark = mcor_seed_neighbour(MCOR_BLOCK_ARGS, m, brick, d, states, &other) ==
+      needed = mcor_seed_neighbour(MCOR_BLOCK_ARGS, m, brick, d, states, &other) ==
         MCOR_ABOVE + MCOR_BELOW - state;
     }
   }
-  marks[m] = mark;
+  if (needed)
+  {
+    mcor_ask_brick(brick_bits, m);
+  }
 }
 
 /* One work-item = one evaluated brick. Reads its nodes' sides, and the states of bricks around it that
- * are not evaluated. Marks those certain of another side than a valid node next to them. */
+ * are not evaluated. Asks for those certain of another side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* above, __global const ulong* valid, __global const uchar* states,
-  __global uchar* marks, __global int* grown)
+  __global uint* brick_bits, __global int* grown)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -439,7 +442,7 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   {
     int m;
     const int state = mcor_seed_neighbour(MCOR_BLOCK_ARGS, own, brick, d, states, &m);
-    if ((state != MCOR_ABOVE && state != MCOR_BELOW) || marks[m])
+    if (state != MCOR_ABOVE && state != MCOR_BELOW)
     {
       continue;
     }
@@ -447,10 +450,10 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     const ulong beside = (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
       (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
       (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
-    if (beside & valid[slot] & (state == MCOR_ABOVE ? ~above[slot] : above[slot]))
+    if ((beside & valid[slot] & (state == MCOR_ABOVE ? ~above[slot] : above[slot])) &&
+      mcor_ask_brick(brick_bits, m))
     {
-      marks[m] = 1;
-      *grown = 1;
+      atomic_or(grown, 1);
     }
   }
 }

@@ -97,6 +97,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     (int)options->field);
   MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "There is no seed mode number %d.",
     (int)options->seeds);
+  MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
+    "There is no boundary detection number %d.", (int)options->boundary_detection);
   MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64, "There is no precision number %d.",
     (int)options->precision);
   MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,

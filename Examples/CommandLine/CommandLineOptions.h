@@ -38,8 +38,10 @@ struct CommandLineOptions
   double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
   bool Preview = false;
   double NodeThreshold = 0.1;
+  std::string Boundary = "weight";
   double VertexThreshold = 0.5;
   bool WeightSum = false;
+  bool BoundaryEigenvalue = false;
   bool Gradients = false;
   bool Attributes = true;
 

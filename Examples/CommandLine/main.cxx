@@ -137,8 +137,12 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetCubeSize(options.CubeSize);
   filter->SetPreview(options.Preview);
   filter->SetNodeThreshold(options.NodeThreshold);
+  filter->SetBoundaryDetection(options.Boundary == "eigenvalue"
+      ? vtkMarchingCorrectors::EIGENVALUE
+      : vtkMarchingCorrectors::WEIGHT_SUM);
   filter->SetVertexThreshold(options.VertexThreshold);
   filter->SetComputeWeightSum(options.WeightSum);
+  filter->SetComputeBoundaryEigenvalue(options.BoundaryEigenvalue);
   filter->SetComputeGradients(options.Gradients);
   filter->SetInterpolateAttributes(options.Attributes);
   filter->SetDevice(options.Device.c_str());

@@ -208,6 +208,7 @@ uint64_t core_hash(const mcor_surface* s)
   hash = core_hash_bytes(hash, s->normals, n * 3 * sizeof(float));
   hash = core_hash_bytes(hash, s->gradients, n * 3 * sizeof(double));
   hash = core_hash_bytes(hash, s->weight_sum, n * sizeof(float));
+  hash = core_hash_bytes(hash, s->boundary_eigenvalue, n * sizeof(float));
   hash = core_hash_bytes(hash, s->correction_length, n * sizeof(float));
   hash = core_hash_bytes(hash, s->residual, n * sizeof(float));
   return core_hash_bytes(hash, s->boundary_flag, n);

@@ -12,6 +12,7 @@
 
 static void ask_for_all(mcor_options* options)
 {
+  options->boundary_eigenvalue = 1;
   options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
   options->boundary_flag = options->iso_value = options->nearest_particle = 1;
 }
@@ -61,6 +62,7 @@ static void test_reuse_changes_nothing(void** state)
       step == 9 ? (mcor_array){ .constant = 1.4 } : core_array(set.smoothing_length, 1);
     input.has_volume = step != 10;
     options.node_threshold = step == 11 ? 0.9 : 0.1;
+    options.boundary_detection = step == 13 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     const uint64_t expected = fresh_hash(&input, &options);
     for (int again = 0; again < 2; ++again)
     {
@@ -120,6 +122,7 @@ typedef struct permuted_case
   mcor_seed_mode seeds;
   int volumes; /* 0 array, 1 mass / density, 2 mass alone, 3 none */
   int solids, coincident, estimate;
+  mcor_boundary_detection boundary;
 } permuted_case;
 
 static const permuted_case permuted_cases[] = { { .name = "volume array" },
@@ -131,7 +134,10 @@ static const permuted_case permuted_cases[] = { { .name = "volume array" },
   { .name = "coincident", .coincident = 1 },
   { .name = "coincident, no volume", .volumes = 3, .coincident = 1 },
   { .name = "coincident fluid and solid", .solids = 1, .coincident = 1 },
-  { .name = "estimated smoothing length", .estimate = 1 } };
+  { .name = "estimated smoothing length", .estimate = 1 },
+  { .name = "eigenvalue", .solids = 1, .boundary = MCOR_BOUNDARY_EIGENVALUE },
+  { .name = "eigenvalue, coincident, double", .coincident = 1, .precision = MCOR_FLOAT64,
+    .boundary = MCOR_BOUNDARY_EIGENVALUE } };
 
 static core_set make_permuted_set(const permuted_case* at)
 {
@@ -170,6 +176,7 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
   options.field = at->field;
   options.precision = at->precision;
   options.seeds = at->seeds;
+  options.boundary_detection = at->boundary;
   return hash_of(context, &input, &options);
 }
 

@@ -165,7 +165,8 @@ extern "C"
 
     /* What the surface carries besides points and triangles. */
     int normals; /* default on */
-    int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag, iso_value, nearest_particle;
+    int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag;
+    int iso_value, nearest_particle;
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
@@ -228,8 +229,9 @@ extern "C"
     float* correction_length; /* [point_count], unit L */
     float* residual;          /* [point_count], f - iso, scalar unit */
     uint8_t* boundary_flag; /* [point_count], 0 inside; 1 on the trim boundary, weight (or
-                             * eigenvalue) = vertex threshold; 2 same, but left at the linear cut; 4 on a lattice edge
-                             * next to a cell that the node threshold discarded */
+                             * eigenvalue) = vertex threshold; 2 same, but left at the linear cut;
+                             * 4 on a lattice edge next to a cell that the node threshold
+                             * discarded */
     double* iso_value;      /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     double** attributes; /* [attribute_count] -> [point_count][components] */

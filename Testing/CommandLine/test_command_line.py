@@ -67,8 +67,9 @@ class Usage(CommandLineTest):
         self.assertEqual(result.returncode, 0)
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
-                --field --seeds --preview --node-threshold --vertex-threshold --weight-sum
-                --gradients --no-attributes --device --list-devices --stats --screenshot --repeat --quiet --help
+                --field --seeds --preview --node-threshold --boundary --vertex-threshold
+                --weight-sum --boundary-eigenvalue --gradients --no-attributes --device
+                --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
@@ -101,6 +102,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--kernel", "gauss"], "--kernel is one of cubic, .*, not 'gauss'"),
             ([*good, *ISO, "--field", "mean"], "--field is one of shepard, sum, not 'mean'"),
             ([*good, *ISO, "--seeds", "all"], "--seeds is one of pairs, complete, not 'all'"),
+            ([*good, *ISO, "--boundary", "x"], "--boundary is one of weight, eigenvalue, not 'x'"),
             ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, not 'x'"),
             ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
@@ -383,11 +385,24 @@ class Options(CommandLineTest):
             (["--preview"], "preview", 1),
             (["--node-threshold", "0.2"], "node_threshold", 0.2),
             (["--vertex-threshold", "0.6"], "vertex_threshold", 0.6),
+            (["--boundary", "eigenvalue"], "boundary_detection", "eigenvalue"),
         ]:
             with self.subTest(name):
                 found = self.succeed(*ISO, *arguments)
                 self.assertEqual(found["parameters"][name], value)
                 self.assertGreater(found["statistics"]["triangles"], 0)
+
+    def test_boundary_detection(self):
+        cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block
+        weight = self.succeed(*cut)
+        self.assertEqual(weight["parameters"]["boundary_detection"], "weight sum")
+        counts = {weight["statistics"]["triangles"]}
+        for threshold in ("0.3", "0.5"):
+            found = self.succeed(*cut, "--boundary=eigenvalue", "--vertex-threshold", threshold)
+            self.assertEqual(found["parameters"]["boundary_detection"], "eigenvalue")
+            self.assertGreater(found["statistics"]["trim_vertices"], 0)
+            counts.add(found["statistics"]["triangles"])
+        self.assertEqual(len(counts), 3, counts)
 
     def test_double_precision(self):
         single = self.succeed(*ISO)
@@ -398,9 +413,9 @@ class Options(CommandLineTest):
     def test_output_arrays(self):
         self.succeed(*ISO)
         plain = self.output.read_text()
-        self.succeed(*ISO, "--weight-sum", "--gradients")
+        self.succeed(*ISO, "--weight-sum", "--boundary-eigenvalue", "--gradients")
         more = self.output.read_text()
-        for name in ("WeightSum", "Gradients"):
+        for name in ("WeightSum", "BoundaryEigenvalue", "Gradients"):
             self.assertNotIn(f'Name="{name}"', plain)
             self.assertIn(f'Name="{name}"', more)
         for name in ("Normals", "Velocity", "Kind", "Radius"):

@@ -21,6 +21,9 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
 {
   mcor_surface surface = core_extract(context, input, options);
   CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  CORE_CHECK(options->boundary_detection == MCOR_BOUNDARY_WEIGHT_SUM ||
+      surface.statistics.trim_vertices > surface.statistics.trim_vertices_linear,
+    "nothing trimmed by the eigenvalue");
   const uint64_t hash = core_hash(&surface);
   mcor_free_surface(&surface);
   return hash;
@@ -50,7 +53,7 @@ static void test_reuse_changes_nothing(void** state)
   ask_for_all(&options);
   for (int step = 0; step < 14; ++step)
   {
-    iso = step == 1 || step == 12 ? 2.5 : 0;
+    iso = step == 1 || step == 12 ? 2.5 : step == 13 ? -10 : 0;
     options.seeds = step == 2 || step == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.cube_size_factor = step == 4 ? 0.8 : 0.5;
     options.h_scale = step == 5 ? 0.8 : 1;
@@ -162,7 +165,8 @@ static core_set make_permuted_set(const permuted_case* at)
 
 static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, const core_set* set)
 {
-  const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : 1;
+  const double inside = at->boundary == MCOR_BOUNDARY_EIGENVALUE ? -10 : 1;
+  const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : inside;
   mcor_input input = core_input(set);
   input.mass = input.volume;
   input.density = input.smoothing_length;

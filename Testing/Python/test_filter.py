@@ -99,6 +99,10 @@ class TestFilter(unittest.TestCase):
         self.assertEqual(extract.GetKernel(), vtkMarchingCorrectors.QUINTIC_SPLINE)
         extract.SetSeedModeToPairs()
         self.assertEqual(extract.GetSeedMode(), vtkMarchingCorrectors.PAIRS)
+        extract.SetBoundaryDetectionToEigenvalue()
+        self.assertEqual(extract.GetBoundaryDetection(), vtkMarchingCorrectors.EIGENVALUE)
+        extract.SetBoundaryDetectionToWeightSum()
+        self.assertEqual(extract.GetBoundaryDetection(), vtkMarchingCorrectors.WEIGHT_SUM)
         self.assertIn(":", vtkMarchingCorrectors.ListDevices())
         self.assertIn("Cube Size Factor: 0.5", str(extract))
 

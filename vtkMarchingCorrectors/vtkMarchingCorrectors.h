@@ -395,7 +395,10 @@ public:
    * What tells trimming where the fluid ends, see BoundaryDetectionType; WEIGHT_SUM by default. The
    * eigenvalue is that of Marrone et al., "Fast free-surface detection and level-set function
    * definition in SPH solvers", J. Comput. Phys. 229, 2010: the smallest one of the inverse of the
-   * renormalization matrix (its symmetric part). Both are about 1 inside and fall to 0 outside.
+   * renormalization matrix (its symmetric part). Both are about 1 inside and fall to 0 outside, but
+   * the eigenvalue needs another VertexThreshold: 0.3 trims about where a weight sum of 0.5 does;
+   * 0.75 within the fluid, 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged,
+   * as the eigenvalue stays there over a depth of half a smoothing length.
    */
   vtkSetClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
   vtkGetMacro(BoundaryDetection, int);

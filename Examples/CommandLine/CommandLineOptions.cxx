@@ -178,7 +178,7 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) {
         o.Boundary = ToChoice(n, v, { "weight", "eigenvalue" });
       } },
-    { "--vertex-threshold", "T", "trim triangles where that is lower (default 0.5)",
+    { "--vertex-threshold", "T", "trim triangles where that is lower (default 0.5; eigenvalue 0.3)",
       [](Options& o, Text n, Text v) { o.VertexThreshold = ToThreshold(n, v); } },
     { "--precision", "single|double", "of the field evaluation on the device (default single)",
       [](Options& o, Text n, Text v) {

@@ -39,7 +39,7 @@ struct CommandLineOptions
   bool Preview = false;
   double NodeThreshold = 0.1;
   std::string Boundary = "weight";
-  double VertexThreshold = 0.5;
+  double VertexThreshold = -1.0; ///< below 0: what suits Boundary
   bool WeightSum = false;
   bool BoundaryEigenvalue = false;
   bool Gradients = false;

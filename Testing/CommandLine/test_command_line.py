@@ -396,10 +396,12 @@ class Options(CommandLineTest):
         cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block
         weight = self.succeed(*cut)
         self.assertEqual(weight["parameters"]["boundary_detection"], "weight sum")
+        self.assertEqual(weight["parameters"]["vertex_threshold"], 0.5)
         counts = {weight["statistics"]["triangles"]}
-        for threshold in ("0.3", "0.5"):
-            found = self.succeed(*cut, "--boundary=eigenvalue", "--vertex-threshold", threshold)
+        for arguments, threshold in ([], 0.3), (["--vertex-threshold", "0.75"], 0.75):
+            found = self.succeed(*cut, "--boundary=eigenvalue", *arguments)
             self.assertEqual(found["parameters"]["boundary_detection"], "eigenvalue")
+            self.assertEqual(found["parameters"]["vertex_threshold"], threshold)
             self.assertGreater(found["statistics"]["trim_vertices"], 0)
             counts.add(found["statistics"]["triangles"])
         self.assertEqual(len(counts), 3, counts)

@@ -85,7 +85,10 @@ extern "C"
     MCOR_BOUNDARY_EIGENVALUE = 1  /* the smallest eigenvalue of the symmetric part of
                                    * sum V (x_j - x) (outer product) grad W(x - x_j), the inverse of
                                    * the renormalisation matrix (Marrone et al. 2010), over the same
-                                   * particles */
+                                   * particles. Set vertex_threshold too: 0.3 trims about where a
+                                   * weight of 0.5 does; 0.75 within the fluid, 0.9 smoothing lengths
+                                   * from a flat surface. Not 0.5, which it has there over a depth of
+                                   * half a smoothing length. */
   } mcor_boundary_detection;
 
   /* A per-particle quantity, or one constant for all particles. */

@@ -21,9 +21,8 @@ typedef struct bits_case
   double iso;
 } bits_case;
 
-static const bits_case cases[] = {
-  { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5 },
+static const bits_case cases[] = { { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32,
+                                     MCOR_COMPLETE, MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5 },
   { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, MCOR_BOUNDARY_WEIGHT_SUM, 1,
     1, 0.5 },
   { "eigenvalue", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
@@ -35,8 +34,7 @@ static const bits_case cases[] = {
   { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE,
     MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5 },
   { "double eigenvalue", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14 }
-};
+    MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14 } };
 
 static int run_case(mcor_context* context, const bits_case* at, int small)
 {

@@ -176,8 +176,7 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel, mcor_typ
   }
   const oracle_particles particles = core_oracle(&set);
   oracle_field field;
-  assert_true(
-    oracle_create_field(&field, &particles, (oracle_kernel)kernel, ORACLE_SHEPARD, 1));
+  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, ORACLE_SHEPARD, 1));
   load(context, &set, kernel, precision);
   evaluate(context, (const double(*)[3])points, N, found);
   const double tolerance = precision == MCOR_FLOAT64 ? 1e-9 : 5e-6;
@@ -332,8 +331,8 @@ static void test_eigenvalues(void** state)
     write_reals(*state, &in, matrices[0], N * 6);
     CORE_OK(*state, mcor_reserve(*state, &out, N * 4 * sizeof(double)));
     CORE_OK(*state,
-      MCOR_LAUNCH(*state, "test_eigen", MCOR_LIGHT, N, MCOR_INT(N), MCOR_BUFFER(&in),
-        MCOR_BUFFER(&out)));
+      MCOR_LAUNCH(
+        *state, "test_eigen", MCOR_LIGHT, N, MCOR_INT(N), MCOR_BUFFER(&in), MCOR_BUFFER(&out)));
     read_reals(*state, &out, N, found);
     mcor_release(*state, &in);
     for (int i = 0; i < N; ++i)
@@ -357,8 +356,7 @@ typedef struct trim_case
 static const trim_case trim_cases[] = { { .threshold = 0.3 }, { .threshold = 0.75 },
   { .threshold = 0.3, .solids = 1 }, { .threshold = 0.3, .solids = 1, .ignore_solids = 1 },
   { .threshold = 0.3, .field = MCOR_SUM }, { .threshold = 0.3, .preview = 1 },
-  { .threshold = 0.3, .precision = MCOR_FLOAT64 },
-  { .threshold = 0.3, .kernel = MCOR_M_PRIME_4 },
+  { .threshold = 0.3, .precision = MCOR_FLOAT64 }, { .threshold = 0.3, .kernel = MCOR_M_PRIME_4 },
   { .threshold = 0.3, .kernel = MCOR_QUINTIC_SPLINE, .precision = MCOR_FLOAT64 } };
 
 typedef struct trim_count
@@ -380,38 +378,14 @@ static void check_point(const oracle_field* field, const trim_case* at, const mc
       fabs(sample.trim_weight - (double)surface->weight_sum[i]) < 1e-5,
     "eigenvalue %g and weight %g, reported %g and %g", e[0], sample.trim_weight,
     (double)surface->boundary_eigenvalue[i], (double)surface->weight_sum[i]);
-  CORE_CHECK(flag == 1 || flag == 2 || e[0] >= at->threshold - 1e-5, "eigenvalue %g, flag %d", e[0],
-    flag);
+  CORE_CHECK(
+    flag == 1 || flag == 2 || e[0] >= at->threshold - 1e-5, "eigenvalue %g, flag %d", e[0], flag);
   const double iso = at->field == MCOR_SUM ? 0.7 : 0;
-  CORE_CHECK(flag != 1 ||
-      (fabs(e[0] - at->threshold) < 1e-4 && fabs(sample.value - iso) < 5e-6 * range),
+  CORE_CHECK(
+    flag != 1 || (fabs(e[0] - at->threshold) < 1e-4 && fabs(sample.value - iso) < 5e-6 * range),
     "trim vertex with eigenvalue %.9g and value %.3g", e[0], sample.value - iso);
   count->exact += flag == 1;
   count->linear += flag == 2;
-}
-
-/* Points of the mesh's boundary, and no others, are flagged. */
-static void check_flags(const mcor_surface* surface)
-{
-  mesh_report report = core_check_mesh(surface);
-  uint8_t* on_boundary = calloc((size_t)surface->point_count, 1);
-  assert_non_null(on_boundary);
-  for (int64_t s = 0; s < report.side_count; ++s)
-  {
-    const mesh_edge* e = report.side + s;
-    if (mesh_count_sides(&report, e->a, e->b) == 1)
-    {
-      on_boundary[e->a] = on_boundary[e->b] = 1;
-    }
-  }
-  for (int64_t i = 0; i < surface->point_count; ++i)
-  {
-    CORE_CHECK((surface->boundary_flag[i] != 0) == on_boundary[i],
-      "point %lld: flag %d, on boundary %d", (long long)i, surface->boundary_flag[i],
-      on_boundary[i]);
-  }
-  mesh_free_report(&report);
-  free(on_boundary);
 }
 
 static core_set make_slab(const trim_case* at)
@@ -443,14 +417,14 @@ static void check_trimmed(mcor_context* context, const trim_case* at)
   oracle_particles particles = core_oracle(&set);
   particles.ignore_solids = at->ignore_solids;
   oracle_field field;
-  assert_true(oracle_create_field(
-    &field, &particles, (oracle_kernel)at->kernel, (oracle_kind)at->field, 1));
+  assert_true(
+    oracle_create_field(&field, &particles, (oracle_kernel)at->kernel, (oracle_kind)at->field, 1));
   trim_count count = { 0, 0 };
   for (int64_t i = 0; i < surface.point_count; ++i)
   {
     check_point(&field, at, &surface, i, oracle_scalar_range(&particles), &count);
   }
-  check_flags(&surface);
+  core_check_flags(&surface);
   CORE_CHECK(at->preview ? count.linear > 20 && count.exact == 0
                          : count.exact > 20 && count.linear * 20 <= count.exact,
     "threshold %g, kernel %d: %lld exact, %lld linear", at->threshold, (int)at->kernel,
@@ -488,7 +462,8 @@ static void test_array(void** state)
     mcor_surface surface = core_extract(*state, &input, &options);
     options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
     mcor_surface other = core_extract(*state, &input, &options);
-    CORE_CHECK((surface.point_count == other.point_count) == free_surface && surface.point_count > 0,
+    CORE_CHECK(
+      (surface.point_count == other.point_count) == free_surface && surface.point_count > 0,
       "%lld and %lld points", (long long)surface.point_count, (long long)other.point_count);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {

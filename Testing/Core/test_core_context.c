@@ -139,7 +139,9 @@ static const permuted_case permuted_cases[] = { { .name = "volume array" },
   { .name = "coincident fluid and solid", .solids = 1, .coincident = 1 },
   { .name = "estimated smoothing length", .estimate = 1 },
   { .name = "eigenvalue", .solids = 1, .boundary = MCOR_BOUNDARY_EIGENVALUE },
-  { .name = "eigenvalue, coincident, double", .coincident = 1, .precision = MCOR_FLOAT64,
+  { .name = "eigenvalue, coincident, double",
+    .coincident = 1,
+    .precision = MCOR_FLOAT64,
     .boundary = MCOR_BOUNDARY_EIGENVALUE } };
 
 static core_set make_permuted_set(const permuted_case* at)

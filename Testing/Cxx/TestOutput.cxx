@@ -115,9 +115,8 @@ void TestComputedArrays()
   filter->ComputeBoundaryFlagOn();
   filter->Update();
   vtkPointData* data = filter->GetOutput()->GetPointData();
-  for (const char* name :
-    { "Normals", "Gradients", "WeightSum", "BoundaryEigenvalue", "CorrectionLength", "Residual",
-      "BoundaryFlag" })
+  for (const char* name : { "Normals", "Gradients", "WeightSum", "BoundaryEigenvalue",
+         "CorrectionLength", "Residual", "BoundaryFlag" })
   {
     CHECK(data->GetArray(name) &&
       data->GetArray(name)->GetNumberOfTuples() == filter->GetOutput()->GetNumberOfPoints());

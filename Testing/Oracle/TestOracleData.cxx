@@ -149,8 +149,8 @@ void NameCase(const DataCase& one, oracle_case& at)
   std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s", one.File,
     one.Scalar ? one.Scalar : "free", one.Iso, mcor_sph_kernel_name(one.Kernel), fields[one.Field],
     one.CubeSize > 0.0 ? one.CubeSize : at.options.cube_size_factor, at.options.h_scale,
-    std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "",
-    one.Double ? "/double" : "", eigenvalue);
+    std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "", one.Double ? "/double" : "",
+    eigenvalue);
 }
 
 void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one)

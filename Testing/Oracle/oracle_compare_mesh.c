@@ -182,8 +182,7 @@ static int compare_exact_cut_near(const compare_state* state, const double start
     double d[3];
     for (int a = 0; a < 3; ++a)
     {
-      d[a] =
-        -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * gradient[a]) / determinant;
+      d[a] = -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * gradient[a]) / determinant;
       length += d[a] * d[a];
     }
     const double most = 0.1 * reference->lattice.cube;

@@ -182,8 +182,8 @@ static void check_boundary(const oracle_reference* reference, const double point
     double gradient[3];
     const double* x = &p->position[3 * j];
     const double u[3] = { point[0] - x[0], point[1] - x[1], point[2] - x[2] };
-    oracle_kernel_value(reference->field.kernel,
-      reference->field.h_scale * p->smoothing_length[j], u, gradient);
+    oracle_kernel_value(
+      reference->field.kernel, reference->field.h_scale * p->smoothing_length[j], u, gradient);
     for (int n = 0; n < 9 && !(p->solid[j] && p->ignore_solids); ++n)
     {
       m[n / 3][n % 3] -=
@@ -200,8 +200,8 @@ static void check_boundary(const oracle_reference* reference, const double point
   const double a = m[0][0] - l[0];
   const double b = m[1][1] - l[0];
   const double c = m[2][2] - l[0];
-  const double determinant = a * (b * c - m[1][2] * m[1][2]) - m[0][1] * (m[0][1] * c - m[1][2] * m[0][2]) +
-    m[0][2] * (m[0][1] * m[1][2] - b * m[0][2]);
+  const double determinant = a * (b * c - m[1][2] * m[1][2]) -
+    m[0][1] * (m[0][1] * c - m[1][2] * m[0][2]) + m[0][2] * (m[0][1] * m[1][2] - b * m[0][2]);
   ORACLE_CHECK(l[0] <= l[1] && l[1] <= l[2] && fabs(determinant) <= 1e-9 * scale * sqrt(scale),
     "eigenvalues %g %g %g, determinant %g", l[0], l[1], l[2], determinant);
   ORACLE_CHECK(fabs(l[0] + l[1] + l[2] - trace) <= 1e-9 * scale &&

@@ -73,9 +73,9 @@ void mcor_release_memory(mcor_context* context)
     &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides, &b->block_keys,
     &b->block_buckets, &b->states, &b->marks, &b->bits, &b->base, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
     &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
-    &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->boundary, &m->triangles,
-    &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
-    &m->scanned, &context->scan_sums, &context->attributes, &context->groups };
+    &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->boundary,
+    &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct,
+    &m->cut_index, &m->scanned, &context->scan_sums, &context->attributes, &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
@@ -111,7 +111,8 @@ void mcor_free_surface(mcor_surface* surface)
   }
   void* const arrays[] = { surface->points, surface->triangles, surface->normals,
     surface->gradients, surface->weight_sum, surface->boundary_eigenvalue,
-    surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value, surface->nearest_particle };
+    surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value,
+    surface->nearest_particle };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);

@@ -40,7 +40,8 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
   {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     g[a] = slope[a] * w[b] * w[c];
-    d[a] = bend[a] * w[b] * w[c] * e[a] + slope[a] * (slope[b] * w[c] * e[b] + slope[c] * w[b] * e[c]);
+    d[a] =
+      bend[a] * w[b] * w[c] * e[a] + slope[a] * (slope[b] * w[c] * e[b] + slope[c] * w[b] * e[c]);
   }
 #else
   const realv r2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
@@ -61,8 +62,8 @@ void mcor_eigen_rotate(
   realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
 {
   const realv d = *qq - *pp, root2 = d * d + (real)4 * *pq * *pq;
-  const realv t = (d < 0 ? (realv)-2 : (realv)2) * *pq /
-    (fabs(d) + root2 * mcor_rsqrt(root2) + (real)1e-30f);
+  const realv t =
+    (d < 0 ? (realv)-2 : (realv)2) * *pq / (fabs(d) + root2 * mcor_rsqrt(root2) + (real)1e-30f);
   const realv c = mcor_rsqrt((real)1 + t * t), s = t * c, p = *rp, q = *rq;
   *pp -= t * *pq;
   *qq += t * *pq;
@@ -116,8 +117,8 @@ void mcor_boundary_relative(
 }
 
 /* Offset u of the points from particle j. */
-void mcor_boundary_offset(const mcor_grid* grid, const mcor_query* query,
-  const mcor_points* points, const realv at[3], int j, realv u[3])
+void mcor_boundary_offset(const mcor_grid* grid, const mcor_query* query, const mcor_points* points,
+  const realv at[3], int j, realv u[3])
 {
   u[0] = (at[0] - (real)(grid->px[j] - query->low[0]) * grid->unit) + points->ox;
   u[1] = (at[1] - (real)(grid->py[j] - query->low[1]) * grid->unit) + points->oy;

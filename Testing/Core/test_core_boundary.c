@@ -271,6 +271,9 @@ static void test_half_space(void** state)
     CORE_CHECK(found[3] < 0 && fabs(found[1]) < 1e-6 && fabs(found[2]) < 1e-6,
       "gradient %g %g %g does not point inside", found[1], found[2], found[3]);
   }
+  /* The depths that mcor.h names. */
+  CORE_CHECK(fabs(half_space(1, 0.87) - 0.75) < 5e-3 && fabs(half_space(1, 0.25) - 0.5) < 0.02,
+    "%g and %g", half_space(1, 0.87), half_space(1, 0.25));
   core_free_set(&set);
 }
 

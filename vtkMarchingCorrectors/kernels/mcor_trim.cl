@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight (or the boundary
- * eigenvalue, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to a mesh edge, key (lower vertex << 32 | higher vertex), and is
- * shared by the two triangles there. */
+ * eigenvalue, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to a
+ * mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles there. */
 
 /* Bits 0..2: corner at or above the threshold. A triangle with no corner strictly above is outside,
  * so that one which merely touches the threshold leaves no sliver [Fig. 3 b]. */

@@ -167,9 +167,9 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel, mcor_typ
   for (int64_t j = 0; j < set.count; ++j)
   {
     set.volume[j] *= 0.3;
-    set.solid[j] = j % 5 == 0;
+    set.solid[j] = kernel == MCOR_CUBIC_SPLINE && j % 5 == 0;
   }
-  set.has_solids = 1;
+  set.has_solids = kernel == MCOR_CUBIC_SPLINE; /* each variant is a program to build */
   for (int i = 0; i < 3 * N; ++i)
   {
     points[i / 3][i % 3] = 5 * random_unit(&seed) - 2.5;

@@ -296,18 +296,14 @@ static mcor_status mcor_add_boundary_eigenvalue(
     return MCOR_OK;
   }
   mcor_buffer* values = &context->out[5];
-  const size_t n = (size_t)points, real = context->cl.real_size;
   MCOR_TRY(mcor_evaluate_boundary(context, &context->out[0], &context->out[1], points, values));
-  void* host = malloc(n * real);
-  MCOR_RETURN_IF(!host, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for the boundary eigenvalues of %d points could not be allocated.", points);
-  const mcor_status status = mcor_read(context, values, 0, host, n * real);
-  for (int64_t i = 0; i < points && status == MCOR_OK; ++i)
+  void* view;
+  MCOR_TRY(mcor_map(context, values, (size_t)points * context->cl.real_size, false, &view));
+  for (int64_t i = 0; i < points; ++i)
   {
-    surface->boundary_eigenvalue[surface->point_count + i] = (float)mcor_get_real(context, host, i);
+    surface->boundary_eigenvalue[surface->point_count + i] = (float)mcor_get_real(context, view, i);
   }
-  free(host);
-  return status;
+  return mcor_unmap(context, values, &view);
 }
 
 static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,

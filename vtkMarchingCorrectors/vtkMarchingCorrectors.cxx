@@ -235,6 +235,8 @@ void vtkMarchingCorrectors::FillOptions(
     options.iso_count = 1;
   }
   options.node_threshold = this->NodeThreshold;
+  options.boundary_detection =
+    this->BoundaryDetection == EIGENVALUE ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->VertexThreshold;
   options.preview = IsOn(this->Preview);
   options.tolerance = this->Tolerance;
@@ -243,6 +245,7 @@ void vtkMarchingCorrectors::FillOptions(
   options.normals = IsOn(this->ComputeNormals);
   options.gradients = IsOn(this->ComputeGradients);
   options.weight_sum = IsOn(this->ComputeWeightSum);
+  options.boundary_eigenvalue = IsOn(this->ComputeBoundaryEigenvalue);
   options.correction_length = IsOn(this->ComputeCorrectionLength);
   options.residual = IsOn(this->ComputeResidual);
   options.boundary_flag = IsOn(this->ComputeBoundaryFlag);
@@ -350,6 +353,8 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
   os << indent << "Node Threshold: " << this->NodeThreshold << "\n";
+  os << indent << "Boundary Detection: "
+     << (this->BoundaryDetection == EIGENVALUE ? "eigenvalue" : "weight sum") << "\n";
   os << indent << "Vertex Threshold: " << this->VertexThreshold << "\n";
   PrintName(os, indent, "Fluid Array Name", this->FluidArrayName);
   os << indent << "Fluid Value: " << this->FluidValue << "\n";
@@ -358,6 +363,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
   os << indent << "Compute Scalars: " << this->ComputeScalars << "\n";
   os << indent << "Compute Weight Sum: " << this->ComputeWeightSum << "\n";
+  os << indent << "Compute Boundary Eigenvalue: " << this->ComputeBoundaryEigenvalue << "\n";
   os << indent << "Compute Correction Length: " << this->ComputeCorrectionLength << "\n";
   os << indent << "Compute Residual: " << this->ComputeResidual << "\n";
   os << indent << "Compute Boundary Flag: " << this->ComputeBoundaryFlag << "\n";

@@ -32,7 +32,8 @@
  *    and safeguarded by the edge's bracket, until the field is within Tolerance of the iso value.
  *    Normals from the analytic gradient, and all other point arrays, are evaluated at the vertices.
  * -# Trimming. Where the weight sum is low there is no fluid to speak of: cells with a node below
- *    NodeThreshold are discarded, triangles are trimmed where the weight sum is VertexThreshold.
+ *    NodeThreshold are discarded, triangles are trimmed where the weight sum is VertexThreshold. In
+ *    place of the weight sum there, BoundaryDetection can name the boundary eigenvalue.
  * -# Output. The surface is downloaded once, and becomes a vtkPolyData.
  *
  * See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH Data" by
@@ -58,7 +59,7 @@
  * In place of any array name, "(automatic)" and "(none)" mean the same as an empty one.
  *
  * The output point data holds "Normals", the arrays asked for ("Gradients", "WeightSum",
- * "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see ComputeScalars) and all other
+ * "BoundaryEigenvalue", "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see ComputeScalars) and all other
  * point arrays (see InterpolateAttributes). The output field data holds the statistics of the run,
  * one array each: "Device", "Platform", "Seconds" (one component per phase and the total),
  * "FluidParticles", "SolidParticles", "VirtualCells", "LatticeOrigin", "LatticeCells", "SeedCells",
@@ -69,8 +70,8 @@
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
  * "DeviceBytesPeak", "SmoothingLengthRange", "ScalarRange", and the parameters: "IsoValues",
  * "Field", "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray", "DensityArray", "Kernel",
- * "SeedMode", "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
- * "VertexThreshold", "Tolerance", "IterationLimit", "Preview".
+ * "SeedMode", "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor",
+ * "NodeThreshold", "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview".
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
@@ -144,6 +145,12 @@ public:
   {
     TOPOLOGY_TABLE = 0, ///< Marching Cubes' table alone
     TOPOLOGY_FIELD = 1  ///< as the field is on ambiguous faces and in ambiguous cells
+  };
+
+  enum BoundaryDetectionType
+  {
+    WEIGHT_SUM = 0, ///< sum_j V_j W(x - x_j, s h_j)
+    EIGENVALUE = 1  ///< smallest one of sum_j V_j (x_j - x) (outer product) grad W(x - x_j, s h_j)
   };
 
   /**
@@ -405,7 +412,24 @@ public:
 
   ///@{
   /**
-   * Triangles are trimmed where the weight sum is lower. No unit, 0.5 by default.
+   * What tells trimming where the fluid ends, see BoundaryDetectionType; WEIGHT_SUM by default. The
+   * eigenvalue is that of Marrone et al., "Fast free-surface detection and level-set function
+   * definition in SPH solvers", J. Comput. Phys. 229, 2010: the smallest one of the inverse of the
+   * renormalization matrix (its symmetric part). Both are about 1 inside and fall to 0 outside, but
+   * the eigenvalue needs another VertexThreshold: 0.3 trims about where a weight sum of 0.5 does;
+   * 0.75 within the fluid, 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged,
+   * as the eigenvalue stays there over a depth of half a smoothing length.
+   */
+  vtkSetClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
+  vtkGetMacro(BoundaryDetection, int);
+  void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
+  void SetBoundaryDetectionToEigenvalue() { this->SetBoundaryDetection(EIGENVALUE); }
+  ///@}
+
+  ///@{
+  /**
+   * Triangles are trimmed where the weight sum (or the eigenvalue, see BoundaryDetection) is lower.
+   * No unit, 0.5 by default.
    */
   vtkSetMacro(VertexThreshold, double);
   vtkGetMacro(VertexThreshold, double);
@@ -471,6 +495,16 @@ public:
   vtkSetMacro(ComputeWeightSum, vtkTypeBool);
   vtkGetMacro(ComputeWeightSum, vtkTypeBool);
   vtkBooleanMacro(ComputeWeightSum, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Compute "BoundaryEigenvalue", no unit: see BoundaryDetection, whose choice does not matter here.
+   * Off by default.
+   */
+  vtkSetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
+  vtkGetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
+  vtkBooleanMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
   ///@}
 
   ///@{
@@ -610,6 +644,7 @@ protected:
   int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
   double NodeThreshold = 0.1;
+  int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;
   std::string FluidArrayName;
   double FluidValue = 0.0;
@@ -619,6 +654,7 @@ protected:
   vtkTypeBool ComputeGradients = 0;
   vtkTypeBool ComputeScalars = 1;
   vtkTypeBool ComputeWeightSum = 0;
+  vtkTypeBool ComputeBoundaryEigenvalue = 0;
   vtkTypeBool ComputeCorrectionLength = 0;
   vtkTypeBool ComputeResidual = 0;
   vtkTypeBool ComputeBoundaryFlag = 0;

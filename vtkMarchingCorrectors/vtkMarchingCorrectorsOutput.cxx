@@ -215,6 +215,10 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   {
     Add(pointData, "WeightSum", Adopt<vtkFloatArray>(s.weight_sum, 1, count));
   }
+  if (s.boundary_eigenvalue)
+  {
+    Add(pointData, "BoundaryEigenvalue", Adopt<vtkFloatArray>(s.boundary_eigenvalue, 1, count));
+  }
   if (s.correction_length)
   {
     Add(pointData, "CorrectionLength", Adopt<vtkFloatArray>(s.correction_length, 1, count));
@@ -339,6 +343,8 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   AddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
   AddReal(fieldData, "HScaleFactor", { o.h_scale });
   AddReal(fieldData, "NodeThreshold", { o.node_threshold });
+  AddText(fieldData, "BoundaryDetection",
+    o.boundary_detection == MCOR_BOUNDARY_EIGENVALUE ? "eigenvalue" : "weight sum");
   AddReal(fieldData, "VertexThreshold", { o.vertex_threshold });
   AddReal(fieldData, "Tolerance", { o.tolerance });
   AddCount(fieldData, "IterationLimit", { o.iteration_limit });

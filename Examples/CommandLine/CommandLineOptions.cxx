@@ -178,7 +178,11 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text, Text) { o.Preview = true; } },
     { "--node-threshold", "T", "discard cells with a node of lower weight (default 0.1)",
       [](Options& o, Text n, Text v) { o.NodeThreshold = ToThreshold(n, v); } },
-    { "--vertex-threshold", "T", "trim triangles where the weight is lower (default 0.5)",
+    { "--boundary", "weight|eigenvalue", "trim by the weight (default), or by Marrone's eigenvalue",
+      [](Options& o, Text n, Text v) {
+        o.Boundary = ToChoice(n, v, { "weight", "eigenvalue" });
+      } },
+    { "--vertex-threshold", "T", "trim triangles where that is lower (default 0.5; eigenvalue 0.3)",
       [](Options& o, Text n, Text v) { o.VertexThreshold = ToThreshold(n, v); } },
     { "--precision", "single|double", "of the field evaluation on the device (default single)",
       [](Options& o, Text n, Text v) {
@@ -188,6 +192,8 @@ const std::vector<Option>& AllOptions()
     { "", "", "Output", {} },
     { "--weight-sum", "", "add the array WeightSum",
       [](Options& o, Text, Text) { o.WeightSum = true; } },
+    { "--boundary-eigenvalue", "", "add the array BoundaryEigenvalue",
+      [](Options& o, Text, Text) { o.BoundaryEigenvalue = true; } },
     { "--gradients", "", "add the array Gradients",
       [](Options& o, Text, Text) { o.Gradients = true; } },
     { "--no-attributes", "", "leave out the particles' other arrays",

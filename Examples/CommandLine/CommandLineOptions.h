@@ -39,8 +39,10 @@ struct CommandLineOptions
   double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
   bool Preview = false;
   double NodeThreshold = 0.1;
-  double VertexThreshold = 0.5;
+  std::string Boundary = "weight";
+  double VertexThreshold = -1.0; ///< below 0: what suits Boundary
   bool WeightSum = false;
+  bool BoundaryEigenvalue = false;
   bool Gradients = false;
   bool Attributes = true;
 

@@ -24,8 +24,8 @@ namespace
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
 const char* const ParameterNames[] = { "IsoValues", "Field", "Kernel", "SeedMode", "Topology",
-  "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "VertexThreshold", "Tolerance",
-  "IterationLimit", "Preview" };
+  "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection",
+  "VertexThreshold", "Tolerance", "IterationLimit", "Preview" };
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "SmoothingLengthRange",
   "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells", "SeedCells",
   "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",

@@ -139,8 +139,14 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetCubeSize(options.CubeSize);
   filter->SetPreview(options.Preview);
   filter->SetNodeThreshold(options.NodeThreshold);
-  filter->SetVertexThreshold(options.VertexThreshold);
+  const bool eigenvalue = options.Boundary == "eigenvalue";
+  filter->SetBoundaryDetection(
+    eigenvalue ? vtkMarchingCorrectors::EIGENVALUE : vtkMarchingCorrectors::WEIGHT_SUM);
+  filter->SetVertexThreshold(options.VertexThreshold >= 0.0 ? options.VertexThreshold
+      : eigenvalue                                          ? 0.3
+                                                            : 0.5);
   filter->SetComputeWeightSum(options.WeightSum);
+  filter->SetComputeBoundaryEigenvalue(options.BoundaryEigenvalue);
   filter->SetComputeGradients(options.Gradients);
   filter->SetInterpolateAttributes(options.Attributes);
   filter->SetDevice(options.Device.c_str());

@@ -67,8 +67,9 @@ class Usage(CommandLineTest):
         self.assertEqual(result.returncode, 0)
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
-                --field --seeds --topology --preview --node-threshold --vertex-threshold --weight-sum
-                --gradients --no-attributes --device --list-devices --stats --screenshot --repeat --quiet --help
+                --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
+                --weight-sum --boundary-eigenvalue --gradients --no-attributes --device
+                --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
@@ -102,6 +103,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--field", "mean"], "--field is one of shepard, sum, not 'mean'"),
             ([*good, *ISO, "--seeds", "all"], "--seeds is one of pairs, complete, not 'all'"),
             ([*good, *ISO, "--topology", "x"], "--topology is one of table, field, not 'x'"),
+            ([*good, *ISO, "--boundary", "x"], "--boundary is one of weight, eigenvalue, not 'x'"),
             ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, not 'x'"),
             ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
@@ -385,11 +387,26 @@ class Options(CommandLineTest):
             (["--preview"], "preview", 1),
             (["--node-threshold", "0.2"], "node_threshold", 0.2),
             (["--vertex-threshold", "0.6"], "vertex_threshold", 0.6),
+            (["--boundary", "eigenvalue"], "boundary_detection", "eigenvalue"),
         ]:
             with self.subTest(name):
                 found = self.succeed(*ISO, *arguments)
                 self.assertEqual(found["parameters"][name], value)
                 self.assertGreater(found["statistics"]["triangles"], 0)
+
+    def test_boundary_detection(self):
+        cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block
+        weight = self.succeed(*cut)
+        self.assertEqual(weight["parameters"]["boundary_detection"], "weight sum")
+        self.assertEqual(weight["parameters"]["vertex_threshold"], 0.5)
+        counts = {weight["statistics"]["triangles"]}
+        for arguments, threshold in ([], 0.3), (["--vertex-threshold", "0.75"], 0.75):
+            found = self.succeed(*cut, "--boundary=eigenvalue", *arguments)
+            self.assertEqual(found["parameters"]["boundary_detection"], "eigenvalue")
+            self.assertEqual(found["parameters"]["vertex_threshold"], threshold)
+            self.assertGreater(found["statistics"]["trim_vertices"], 0)
+            counts.add(found["statistics"]["triangles"])
+        self.assertEqual(len(counts), 3, counts)
 
     def test_double_precision(self):
         single = self.succeed(*ISO)
@@ -400,9 +417,9 @@ class Options(CommandLineTest):
     def test_output_arrays(self):
         self.succeed(*ISO)
         plain = self.output.read_text()
-        self.succeed(*ISO, "--weight-sum", "--gradients")
+        self.succeed(*ISO, "--weight-sum", "--boundary-eigenvalue", "--gradients")
         more = self.output.read_text()
-        for name in ("WeightSum", "Gradients"):
+        for name in ("WeightSum", "BoundaryEigenvalue", "Gradients"):
             self.assertNotIn(f'Name="{name}"', plain)
             self.assertIn(f'Name="{name}"', more)
         for name in ("Normals", "Velocity", "Kind", "Radius"):

@@ -16,25 +16,37 @@ typedef struct bits_case
   mcor_field field;
   mcor_type precision;
   mcor_seed_mode seeds;
+  mcor_boundary_detection boundary;
   int solids, volumes;
   double iso;
   mcor_topology topology;
 } bits_case;
 
-static const bits_case cases[] = { { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32,
-                                     MCOR_COMPLETE, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE },
-  { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, 1, 1, 0.5,
-    MCOR_TOPOLOGY_TABLE },
-  { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, 0, 1, 1.5, MCOR_TOPOLOGY_TABLE },
-  { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE, 0, 0, 0.5,
-    MCOR_TOPOLOGY_TABLE },
-  { "topology", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE, 1, 0, 0.1,
-    MCOR_TOPOLOGY_FIELD } };
+static const bits_case cases[] = {
+  { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE },
+  { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, MCOR_BOUNDARY_WEIGHT_SUM, 1,
+    1, 0.5, MCOR_TOPOLOGY_TABLE },
+  { "eigenvalue", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE },
+  { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, MCOR_BOUNDARY_WEIGHT_SUM, 0, 1,
+    1.5, MCOR_TOPOLOGY_TABLE },
+  { "tensor eigenvalue", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_EIGENVALUE, 0, 1, -14, MCOR_TOPOLOGY_TABLE },
+  { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE },
+  { "double eigenvalue", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
+    MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE },
+  { "topology", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.1, MCOR_TOPOLOGY_FIELD },
+};
 
 static int run_case(mcor_context* context, const bits_case* at, int small)
 {
-  const bool noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
-  const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? 6 : at->iso;
+  const int noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
+  const int eigenvalue = at->boundary == MCOR_BOUNDARY_EIGENVALUE;
+  const double small_iso = eigenvalue ? 5 : 6;
+  const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? small_iso : at->iso;
   core_set set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;
   for (int64_t i = 0; i < set.count; ++i)
@@ -58,18 +70,26 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
   options.cube_size_factor = noise ? 0.7 : options.cube_size_factor;
   options.h_scale = noise ? 0.5 : options.h_scale;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
+  options.boundary_detection = at->boundary;
+  options.vertex_threshold = small && eigenvalue ? 0.3 : 0.5;
+  options.boundary_eigenvalue = 1;
   options.boundary_flag = options.nearest_particle = 1;
   mcor_surface surface = { 0 };
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
-  if (status != MCOR_OK || surface.triangle_count == 0)
+  const mcor_statistics* statistics = &surface.statistics;
+  const int trimmed = statistics->trim_vertices > statistics->trim_vertices_linear;
+  const int resolved = statistics->joined_faces > 0 && statistics->ambiguous_cells > 0;
+  const int good = status == MCOR_OK && surface.triangle_count > 0 && (trimmed || !eigenvalue) &&
+    (resolved || !noise);
+  if (!good)
   {
-    fprintf(stderr, "%s: %lld triangles. %s\n", at->name, (long long)surface.triangle_count,
+    fprintf(stderr, "%s: %lld triangles, %lld cut. %s\n", at->name,
+      (long long)surface.triangle_count, (long long)statistics->trim_vertices,
       mcor_last_error(context));
   }
-  const int good = status == MCOR_OK && surface.triangle_count > 0 &&
-    (!noise || (surface.statistics.joined_faces > 0 && surface.statistics.ambiguous_cells > 0));
-  printf("%s: %lld points, %lld triangles, %016llx\n", at->name, (long long)surface.point_count,
-    (long long)surface.triangle_count, (unsigned long long)core_hash(&surface));
+  printf("%s: %lld points, %lld triangles, %lld cut, %016llx\n", at->name,
+    (long long)surface.point_count, (long long)surface.triangle_count,
+    (long long)statistics->trim_vertices, (unsigned long long)core_hash(&surface));
   fflush(stdout);
   mcor_free_surface(&surface);
   core_free_set(&set);

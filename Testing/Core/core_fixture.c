@@ -190,6 +190,29 @@ mesh_report core_check_mesh(const mcor_surface* surface)
   return report;
 }
 
+void core_check_flags(const mcor_surface* surface)
+{
+  mesh_report report = core_check_mesh(surface);
+  uint8_t* on_boundary = calloc((size_t)surface->point_count + 1, 1);
+  assert_non_null(on_boundary);
+  for (int64_t s = 0; s < report.side_count; ++s)
+  {
+    const mesh_edge* e = report.side + s;
+    if (mesh_count_sides(&report, e->a, e->b) == 1)
+    {
+      on_boundary[e->a] = on_boundary[e->b] = 1;
+    }
+  }
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    CORE_CHECK((surface->boundary_flag[i] != 0) == on_boundary[i],
+      "point %lld: flag %d, on boundary %d", (long long)i, surface->boundary_flag[i],
+      on_boundary[i]);
+  }
+  mesh_free_report(&report);
+  free(on_boundary);
+}
+
 static uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)
 {
   for (size_t i = 0; data && i < bytes; ++i)
@@ -208,6 +231,7 @@ uint64_t core_hash(const mcor_surface* s)
   hash = core_hash_bytes(hash, s->normals, n * 3 * sizeof(float));
   hash = core_hash_bytes(hash, s->gradients, n * 3 * sizeof(double));
   hash = core_hash_bytes(hash, s->weight_sum, n * sizeof(float));
+  hash = core_hash_bytes(hash, s->boundary_eigenvalue, n * sizeof(float));
   hash = core_hash_bytes(hash, s->correction_length, n * sizeof(float));
   hash = core_hash_bytes(hash, s->residual, n * sizeof(float));
   return core_hash_bytes(hash, s->boundary_flag, n);

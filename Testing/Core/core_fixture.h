@@ -87,6 +87,8 @@ mcor_surface core_extract(
 
 /* Fails unless the surface is an oriented manifold without degenerate triangles. */
 mesh_report core_check_mesh(const mcor_surface* surface);
+/* The same; and points of the mesh's boundary, and no others, must be flagged. */
+void core_check_flags(const mcor_surface* surface);
 /* Point count, points, triangles and every optional array. */
 uint64_t core_hash(const mcor_surface* surface);
 

@@ -12,6 +12,7 @@
 
 static void ask_for_all(mcor_options* options)
 {
+  options->boundary_eigenvalue = 1;
   options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
   options->boundary_flag = options->iso_value = options->nearest_particle = 1;
 }
@@ -20,6 +21,9 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
 {
   mcor_surface surface = core_extract(context, input, options);
   CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  CORE_CHECK(options->boundary_detection == MCOR_BOUNDARY_WEIGHT_SUM ||
+      surface.statistics.trim_vertices > surface.statistics.trim_vertices_linear,
+    "nothing trimmed by the eigenvalue");
   const uint64_t hash = core_hash(&surface);
   mcor_free_surface(&surface);
   return hash;
@@ -49,7 +53,7 @@ static void test_reuse_changes_nothing(void** state)
   ask_for_all(&options);
   for (int step = 0; step < 14; ++step)
   {
-    iso = step == 1 || step == 12 ? 2.5 : 0;
+    iso = step == 1 || step == 12 ? 2.5 : step == 13 ? -10 : 0;
     options.seeds = step == 2 || step == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.cube_size_factor = step == 4 ? 0.8 : 0.5;
     options.h_scale = step == 5 ? 0.8 : 1;
@@ -61,6 +65,7 @@ static void test_reuse_changes_nothing(void** state)
       step == 9 ? (mcor_array){ .constant = 1.4 } : core_array(set.smoothing_length, 1);
     input.has_volume = step != 10;
     options.node_threshold = step == 11 ? 0.9 : 0.1;
+    options.boundary_detection = step == 13 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     const uint64_t expected = fresh_hash(&input, &options);
     for (int again = 0; again < 2; ++again)
     {
@@ -120,6 +125,7 @@ typedef struct permuted_case
   mcor_seed_mode seeds;
   int volumes; /* 0 array, 1 mass / density, 2 mass alone, 3 none */
   int solids, coincident, estimate;
+  mcor_boundary_detection boundary;
 } permuted_case;
 
 static const permuted_case permuted_cases[] = { { .name = "volume array" },
@@ -131,7 +137,12 @@ static const permuted_case permuted_cases[] = { { .name = "volume array" },
   { .name = "coincident", .coincident = 1 },
   { .name = "coincident, no volume", .volumes = 3, .coincident = 1 },
   { .name = "coincident fluid and solid", .solids = 1, .coincident = 1 },
-  { .name = "estimated smoothing length", .estimate = 1 } };
+  { .name = "estimated smoothing length", .estimate = 1 },
+  { .name = "eigenvalue", .solids = 1, .boundary = MCOR_BOUNDARY_EIGENVALUE },
+  { .name = "eigenvalue, coincident, double",
+    .coincident = 1,
+    .precision = MCOR_FLOAT64,
+    .boundary = MCOR_BOUNDARY_EIGENVALUE } };
 
 static core_set make_permuted_set(const permuted_case* at)
 {
@@ -156,7 +167,8 @@ static core_set make_permuted_set(const permuted_case* at)
 
 static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, const core_set* set)
 {
-  const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : 1;
+  const double inside = at->boundary == MCOR_BOUNDARY_EIGENVALUE ? -10 : 1;
+  const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : inside;
   mcor_input input = core_input(set);
   input.mass = input.volume;
   input.density = input.smoothing_length;
@@ -170,6 +182,7 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
   options.field = at->field;
   options.precision = at->precision;
   options.seeds = at->seeds;
+  options.boundary_detection = at->boundary;
   return hash_of(context, &input, &options);
 }
 

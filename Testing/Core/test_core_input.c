@@ -90,6 +90,8 @@ static void test_enumerations(void** state)
   ARGUMENT("field|3", call.options.field = (mcor_field)3);
   ARGUMENT("seed mode|2", call.options.seeds = (mcor_seed_mode)2);
   ARGUMENT("topology|2", call.options.topology = (mcor_topology)2);
+  ARGUMENT("boundary detection|2", call.options.boundary_detection = (mcor_boundary_detection)2);
+  ARGUMENT("boundary detection|-1", call.options.boundary_detection = (mcor_boundary_detection)-1);
   ARGUMENT("precision|2", call.options.precision = (mcor_type)2);
   ARGUMENT("position|type", call.input.positions.type = (mcor_type)7);
   ARGUMENT("scalar|type", call.input.scalar.type = (mcor_type)7);

@@ -102,8 +102,8 @@ static void test_triangle_normals(void** state)
   options.normals = 0;
   mcor_surface surface = core_extract(*state, &input, &options);
   CORE_CHECK(!surface.normals && !surface.gradients && !surface.weight_sum &&
-      !surface.correction_length && !surface.residual && !surface.boundary_flag &&
-      !surface.iso_value && !surface.nearest_particle,
+      !surface.boundary_eigenvalue && !surface.correction_length && !surface.residual &&
+      !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle,
     "arrays that nobody asked for");
   mcor_free_surface(&surface);
   core_free_set(&set);

@@ -245,7 +245,6 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
   oracle_field field;
   assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
   const double range = oracle_scalar_range(&particles);
-  mesh_report report = core_check_mesh(&surface);
   int64_t exact = 0, linear = 0;
   for (int64_t i = 0; i < surface.point_count; ++i)
   {
@@ -265,29 +264,11 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
     exact += flag == 1;
     linear += flag == 2;
   }
-  /* Points of the mesh's boundary, and no others, are flagged. */
-  uint8_t* on_boundary = calloc((size_t)surface.point_count, 1);
-  assert_non_null(on_boundary);
-  for (int64_t s = 0; s < report.side_count; ++s)
-  {
-    const mesh_edge* e = report.side + s;
-    if (mesh_count_sides(&report, e->a, e->b) == 1)
-    {
-      on_boundary[e->a] = on_boundary[e->b] = 1;
-    }
-  }
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    CORE_CHECK((surface.boundary_flag[i] != 0) == on_boundary[i],
-      "point %lld: flag %d, on boundary %d", (long long)i, surface.boundary_flag[i],
-      on_boundary[i]);
-  }
+  core_check_flags(&surface);
   CORE_CHECK(preview ? linear > 20 : exact > 20 && linear * 50 <= exact, "%lld exact, %lld linear",
     (long long)exact, (long long)linear);
   assert_int_equal(surface.statistics.trim_vertices, exact + linear);
   assert_int_equal(surface.statistics.trim_vertices_linear, linear);
-  mesh_free_report(&report);
-  free(on_boundary);
   oracle_free_field(&field);
   mcor_free_surface(&surface);
   core_free_set(&set);

@@ -59,10 +59,10 @@ double WorstResidual(vtkPolyData* surface, vtkPolyData* fluid, double iso, bool 
   }
   return worst;
 }
-// The surface ends where the weight is 0.5; a linear cut is only near it.
-void CheckTrimBoundary(vtkPolyData* surface)
+// The surface ends where the weight (or the eigenvalue) is the threshold; a linear cut is only near.
+void CheckTrimBoundary(vtkPolyData* surface, const char* name, double threshold)
 {
-  vtkDataArray* weight = surface->GetPointData()->GetArray("WeightSum");
+  vtkDataArray* weight = surface->GetPointData()->GetArray(name);
   vtkDataArray* flag = surface->GetPointData()->GetArray("BoundaryFlag");
   CHECK(weight && flag);
   int exact = 0, linear = 0;
@@ -72,8 +72,8 @@ void CheckTrimBoundary(vtkPolyData* surface)
     const int f = static_cast<int>(flag->GetComponent(i, 0));
     exact += f == 1 ? 1 : 0;
     linear += f == 2 ? 1 : 0;
-    CHECK(f == 2 ? w > 0.4 : w > 0.5 - 1e-4);
-    CHECK(f != 1 || w < 0.5 + 1e-4);
+    CHECK(w > threshold - (f == 2 ? 0.1 : 1e-4));
+    CHECK(f != 1 || w < threshold + 1e-4);
   }
   CHECK(exact > 100 && linear * 20 < exact);
 }
@@ -98,8 +98,17 @@ int TestDamBreakNumbers(int argc, char* argv[])
             << " of " << range[1] - range[0] << "\n";
   CHECK(surface->GetNumberOfCells() > 8000 && surface->GetNumberOfCells() < 20000);
   CHECK(worst <= 1e-5 * (range[1] - range[0]));
-  CheckTrimBoundary(surface);
+  CheckTrimBoundary(surface, "WeightSum", 0.5);
   CHECK(surface->GetFieldData()->GetArray("SolidParticles")->GetComponent(0, 0) == 55348.0);
+
+  filter->SetBoundaryDetectionToEigenvalue();
+  filter->SetVertexThreshold(0.3);
+  filter->ComputeBoundaryEigenvalueOn();
+  filter->Update();
+  surface = filter->GetOutput();
+  std::cout << "trimmed by the eigenvalue: " << surface->GetNumberOfCells() << " triangles\n";
+  CHECK(surface->GetNumberOfCells() > 8000 && surface->GetNumberOfCells() < 20000);
+  CheckTrimBoundary(surface, "BoundaryEigenvalue", 0.3);
 
   filter->FreeSurfaceOn();
   filter->Update();

@@ -109,13 +109,14 @@ void TestComputedArrays()
   auto filter = test::MakeSphereFilter(MakeParticles());
   filter->ComputeGradientsOn();
   filter->ComputeWeightSumOn();
+  filter->ComputeBoundaryEigenvalueOn();
   filter->ComputeCorrectionLengthOn();
   filter->ComputeResidualOn();
   filter->ComputeBoundaryFlagOn();
   filter->Update();
   vtkPointData* data = filter->GetOutput()->GetPointData();
-  for (const char* name :
-    { "Normals", "Gradients", "WeightSum", "CorrectionLength", "Residual", "BoundaryFlag" })
+  for (const char* name : { "Normals", "Gradients", "WeightSum", "BoundaryEigenvalue",
+         "CorrectionLength", "Residual", "BoundaryFlag" })
   {
     CHECK(data->GetArray(name) &&
       data->GetArray(name)->GetNumberOfTuples() == filter->GetOutput()->GetNumberOfPoints());
@@ -186,6 +187,7 @@ void TestFieldData()
   CHECK(Text(surface, "Field") == "shepard");
   CHECK(Text(surface, "SeedMode") == "complete");
   CHECK(Text(surface, "Topology") == "table" && Number(surface, "AmbiguousFaces") == 0.0);
+  CHECK(Text(surface, "BoundaryDetection") == "weight sum");
   CHECK(Text(surface, "Scalar") == "Radius");
   CHECK(Text(surface, "SmoothingLengthArray") == "SmoothingLength");
   CHECK(Text(surface, "VolumeArray") == "Volume");
@@ -215,7 +217,8 @@ void TestState()
   CHECK(filter->GetMTime() > later);
   std::ostringstream text;
   filter->Print(text);
-  for (const char* word : { "Kernel: wendland", "Vertex Threshold: 0.5", "Iteration Limit: 30" })
+  for (const char* word : { "Kernel: wendland", "Boundary Detection: weight sum",
+         "Vertex Threshold: 0.5", "Iteration Limit: 30" })
   {
     CHECK(text.str().find(word) != std::string::npos);
   }

@@ -42,6 +42,13 @@ std::vector<Step> Steps()
     { "other scale", [](Filter* f, vtkPolyData*) { f->SetHScaleFactor(0.8); } },
     { "other kernel", [](Filter* f, vtkPolyData*) { f->SetKernelToWendlandC2(); } },
     { "other thresholds", [](Filter* f, vtkPolyData*) { f->SetVertexThreshold(0.6); } },
+    { "eigenvalue",
+      [](Filter* f, vtkPolyData*)
+      {
+        f->SetValue(1, 1.1);
+        f->SetBoundaryDetectionToEigenvalue();
+      } },
+    { "weight", [](Filter* f, vtkPolyData*) { f->SetBoundaryDetectionToWeightSum(); } },
     { "sum", [](Filter* f, vtkPolyData*) { f->ShepardNormalizationOff(); } },
     { "pairs", [](Filter* f, vtkPolyData*) { f->SetSeedModeToPairs(); } },
     { "topology", [](Filter* f, vtkPolyData*) { f->SetTopologyToField(); } },

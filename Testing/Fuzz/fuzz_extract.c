@@ -161,6 +161,8 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   o->field = (mcor_field)(modes / 16 == 15 ? 3 : modes / 16 % 3);
   o->seeds = (mcor_seed_mode)(what & 1);
   o->preview = (what & 0x0e) == 2;
+  o->boundary_detection = (mcor_boundary_detection)(what == 0xff ? 2 : what >> 3 & 1);
+  o->boundary_eigenvalue = what >> 4 & 1;
   o->gradients = o->weight_sum = o->residual = o->correction_length = what >> 4 & 1;
   o->boundary_flag = o->nearest_particle = o->iso_value = what >> 5 & 1;
   o->triangle_normals = (what & 0xc0) == 0xc0;
@@ -212,6 +214,7 @@ static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
   FUZZ_CHECK(fuzz_finite(s->gradients, 3 * n));
   FUZZ_CHECK(fuzz_finite_floats(s->normals, 3 * n));
   FUZZ_CHECK(fuzz_finite_floats(s->weight_sum, n));
+  FUZZ_CHECK(fuzz_finite_floats(s->boundary_eigenvalue, n));
   FUZZ_CHECK(fuzz_finite_floats(s->residual, n));
   FUZZ_CHECK(fuzz_finite_floats(s->correction_length, n));
   for (int a = 0; a < s->attribute_count; ++a)

@@ -39,6 +39,7 @@ struct DataCase
   double CubeSize;
   double HScale;
   bool Double;
+  double Eigenvalue = 0.0; // above 0: trimmed where the boundary eigenvalue is lower
 };
 
 constexpr mcor_sph_kernel Cubic = MCOR_CUBIC_SPLINE;
@@ -60,6 +61,9 @@ const DataCase ShippedCases[] = {
   { "dam_break_45k", "Velocity", 1.0, MCOR_SUM, Cubic, H, 0, 0, 0, false },
   { "dam_break_45k", "Pressure", 2000.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false },
   { "dam_break_45k", "Pressure", 2000.0, MCOR_SHEPARD, Cubic, Adaptive, 1, 0, 0, false },
+  { "dam_break_45k", "Velocity", 1.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0.3 },
+  { "dam_break_45k", "Pressure", 2000.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0.3 },
+  { "dam_break_45k", "Pressure", 2000.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, true, 0.75 },
   { "dam_break_45k", "Lambda2", -150.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false },
   { "dam_break_45k", nullptr, 0.5, MCOR_WEIGHT_SUM, Cubic, H, 1, 0, 0, false },
 };
@@ -136,12 +140,17 @@ bool FillInput(
 
 void NameCase(const DataCase& one, oracle_case& at)
 {
+  char eigenvalue[32] = "";
+  if (one.Eigenvalue > 0.0)
+  {
+    std::snprintf(eigenvalue, sizeof(eigenvalue), "/eigenvalue%g", one.Eigenvalue);
+  }
   static const char* const fields[] = { "shepard", "sum", "weight" };
-  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s", one.File,
+  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s", one.File,
     one.Scalar ? one.Scalar : "free", one.Iso, mcor_sph_kernel_name(one.Kernel), fields[one.Field],
     one.CubeSize > 0.0 ? one.CubeSize : at.options.cube_size_factor, at.options.h_scale,
-    std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "",
-    one.Double ? "/double" : "");
+    std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "", one.Double ? "/double" : "",
+    eigenvalue);
 }
 
 void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one)
@@ -155,7 +164,13 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
   at.options.cube_size_factor = one.CubeFactor > 0.0 ? one.CubeFactor : 0.5;
   at.options.h_scale = one.HScale > 0.0 ? one.HScale : 1.0;
   at.options.precision = one.Double ? MCOR_FLOAT64 : MCOR_FLOAT32;
-  at.skip_pairs = one.Field == MCOR_WEIGHT_SUM;
+  if (one.Eigenvalue > 0.0)
+  {
+    at.options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
+    at.options.vertex_threshold = one.Eigenvalue;
+    at.options.boundary_eigenvalue = 1;
+  }
+  at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;
   NameCase(one, at);
   if (!oracle_wants_case(&suite, at.name))
   {

@@ -102,6 +102,11 @@ extern "C"
   void oracle_evaluate(
     const oracle_field* field, const double* scalar, const double point[3], oracle_sample* sample);
 
+  /* The eigenvalues, ascending, of the symmetric part of sum V (x_j - x) (outer product) grad W, over
+   * the particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et al. */
+  void oracle_boundary_eigenvalues(
+    const oracle_field* field, const double point[3], double eigenvalues[3]);
+
   /* A bound on what evaluation in floating point with unit roundoff `unit` may do to the value at a
    * point: relative errors of a few units in W and in the offset to each particle. */
   double oracle_rounding(const oracle_field* field, const double point[3], double unit);

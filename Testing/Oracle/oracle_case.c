@@ -185,6 +185,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
   case_expect(run, c->residual <= residual, "residual %.3g: %s", c->residual, c->first);
   case_expect(
     run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g", c->weight_error);
+  case_expect(run, c->eigenvalue_error <= (single ? 1e-5 : 1e-6), "eigenvalue off by %.3g",
+    c->eigenvalue_error);
   case_expect(run, c->inverted_triangles == 0, "%lld triangles inside out: %s",
     (long long)c->inverted_triangles, c->first);
   case_expect(run, c->trim_weight_error <= 1e-4, "trim vertices: weight off by %.3g: %s",
@@ -192,6 +194,12 @@ static void case_check_accuracy(case_run* run, int trimmed)
   /* Where kernels with lobes leave gaps, trimming may cut through steep flanks at low weight. */
   case_expect(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual,
     "trim vertices: residual %.3g", c->trim_residual);
+  /* Without a right gradient of the eigenvalue no cut would be exact. */
+  case_expect(run,
+    run->at->rough || run->options.boundary_detection != MCOR_BOUNDARY_EIGENVALUE ||
+      c->trim_linear <= 2 + c->trim_vertices / 25,
+    "%lld of %lld trim vertices are linear cuts", (long long)c->trim_linear,
+    (long long)c->trim_vertices);
   case_expect(run, c->below_threshold == 0, "%lld vertices below the vertex threshold",
     (long long)c->below_threshold);
   if (!run->at->rough)
@@ -249,6 +257,11 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   run->options = run->at->options;
   run->options.seeds = pairs ? MCOR_PAIRS : MCOR_COMPLETE;
   run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : lobes ? 0.05 : 0.0;
+  if (!trimmed)
+  {
+    /* A singular matrix may have an eigenvalue below 0, by rounding. */
+    run->options.boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM;
+  }
   memset(&run->surface, 0, sizeof(run->surface));
   memset(&run->mesh, 0, sizeof(run->mesh));
   memset(&run->comparison, 0, sizeof(run->comparison));

@@ -20,6 +20,18 @@ void compare_note(compare_state* state, const char* format, ...)
   }
 }
 
+double compare_trim_quantity(
+  const compare_state* state, const double point[3], const oracle_sample* sample)
+{
+  if (state->options->boundary_detection != MCOR_BOUNDARY_EIGENVALUE)
+  {
+    return sample->trim_weight;
+  }
+  double eigenvalues[3];
+  oracle_boundary_eigenvalues(&state->reference->field, point, eigenvalues);
+  return eigenvalues[0];
+}
+
 /* Least trimming weight at the nodes of a cell; NaN outside the lattice. */
 static double compare_least_weight(const oracle_lattice* lattice, const int64_t ijk[3])
 {
@@ -153,9 +165,11 @@ static int compare_open_edges(const compare_state* state, int64_t node, int64_t 
  * to rounding, unless its weight says so. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
+  const double* point = &state->surface->points[3 * v];
   oracle_sample sample;
-  oracle_evaluate(&state->reference->field, NULL, &state->surface->points[3 * v], &sample);
-  return !close || fabs(sample.trim_weight - state->options->vertex_threshold) <= 1e-4 ||
+  oracle_evaluate(&state->reference->field, NULL, point, &sample);
+  const double quantity = compare_trim_quantity(state, point, &sample);
+  return !close || fabs(quantity - state->options->vertex_threshold) <= 1e-4 ||
     state->surface->boundary_flag[v] == 2;
 }
 
@@ -276,7 +290,7 @@ static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
   double previous = 0.0;
   oracle_sample sample;
   oracle_edge_root(&reference->lattice, &reference->field, reference->limits.iso, edge, p, &sample);
-  if (sample.trim_weight < limit)
+  if (compare_trim_quantity(state, p, &sample) < limit)
   {
     return 1;
   }
@@ -288,7 +302,8 @@ static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
     p[edge % 3] = start + reference->lattice.cube * piece / pieces;
     oracle_evaluate(&reference->field, NULL, p, &sample);
     const double difference = sample.value - reference->limits.iso;
-    if (piece > 0 && (difference >= 0.0) != (previous >= 0.0) && sample.trim_weight < limit)
+    if (piece > 0 && (difference >= 0.0) != (previous >= 0.0) &&
+      compare_trim_quantity(state, p, &sample) < limit)
     {
       return 1;
     }

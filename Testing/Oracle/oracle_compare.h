@@ -68,12 +68,13 @@ extern "C"
     int64_t trim_vertices, trim_linear;
     int64_t
       trim_avoidable; /* linear cuts with an exact one (f = iso, w = threshold) within a cube */
-    double trim_weight_error, trim_residual; /* of exact trim vertices */
-    int64_t below_threshold;                 /* vertices kept although their weight is too low */
-    int64_t near_threshold;                  /* vertices that rounding may keep or cut away */
-    int64_t unsettled; /* nodes and cells at the surface whose state depends on rounding */
-    double weight_error, gradient_error; /* of the optional arrays, relative */
-    char first[240];                     /* the first fault of a vertex or edge, in words */
+    /* Of exact trim vertices; here and below, weight is the eigenvalue where that is trimmed by. */
+    double trim_weight_error, trim_residual;
+    int64_t below_threshold; /* vertices kept although their weight is too low */
+    int64_t near_threshold;  /* vertices that rounding may keep or cut away */
+    int64_t unsettled;       /* nodes and cells at the surface whose state depends on rounding */
+    double weight_error, eigenvalue_error, gradient_error; /* of the optional arrays, relative */
+    char first[240]; /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 
   /* trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must be

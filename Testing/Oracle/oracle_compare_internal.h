@@ -30,6 +30,10 @@ typedef struct compare_state
   double* gradient; /* [point_count][3], by the oracle */
 } compare_state;
 
+/* What is trimmed by, at a point: the trimming weight or the boundary eigenvalue. */
+double compare_trim_quantity(
+  const compare_state* state, const double point[3], const oracle_sample* sample);
+
 /* The first fault is kept in words. */
 void compare_note(compare_state* state, const char* format, ...);
 void compare_note_edge(compare_state* state, const char* what, int64_t edge);

@@ -108,6 +108,15 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
       fabs((double)state->surface->weight_sum[v] - sample->trim_weight) /
         state->reference->greatest_weight);
   }
+  if (state->surface->boundary_eigenvalue)
+  {
+    double eigenvalues[3];
+    oracle_boundary_eigenvalues(
+      &state->reference->field, &state->surface->points[3 * v], eigenvalues);
+    result->eigenvalue_error = fmax(result->eigenvalue_error,
+      fabs((double)state->surface->boundary_eigenvalue[v] - eigenvalues[0]) /
+        fmax(eigenvalues[2], 1.0));
+  }
   if (state->surface->gradients && sample->gradient_scale > 0.0)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -119,8 +128,29 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
-/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold,
- * within one cube. */
+/* The same with its gradient, that of the eigenvalue by differences. */
+static double compare_trim_gradient(const compare_state* state, const double point[3],
+  const oracle_sample* sample, double gradient[3])
+{
+  if (state->options->boundary_detection != MCOR_BOUNDARY_EIGENVALUE)
+  {
+    memcpy(gradient, sample->trim_gradient, sizeof(sample->trim_gradient));
+    return sample->trim_weight;
+  }
+  const double step = 1e-5 * state->reference->lattice.cube;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double p[3] = { point[0], point[1], point[2] };
+    p[axis] = point[axis] + step;
+    const double high = compare_trim_quantity(state, p, sample);
+    p[axis] = point[axis] - step;
+    gradient[axis] = (high - compare_trim_quantity(state, p, sample)) / (2.0 * step);
+  }
+  return compare_trim_quantity(state, point, sample);
+}
+
+/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold (or the
+ * eigenvalue is), within one cube. */
 static int compare_exact_cut_near(const compare_state* state, const double start[3])
 {
   const oracle_reference* reference = state->reference;
@@ -130,7 +160,9 @@ static int compare_exact_cut_near(const compare_state* state, const double start
     oracle_sample s;
     oracle_evaluate(&reference->field, NULL, p, &s);
     const double f = s.value - reference->limits.iso;
-    const double w = s.trim_weight - state->options->vertex_threshold;
+    double gradient[3];
+    const double w =
+      compare_trim_gradient(state, p, &s, gradient) - state->options->vertex_threshold;
     if (fabs(f) <= 1e-7 * reference->range && fabs(w) <= 1e-7)
     {
       return 1;
@@ -141,8 +173,8 @@ static int compare_exact_cut_near(const compare_state* state, const double start
     for (int a = 0; a < 3; ++a)
     {
       ff += s.gradient[a] * s.gradient[a];
-      ww += s.trim_gradient[a] * s.trim_gradient[a];
-      fw += s.gradient[a] * s.trim_gradient[a];
+      ww += gradient[a] * gradient[a];
+      fw += s.gradient[a] * gradient[a];
     }
     const double determinant = ff * ww - fw * fw;
     double distance = 0.0;
@@ -150,8 +182,7 @@ static int compare_exact_cut_near(const compare_state* state, const double start
     double d[3];
     for (int a = 0; a < 3; ++a)
     {
-      d[a] =
-        -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * s.trim_gradient[a]) / determinant;
+      d[a] = -((ww * f - fw * w) * s.gradient[a] + (ff * w - fw * f) * gradient[a]) / determinant;
       length += d[a] * d[a];
     }
     const double most = 0.1 * reference->lattice.cube;
@@ -181,13 +212,16 @@ static void compare_trim_vertex(
     return;
   }
   result->trim_residual = fmax(result->trim_residual, residual);
-  const double off = fabs(sample->trim_weight - state->options->vertex_threshold);
+  const double quantity = compare_trim_quantity(state, &state->surface->points[3 * v], sample);
+  const double off = fabs(quantity - state->options->vertex_threshold);
   result->trim_weight_error = fmax(result->trim_weight_error, off);
   if (!(off < 1e-3))
   {
     const double* p = &state->surface->points[3 * v];
-    compare_note(state, "cut vertex %lld at (%.9g, %.9g, %.9g) has weight %.6g, residual %.3g",
-      (long long)v, p[0], p[1], p[2], sample->trim_weight, residual);
+    compare_note(state,
+      "cut vertex %lld at (%.9g, %.9g, %.9g) has weight or eigenvalue %.6g,"
+      " residual %.3g",
+      (long long)v, p[0], p[1], p[2], quantity, residual);
   }
 }
 
@@ -199,8 +233,9 @@ static int compare_edge_vertex(
   const double* point = &state->surface->points[3 * v];
   const int axis = (int)(state->vertex_edge[v] % 3);
   const double threshold = state->options->vertex_threshold;
-  result->below_threshold += state->trimmed && sample->trim_weight < threshold - 1e-5;
-  result->near_threshold += fabs(sample->trim_weight - threshold) <= 1e-5;
+  const double quantity = compare_trim_quantity(state, point, sample);
+  result->below_threshold += state->trimmed && quantity < threshold - 1e-5;
+  result->near_threshold += fabs(quantity - threshold) <= 1e-5;
   if (compare_jump(state, point, axis, residual))
   {
     ++result->jumps;

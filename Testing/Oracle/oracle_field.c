@@ -317,6 +317,71 @@ void oracle_evaluate(
   }
 }
 
+/* ---- the boundary eigenvalue ----------------------------------------------------------------- */
+
+typedef struct oracle_matrix
+{
+  double point[3];
+  double m[3][3];
+} oracle_matrix;
+
+static void oracle_add_matrix(const oracle_field* field, int64_t j, void* user)
+{
+  oracle_matrix* sum = user;
+  const oracle_particles* p = field->particles;
+  double gradient[3];
+  if (p->solid[j] && p->ignore_solids)
+  {
+    return;
+  }
+  oracle_offset_kernel(field, sum->point, j, gradient);
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      const double part = (p->position[3 * j + row] - sum->point[row]) * gradient[column] +
+        (p->position[3 * j + column] - sum->point[column]) * gradient[row];
+      sum->m[row][column] += 0.5 * p->volume[j] * part;
+    }
+  }
+}
+
+/* Roots of the characteristic polynomial: with m = q + s b, b of trace 0 and of square 6, they are
+ * q + 2 s cos(angle), at three angles a third of a turn apart, cos(3 angle) = det(b) / 2. */
+static void oracle_eigenvalues(double m[3][3], double eigenvalues[3])
+{
+  const double q = (m[0][0] + m[1][1] + m[2][2]) / 3.0;
+  double square = 0.0;
+  for (int a = 0; a < 3; ++a)
+  {
+    m[a][a] -= q;
+    square += m[a][0] * m[a][0] + m[a][1] * m[a][1] + m[a][2] * m[a][2];
+  }
+  const double s = sqrt(square / 6.0);
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  const double cosine = s > 0.0 ? determinant / (2.0 * s * s * s) : 0.0;
+  const double angle = acos(fmax(-1.0, fmin(1.0, cosine))) / 3.0;
+  const double third = acos(-0.5); /* of a turn */
+  eigenvalues[0] = q + 2.0 * s * cos(angle + third);
+  eigenvalues[1] = q + 2.0 * s * cos(angle - third);
+  eigenvalues[2] = q + 2.0 * s * cos(angle);
+}
+
+void oracle_boundary_eigenvalues(
+  const oracle_field* field, const double point[3], double eigenvalues[3])
+{
+  oracle_matrix sum;
+  memset(&sum, 0, sizeof(sum));
+  memcpy(sum.point, point, sizeof(sum.point));
+  if (field->particles->count > 0)
+  {
+    oracle_visit(field, point, 0.0, oracle_add_matrix, &sum, 0, 0, field->particles->count);
+  }
+  oracle_eigenvalues(sum.m, eigenvalues);
+}
+
 static void oracle_add_error(const oracle_field* field, int64_t j, void* user)
 {
   oracle_sums* sums = user;

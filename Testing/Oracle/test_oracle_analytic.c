@@ -27,6 +27,7 @@ typedef struct variant
   int has_iso, rough, skip_pairs;
   int has_euler, euler;
   mcor_topology topology;
+  double eigenvalue; /* above 0: trimmed where the boundary eigenvalue is lower */
 } variant;
 
 static void fill_case(oracle_case* at, const variant* v, const particle_set* set, const double* iso)
@@ -41,6 +42,12 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
   at->options.h_scale = v->h_scale > 0.0 ? v->h_scale : 1.0;
   at->options.precision = v->in_double ? MCOR_FLOAT64 : MCOR_FLOAT32;
   at->options.topology = v->topology;
+  if (v->eigenvalue > 0.0)
+  {
+    at->options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
+    at->options.boundary_eigenvalue = 1;
+    at->options.vertex_threshold = v->eigenvalue;
+  }
   at->rough = v->rough;
   at->has_euler = v->has_euler;
   at->euler = v->euler;
@@ -166,6 +173,35 @@ static const variant set_variants[] = {
   { .set = "on_nodes", .rough = 1, .in_double = 1 },
   { .set = "plateau", .rough = 1, .skip_pairs = 1 },
 };
+
+/* ---- trimmed by the boundary eigenvalue ------------------------------------------------------ */
+
+static const variant eigenvalue_variants[] = {
+  { .set = "puddle" },
+  { .set = "puddle", .eigenvalue = 0.75 },
+  { .set = "puddle", .in_double = 1 },
+  { .set = "gyroid" },
+  { .set = "gyroid", .kernel = MCOR_QUADRATIC },
+  { .set = "gyroid", .kernel = MCOR_M_PRIME_4 },
+  { .set = "gyroid", .kernel = MCOR_QUINTIC_SPLINE },
+  { .set = "gyroid", .kernel = MCOR_WENDLAND_C2 },
+  { .set = "gyroid", .field = MCOR_SUM, .eigenvalue = 0.5 },
+  { .set = "noise", .eigenvalue = 0.5 },
+};
+
+static void run_eigenvalues(oracle_suite* suite)
+{
+  for (size_t n = 0; n < sizeof(eigenvalue_variants) / sizeof(eigenvalue_variants[0]); ++n)
+  {
+    char suffix[32];
+    variant v = eigenvalue_variants[n];
+    v.eigenvalue = v.eigenvalue > 0.0 ? v.eigenvalue : 0.3;
+    v.skip_pairs = 1;
+    snprintf(suffix, sizeof(suffix), "/eigenvalue%g", v.eigenvalue);
+    v.suffix = suffix;
+    run_variant(suite, &v, NULL);
+  }
+}
 
 /* ---- how data are given --------------------------------------------------------------------- */
 
@@ -334,6 +370,7 @@ int main(int argc, char** argv)
   {
     run_variant(&suite, &set_variants[n], NULL);
   }
+  run_eigenvalues(&suite);
   run_inputs(&suite);
   run_matrix(&suite);
   return oracle_end_suite(&suite);

@@ -41,6 +41,13 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
   at->options.topology = random_bits(state) % 2 == 0 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   at->skip_pairs = at->options.field == MCOR_WEIGHT_SUM;
   at->rough = at->no_table = 1;
+  if (random_bits(state) % 3 == 0)
+  {
+    static const double thresholds[] = { 0.2, 0.3, 0.5, 0.75 };
+    at->options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
+    at->options.boundary_eigenvalue = 1;
+    at->options.vertex_threshold = pick(state, thresholds, 4);
+  }
 }
 
 static void run_seed(oracle_suite* suite, uint64_t seed)

@@ -168,6 +168,47 @@ static void check_gradient(const oracle_reference* reference, const double point
   }
 }
 
+/* The boundary eigenvalues l by a plain loop for the matrix m: det(m - l) = 0, and their sum and the
+ * sum of their squares are the trace of m and of m m. */
+static void check_boundary(const oracle_reference* reference, const double point[3])
+{
+  const oracle_particles* p = &reference->particles;
+  double m[3][3] = { { 0.0 } };
+  double l[3];
+  double trace = 0.0;
+  double square = 0.0;
+  for (int64_t j = 0; j < p->count; ++j)
+  {
+    double gradient[3];
+    const double* x = &p->position[3 * j];
+    const double u[3] = { point[0] - x[0], point[1] - x[1], point[2] - x[2] };
+    oracle_kernel_value(
+      reference->field.kernel, reference->field.h_scale * p->smoothing_length[j], u, gradient);
+    for (int n = 0; n < 9 && !(p->solid[j] && p->ignore_solids); ++n)
+    {
+      m[n / 3][n % 3] -=
+        0.5 * p->volume[j] * (u[n / 3] * gradient[n % 3] + u[n % 3] * gradient[n / 3]);
+    }
+  }
+  oracle_boundary_eigenvalues(&reference->field, point, l);
+  for (int n = 0; n < 9; ++n)
+  {
+    trace += n % 4 == 0 ? m[n / 3][n % 3] : 0.0;
+    square += m[n / 3][n % 3] * m[n / 3][n % 3];
+  }
+  const double scale = 1.0 + square;
+  const double a = m[0][0] - l[0];
+  const double b = m[1][1] - l[0];
+  const double c = m[2][2] - l[0];
+  const double determinant = a * (b * c - m[1][2] * m[1][2]) -
+    m[0][1] * (m[0][1] * c - m[1][2] * m[0][2]) + m[0][2] * (m[0][1] * m[1][2] - b * m[0][2]);
+  ORACLE_CHECK(l[0] <= l[1] && l[1] <= l[2] && fabs(determinant) <= 1e-9 * scale * sqrt(scale),
+    "eigenvalues %g %g %g, determinant %g", l[0], l[1], l[2], determinant);
+  ORACLE_CHECK(fabs(l[0] + l[1] + l[2] - trace) <= 1e-9 * scale &&
+      fabs(l[0] * l[0] + l[1] * l[1] + l[2] * l[2] - square) <= 1e-9 * scale,
+    "eigenvalues %g %g %g, trace %g, square %g", l[0], l[1], l[2], trace, square);
+}
+
 static void test_fields(void)
 {
   const double iso = 0.1;
@@ -195,6 +236,7 @@ static void test_fields(void)
           1.2 * random_unit(&state) - 0.4 };
         check_point(&reference, point);
         check_gradient(&reference, point);
+        check_boundary(&reference, point);
       }
       /* The lattice must agree with point evaluation. */
       for (int trial = 0; trial < 300; ++trial)

@@ -102,6 +102,10 @@ class TestFilter(unittest.TestCase):
         self.assertEqual(extract.GetTopology(), vtkMarchingCorrectors.TOPOLOGY_TABLE)
         extract.SetTopologyToField()
         self.assertEqual(extract.GetTopology(), vtkMarchingCorrectors.TOPOLOGY_FIELD)
+        extract.SetBoundaryDetectionToEigenvalue()
+        self.assertEqual(extract.GetBoundaryDetection(), vtkMarchingCorrectors.EIGENVALUE)
+        extract.SetBoundaryDetectionToWeightSum()
+        self.assertEqual(extract.GetBoundaryDetection(), vtkMarchingCorrectors.WEIGHT_SUM)
         self.assertIn(":", vtkMarchingCorrectors.ListDevices())
         self.assertIn("Cube Size Factor: 0.5", str(extract))
 

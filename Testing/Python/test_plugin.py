@@ -63,6 +63,11 @@ def check_surfaces(extract):
     names = {extract.PointData[i].Name for i in range(len(extract.PointData))}
     assert {"Normals", "Velocity_Magnitude", "Pressure", "Velocity"} <= names, names
 
+    extract.BoundaryDetection = "Eigenvalue"
+    extract.UpdatePipeline()
+    assert 0 < extract.GetDataInformation().GetNumberOfCells() < speed
+    extract.BoundaryDetection = "Weight sum"
+
     extract.Isosurfaces = [1.0, 2.0]
     extract.UpdatePipeline()
     assert extract.GetDataInformation().GetNumberOfCells() > speed

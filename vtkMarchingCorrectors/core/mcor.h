@@ -88,6 +88,19 @@ extern "C"
                               * cube are those of the field */
   } mcor_topology;
 
+  /* How trimming tells where the fluid ends. Both are about 1 inside and have no unit. */
+  typedef enum mcor_boundary_detection
+  {
+    MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
+    MCOR_BOUNDARY_EIGENVALUE = 1  /* the smallest eigenvalue of the symmetric part of
+                                   * sum V (x_j - x) (outer product) grad W(x - x_j), the inverse of
+                                   * the renormalisation matrix (Marrone et al. 2010), over the same
+                                   * particles. Set vertex_threshold too: 0.3 trims about where a
+                                   * weight of 0.5 does; 0.75 within the fluid, 0.9 smoothing lengths
+                                   * from a flat surface. Not 0.5, which it has there over a depth of
+                                   * half a smoothing length. */
+  } mcor_boundary_detection;
+
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
@@ -156,7 +169,9 @@ extern "C"
     int iso_count;
     double node_threshold;   /* cells with a node of lower weight are discarded; default 0.1. So
                               * are Shepard cells with a node of a fluid weight below 0.001. */
-    double vertex_threshold; /* triangles are trimmed where the weight is lower; default 0.5 */
+    mcor_boundary_detection boundary_detection;
+    double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
+                              * is lower; default 0.5 */
     int preview;             /* nonzero: vertices by linear interpolation, no correction */
     double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;     /* of the correction, per vertex; 1 to 255, default 30 */
@@ -164,7 +179,8 @@ extern "C"
 
     /* What the surface carries besides points and triangles. */
     int normals; /* default on */
-    int gradients, weight_sum, correction_length, residual, boundary_flag, iso_value, nearest_particle;
+    int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag;
+    int iso_value, nearest_particle;
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
@@ -226,11 +242,13 @@ extern "C"
     float* normals;   /* [point_count][3], unit length, towards lower values */
     double* gradients; /* [point_count][3], gradient of the field, scalar unit / L */
     float* weight_sum; /* [point_count], the trimming weight */
+    float* boundary_eigenvalue; /* [point_count], see MCOR_BOUNDARY_EIGENVALUE */
     float* correction_length; /* [point_count], unit L */
     float* residual;          /* [point_count], f - iso, scalar unit */
-    uint8_t* boundary_flag; /* [point_count], 0 inside; 1 on the trim boundary, weight = vertex
-                             * threshold; 2 same, but left at the linear cut; 4 on a lattice edge
-                             * next to a cell that the node threshold discarded */
+    uint8_t* boundary_flag; /* [point_count], 0 inside; 1 on the trim boundary, weight (or
+                             * eigenvalue) = vertex threshold; 2 same, but left at the linear cut;
+                             * 4 on a lattice edge next to a cell that the node threshold
+                             * discarded */
     double* iso_value;      /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     double** attributes; /* [attribute_count] -> [point_count][components] */

@@ -250,9 +250,9 @@ static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char*
   const bool is_double = build->precision == MCOR_FLOAT64;
   snprintf(text, size,
     "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_CPU=%d -DMCOR_DOUBLE=%d "
-    "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%d.0%s "
+    "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%d.0%s "
     "-DMCOR_TENSOR=%d -DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
-    cl->lanes, cl->is_cpu, is_double, kernels[k].name, kernels[k].name, kernels[k].norm, is_double ? "" : "f",
+    cl->lanes, cl->is_cpu, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm, is_double ? "" : "f",
     kernels[k].support, is_double ? "" : "f", kernels[k].tensor, (int)build->field, build->solids);
 }
 
@@ -278,6 +278,7 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
     mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl,
     mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_march_cl,
     mcor_source_mcor_pair_cl, mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl,
+    mcor_source_mcor_boundary_cl,
     mcor_source_mcor_trim_cl, mcor_source_mcor_output_cl, mcor_source_mcor_attribute_cl };
   char options[512];
   mcor_build_options(cl, build, options, sizeof options);

@@ -21,6 +21,7 @@ void mcor_set_default_options(mcor_options* options)
     .cube_size_factor = 0.5,
     .node_threshold = 0.1,
     .vertex_threshold = 0.5,
+    .boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM,
     .tolerance = 1e-6,
     .iteration_limit = 30,
     .precision = MCOR_FLOAT32,
@@ -73,10 +74,11 @@ void mcor_release_memory(mcor_context* context)
     &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides, &b->block_keys,
     &b->block_buckets, &b->states, &b->bits, &b->base, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
     &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
-    &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->triangles,
-    &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
-    &m->scanned, &m->decisions, &m->sample_base, &m->sample_node, &m->sample_offset,
-    &m->sample_side, &context->scan_sums, &context->attributes, &context->groups };
+    &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->boundary,
+    &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct,
+    &m->cut_index, &m->scanned, &m->decisions, &m->sample_base, &m->sample_node,
+    &m->sample_offset, &m->sample_side, &context->scan_sums, &context->attributes,
+    &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
@@ -113,8 +115,9 @@ void mcor_free_surface(mcor_surface* surface)
     return;
   }
   void* const arrays[] = { surface->points, surface->triangles, surface->normals,
-    surface->gradients, surface->weight_sum, surface->correction_length, surface->residual,
-    surface->boundary_flag, surface->iso_value, surface->nearest_particle };
+    surface->gradients, surface->weight_sum, surface->boundary_eigenvalue,
+    surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value,
+    surface->nearest_particle };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);

@@ -99,6 +99,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     (int)options->seeds);
   MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD, "There is no topology number %d.",
     (int)options->topology);
+  MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
+    "There is no boundary detection number %d.", (int)options->boundary_detection);
   MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64, "There is no precision number %d.",
     (int)options->precision);
   MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,

@@ -109,6 +109,7 @@ typedef struct mcor_mesh
   int vertex_count; /* the same and those of the trim boundary */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
+  mcor_buffer boundary; /* real [march_count], MCOR_BOUNDARY_EIGENVALUE only: what w is otherwise */
   mcor_buffer triangles, trimmed, remaining, cuts, cut_keys, cut_distinct, cut_index;
   mcor_buffer scanned;
   /* Of MCOR_TOPOLOGY_FIELD. decisions: see MCOR_DECISION_MASKS. */
@@ -198,6 +199,8 @@ mcor_status mcor_resolve_topology(mcor_context* context, double iso);
 mcor_status mcor_count_resolved(mcor_context* context);
 mcor_status mcor_emit_resolved(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context, double iso);
+mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
+  const mcor_buffer* offset, int count, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
@@ -241,6 +244,7 @@ extern const char mcor_source_mcor_march_cl[];
 extern const char mcor_source_mcor_pair_cl[];
 extern const char mcor_source_mcor_correct_cl[];
 extern const char mcor_source_mcor_topology_cl[];
+extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_output_cl[];
 extern const char mcor_source_mcor_attribute_cl[];

@@ -106,6 +106,7 @@ static mcor_status mcor_grow_surface(
     { normals, (void**)&s->normals, 3 * sizeof(float) },
     { o->gradients, (void**)&s->gradients, 3 * sizeof(double) },
     { o->weight_sum, (void**)&s->weight_sum, sizeof(float) },
+    { o->boundary_eigenvalue, (void**)&s->boundary_eigenvalue, sizeof(float) },
     { o->correction_length, (void**)&s->correction_length, sizeof(float) },
     { o->residual, (void**)&s->residual, sizeof(float) },
     { o->boundary_flag, (void**)&s->boundary_flag, 1 },
@@ -286,6 +287,25 @@ static mcor_status mcor_add_attributes(
                    : MCOR_OK;
 }
 
+/* Evaluated for the array alone, as only trimming needs it, and there at other vertices. */
+static mcor_status mcor_add_boundary_eigenvalue(
+  mcor_context* context, int points, mcor_surface* surface)
+{
+  if (points == 0 || !context->options->boundary_eigenvalue)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer* values = &context->out[5];
+  MCOR_TRY(mcor_evaluate_boundary(context, &context->out[0], &context->out[1], points, values));
+  void* view;
+  MCOR_TRY(mcor_map(context, values, (size_t)points * context->cl.real_size, false, &view));
+  for (int64_t i = 0; i < points; ++i)
+  {
+    surface->boundary_eigenvalue[surface->point_count + i] = (float)mcor_get_real(context, view, i);
+  }
+  return mcor_unmap(context, values, &view);
+}
+
 static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,
   mcor_download* download, mcor_surface* surface)
 {
@@ -296,6 +316,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
     (long long)(base + download->count));
   MCOR_TRY(mcor_grow_surface(context, input, surface, download->count, triangles));
   MCOR_TRY(mcor_add_attributes(context, input, download->count, surface));
+  MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->count, surface));
   MCOR_TRY(mcor_map_vertices(context, download));
   int32_t* to = surface->triangles + 3 * surface->triangle_count;
   MCOR_TRY(mcor_read(

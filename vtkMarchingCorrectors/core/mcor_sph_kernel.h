@@ -20,7 +20,7 @@
 
 #ifdef __OPENCL_VERSION__
 
-/* w(q), and its derivative w'(q). */
+/* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps it has the value of one side. */
 
 realv mcor_w_cubic(realv q)
 {
@@ -35,6 +35,11 @@ realv mcor_dw_cubic(realv q)
   return (real)3 * b * b - (real)0.75 * a * a;
 }
 
+realv mcor_ddw_cubic(realv q)
+{
+  return (real)1.5 * fmax((real)2 - q, (realv)0) - (real)6 * fmax((real)1 - q, (realv)0);
+}
+
 /* 3/16 q^2 - 3/4 q + 3/4 = 3/16 (2 - q)^2; the 3/16 is in the norm. */
 realv mcor_w_quadratic(realv q)
 {
@@ -45,6 +50,11 @@ realv mcor_w_quadratic(realv q)
 realv mcor_dw_quadratic(realv q)
 {
   return (real)-2 * fmax((real)2 - q, (realv)0);
+}
+
+realv mcor_ddw_quadratic(realv q)
+{
+  return q < (real)2 ? (realv)2 : (realv)0;
 }
 
 /* Per axis; 1 - 5/2 q^2 + 3/2 q^3 = 1/2 (2-q)^2 (1-q) - (1-q)^2 (1-2q). */
@@ -58,6 +68,12 @@ realv mcor_dw_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
   return (real)2 * b * (b + (real)1 - (real)2 * q) - a * ((real)1 - q + (real)0.5 * a);
+}
+
+realv mcor_ddw_mprime4(realv q)
+{
+  const realv outer = (real)5 - (real)3 * q, inner = (real)9 * q - (real)5;
+  return q < (real)1 ? inner : q < (real)2 ? outer : (realv)0;
 }
 
 realv mcor_w_quintic(realv q)
@@ -76,6 +92,13 @@ realv mcor_dw_quintic(realv q)
   return (real)-5 * (a2 * a2 - (real)6 * b2 * b2 + (real)15 * c2 * c2);
 }
 
+realv mcor_ddw_quintic(realv q)
+{
+  const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
+              c = fmax((real)1 - q, (realv)0);
+  return (real)20 * (a * a * a - (real)6 * b * b * b + (real)15 * c * c * c);
+}
+
 realv mcor_w_wendland(realv q)
 {
   const realv a = fmax((real)1 - (real)0.5 * q, (realv)0), a2 = a * a;
@@ -86,6 +109,12 @@ realv mcor_dw_wendland(realv q)
 {
   const realv a = fmax((real)1 - (real)0.5 * q, (realv)0);
   return (real)-5 * q * a * a * a;
+}
+
+realv mcor_ddw_wendland(realv q)
+{
+  const realv a = fmax((real)1 - (real)0.5 * q, (realv)0);
+  return (real)2.5 * a * a * ((real)3 * q - (real)2 * a);
 }
 
 /* Lowest value of w: M'4 has a negative lobe, its minimum at q = 4/3. */

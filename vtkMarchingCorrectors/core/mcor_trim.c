@@ -7,6 +7,14 @@
 
 #define MCOR_TRIM_STEPS 25
 
+/* What the vertex threshold applies to, at the vertices on lattice edges. */
+static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
+{
+  return context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
+    ? &context->mesh.boundary
+    : &context->mesh.vertex_weight;
+}
+
 /* Counts what remains; ends with scanned counts in mesh->remaining and mesh->cuts. */
 static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int* cuts)
 {
@@ -16,7 +24,7 @@ static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int
   MCOR_TRY(mcor_reserve(context, &mesh->cuts, n * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_LIGHT, mesh->triangle_count,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts)));
   MCOR_TRY(mcor_scan(context, &mesh->remaining, mesh->triangle_count, remaining));
   return mcor_scan(context, &mesh->cuts, mesh->triangle_count, cuts);
@@ -62,9 +70,13 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
     MCOR_BUFFER(&mesh->cut_distinct), MCOR_INT(vertices), MCOR_REAL(options->vertex_threshold),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->vertex_weight)));
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
+    MCOR_BUFFER(mcor_trim_quantity(context))));
   MCOR_TRY(mcor_make_groups(context, &mesh->node, vertices, cut_count, &groups));
-  return MCOR_LAUNCH(context, "mcor_trim_solve", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+  const char* solve = options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
+    ? "mcor_trim_solve_eigenvalue"
+    : "mcor_trim_solve_weight";
+  return MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
     MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
     MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
@@ -81,11 +93,16 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   {
     return MCOR_OK;
   }
+  if (context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE)
+  {
+    MCOR_TRY(mcor_evaluate_boundary(
+      context, &mesh->node, &mesh->offset, mesh->march_count, &mesh->boundary));
+  }
   MCOR_TRY(mcor_count_trimmed(context, &remaining, &cuts));
   MCOR_TRY(mcor_reserve(context, &mesh->cut_keys, (size_t)cuts * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_LIGHT, mesh->triangle_count,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_BUFFER(&mesh->cuts), MCOR_BUFFER(&mesh->cut_keys)));
   MCOR_TRY(mcor_reserve(context, &mesh->cut_index, sizeof(cl_int)));
   MCOR_TRY(mcor_unique(context, &mesh->cut_keys, cuts, (uint64_t)mesh->march_count << 32,
@@ -93,7 +110,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->trimmed, (size_t)remaining * 3 * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_LIGHT, mesh->triangle_count,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts),
     MCOR_BUFFER(&mesh->cut_index), MCOR_BUFFER(&mesh->trimmed)));
   mcor_release(context, &mesh->triangles);

@@ -7,7 +7,7 @@
  *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
  *   MCOR_CPU      1: the device is a CPU
  *   MCOR_DOUBLE   real is double instead of float
- *   MCOR_W, MCOR_DW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
+ *   MCOR_W, MCOR_DW, MCOR_DDW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
  *   MCOR_FIELD    0 Shepard, 1 sum, 2 weight sum
  *   MCOR_SOLIDS   1: some particles are solid and count in the trimming weight only
  *

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight passes the vertex
- * threshold. A cut vertex belongs to a mesh edge, key (lower vertex << 32 | higher vertex), and is
- * shared by the two triangles there. */
+/* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight (or the boundary
+ * eigenvalue, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to a
+ * mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles there. */
 
 /* Bits 0..2: corner at or above the threshold. A triangle with no corner strictly above is outside,
  * so that one which merely touches the threshold leaves no sliver [Fig. 3 b]. */
@@ -129,22 +129,38 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 /* |w - threshold| of a cut vertex, at most. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
+/* What is trimmed by, at all points where the field was evaluated. */
+void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  const mcor_points* points, const mcor_field_at* at, bool by_eigenvalue, mcor_boundary_at* bound)
+{
+  if (by_eigenvalue)
+  {
+    mcor_evaluate_boundary(grid, query, tile, points, true, bound);
+    return;
+  }
+  bound->value = at->weight;
+  bound->gx = at->wx;
+  bound->gy = at->wy;
+  bound->gz = at->wz;
+}
+
 /* Newton's step of least norm towards field = iso and weight = threshold at once,
  * -J^T (J J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there
  * is none, the gradients being parallel. */
-fixv mcor_trim_step(const mcor_field_at* at, real threshold, realv* dx, realv* dy, realv* dz)
+fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real threshold,
+  realv* dx, realv* dy, realv* dz)
 {
-  const realv f = at->value, w = at->weight - threshold;
+  const realv f = at->value, w = bound->value - threshold;
   const realv ff = at->gx * at->gx + at->gy * at->gy + at->gz * at->gz;
-  const realv ww = at->wx * at->wx + at->wy * at->wy + at->wz * at->wz;
-  const realv fw = at->gx * at->wx + at->gy * at->wy + at->gz * at->wz;
+  const realv ww = bound->gx * bound->gx + bound->gy * bound->gy + bound->gz * bound->gz;
+  const realv fw = at->gx * bound->gx + at->gy * bound->gy + at->gz * bound->gz;
   const realv det = ff * ww - fw * fw;
   const fixv tangent = det <= (real)1e-6f * ff * ww;
   const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
   const realv lf = (fw * w - ww * f) * inv_det, lw = (fw * f - ff * w) * inv_det;
-  const realv x = lf * at->gx + lw * at->wx;
-  const realv y = lf * at->gy + lw * at->wy;
-  const realv z = lf * at->gz + lw * at->wz;
+  const realv x = lf * at->gx + lw * bound->gx;
+  const realv y = lf * at->gy + lw * bound->gy;
+  const realv z = lf * at->gz + lw * bound->gz;
   const realv damp =
     fmin(MCOR_TRIM_STEP * rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
   *dx = damp * x;
@@ -156,23 +172,25 @@ fixv mcor_trim_step(const mcor_field_at* at, real threshold, realv* dx, realv* d
 /* Moves a group of points to where field = iso and weight = threshold; points for which that does not
  * succeed nearby stay where they were. Returns the latter. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  real threshold, int limit, mcor_points* points, mcor_field_at* at)
+  real threshold, bool by_eigenvalue, int limit, mcor_points* points, mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
   mcor_tile tile;
+  mcor_boundary_at bound;
   mcor_tile_init(&tile);
   fixv done = 0, failed = 0;
   for (int i = 0;; ++i)
   {
     mcor_evaluate(grid, query, &tile, points, iso, at);
+    mcor_trim_bound(grid, query, &tile, points, at, by_eigenvalue, &bound);
     done = done ||
-      (fabs(at->value) <= tolerance && fabs(at->weight - threshold) <= MCOR_TRIM_TOLERANCE);
+      (fabs(at->value) <= tolerance && fabs(bound.value - threshold) <= MCOR_TRIM_TOLERANCE);
     if (i == limit || !MCOR_ANY(!(done || failed)))
     {
       break;
     }
     realv dx, dy, dz;
-    const fixv tangent = mcor_trim_step(at, threshold, &dx, &dy, &dz);
+    const fixv tangent = mcor_trim_step(at, &bound, threshold, &dx, &dy, &dz);
     const fixv far = fabs(points->ox + dx - x0) > MCOR_TRIM_REACH ||
       fabs(points->oy + dy - y0) > MCOR_TRIM_REACH || fabs(points->oz + dz - z0) > MCOR_TRIM_REACH;
     failed = failed || (!done && (far || tangent));
@@ -192,13 +210,16 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   return back;
 }
 
-/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both equations
- * hold. Writes position, value, gradient and weight; the flag 2 instead of 1 where the linear cut
- * stays, the two surfaces being tangent or too far away. */
-__kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* node, const real iso, const real tolerance,
-  const real threshold, const int limit, __global real4* offset, __global real* value,
-  __global real4* gradient, __global real* weight, __global uchar* flag)
+#define MCOR_TRIM_SOLVE_PARAMS                                                                     \
+  const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
+    const real tolerance, const real threshold, const int limit, __global real4 *offset,           \
+    __global real *value, __global real4 *gradient, __global real *weight, __global uchar *flag
+
+#define MCOR_TRIM_SOLVE_ARGS                                                                       \
+  group_count, groups, node, iso, tolerance, threshold, limit, offset, value, gradient, weight, flag
+
+/* What the next two kernels do. */
+void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -206,20 +227,35 @@ __kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count,
     return;
   }
   const int begin = groups[group], end = groups[group + 1];
-  const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   mcor_field_at at;
   int borders[MCOR_LANES];
-  mcor_points_load(node, begin, end, fix_bits, &points, &query, borders);
-  mcor_points_load_offsets(offset, begin, end, MCOR_TRIM_REACH, fix_bits, &points, &query);
-  const fixv linear =
-    mcor_trim_group(&grid, &query, iso, tolerance, threshold, limit, &points, &at);
+  mcor_points_load(node, begin, end, grid->fix_bits, &points, &query, borders);
+  mcor_points_load_offsets(offset, begin, end, MCOR_TRIM_REACH, grid->fix_bits, &points, &query);
+  const fixv linear = mcor_trim_group(
+    grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &at);
   for (int lane = 0; begin + lane < end; ++lane)
   {
     mcor_points_store(&points, &at, lane, begin + lane, offset, value, gradient, weight);
     flag[begin + lane] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
   }
+}
+
+/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both equations
+ * hold. Writes position, value, gradient and weight; the flag 2 instead of 1 where the linear cut
+ * stays, the two surfaces being tangent or too far away. */
+__kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
+{
+  const mcor_grid grid = MCOR_GRID;
+  mcor_trim_solve_group(&grid, false, MCOR_TRIM_SOLVE_ARGS);
+}
+
+/* The same for the boundary eigenvalue; the linear cut also stays where it has no gradient. */
+__kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
+{
+  const mcor_grid grid = MCOR_GRID;
+  mcor_trim_solve_group(&grid, true, MCOR_TRIM_SOLVE_ARGS);
 }
 
 /* One work-item = one triangle. Writes 1 to every vertex that it uses. */

@@ -1,0 +1,208 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The boundary eigenvalue: the second boundary detector of the trimming.
+ *
+ *   S. Marrone, A. Colagrossi, D. Le Touze, G. Graziani: Fast free-surface detection and level-set
+ *   function definition in SPH solvers. Journal of Computational Physics 229, 2010.
+ *
+ * It is the smallest eigenvalue of the inverse of the renormalisation matrix, which is
+ *
+ *   M(x) = sum V (x_j - x) (outer product) grad W(x - x_j)
+ *
+ * in its symmetric part: about the identity where particles surround x, singular where they do not. */
+
+/* The eigenvalue and, if asked for, its gradient; per cube. */
+typedef struct
+{
+  realv value, gx, gy, gz;
+} mcor_boundary_at;
+
+/* A symmetric matrix. */
+typedef struct
+{
+  realv xx, yy, zz, xy, yz, zx;
+} mcor_symmetric;
+
+/* Gradient g of W / norm * h^3, and its derivative d along the unit vector e: the Hessian times e. */
+void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[3], realv d[3])
+{
+#if MCOR_TENSOR
+  realv w[3], slope[3], bend[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const realv q = fabs(u[a]) * inv_h;
+    w[a] = MCOR_W(q);
+    slope[a] = sign(u[a]) * MCOR_DW(q) * inv_h;
+    bend[a] = MCOR_DDW(q) * inv_h * inv_h;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    g[a] = slope[a] * w[b] * w[c];
+    d[a] =
+      bend[a] * w[b] * w[c] * e[a] + slope[a] * (slope[b] * w[c] * e[b] + slope[c] * w[b] * e[c]);
+  }
+#else
+  const realv r2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+  const realv inv_r = mcor_rsqrt(r2), q = r2 * inv_r * inv_h;
+  const realv slope = MCOR_DW(q) * inv_h, bend = MCOR_DDW(q) * inv_h * inv_h;
+  const realv along = (e[0] * u[0] + e[1] * u[1] + e[2] * u[2]) * inv_r;
+  for (int a = 0; a < 3; ++a)
+  {
+    const realv n = u[a] * inv_r;
+    g[a] = slope * n;
+    d[a] = slope * inv_r * (e[a] - along * n) + bend * along * n;
+  }
+#endif
+}
+
+/* Jacobi's rotation in the plane of axes p and q, after which pq is 0; r is the third axis. */
+void mcor_eigen_rotate(
+  realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
+{
+  const realv d = *qq - *pp, root2 = d * d + (real)4 * *pq * *pq;
+  const realv t =
+    (d < 0 ? (realv)-2 : (realv)2) * *pq / (fabs(d) + root2 * mcor_rsqrt(root2) + (real)1e-30f);
+  const realv c = mcor_rsqrt((real)1 + t * t), s = t * c, p = *rp, q = *rq;
+  *pp -= t * *pq;
+  *qq += t * *pq;
+  *pq = 0;
+  *rp = c * p - s * q;
+  *rq = s * p + c * q;
+  for (int a = 0; a < 3; ++a)
+  {
+    const realv x = vp[a], y = vq[a];
+    vp[a] = c * x - s * y;
+    vq[a] = s * x + c * y;
+  }
+}
+
+/* Smallest eigenvalue of a symmetric matrix, and its eigenvector e. Nothing is divided by 0: any
+ * matrix will do, with e some eigenvector where eigenvalues coincide. */
+realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
+{
+  mcor_symmetric a = *m;
+  realv v[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+  for (int sweep = 0; sweep < (MCOR_DOUBLE ? 6 : 5); ++sweep)
+  {
+    mcor_eigen_rotate(&a.xx, &a.yy, &a.xy, &a.zx, &a.yz, v[0], v[1]);
+    mcor_eigen_rotate(&a.yy, &a.zz, &a.yz, &a.xy, &a.zx, v[1], v[2]);
+    mcor_eigen_rotate(&a.zz, &a.xx, &a.zx, &a.yz, &a.xy, v[2], v[0]);
+  }
+  const fixv x = a.xx <= a.yy && a.xx <= a.zz, y = a.yy <= a.zz;
+  realv n2 = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    e[c] = x ? v[0][c] : y ? v[1][c] : v[2][c];
+    n2 += e[c] * e[c];
+  }
+  const realv scale = mcor_rsqrt(n2);
+  for (int c = 0; c < 3; ++c)
+  {
+    e[c] *= scale;
+  }
+  /* The Rayleigh quotient: to second order in what rounding did to e. */
+  return m->xx * e[0] * e[0] + m->yy * e[1] * e[1] + m->zz * e[2] * e[2] +
+    (real)2 * (m->xy * e[0] * e[1] + m->yz * e[1] * e[2] + m->zx * e[2] * e[0]);
+}
+
+/* Points relative to the query's box, exact as in mcor_evaluate. */
+void mcor_boundary_relative(
+  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
+{
+  at[0] = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
+  at[1] = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
+  at[2] = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
+}
+
+/* Offset u of the points from particle j. */
+void mcor_boundary_offset(const mcor_grid* grid, const mcor_query* query, const mcor_points* points,
+  const realv at[3], int j, realv u[3])
+{
+  u[0] = (at[0] - (real)(grid->px[j] - query->low[0]) * grid->unit) + points->ox;
+  u[1] = (at[1] - (real)(grid->py[j] - query->low[1]) * grid->unit) + points->oy;
+  u[2] = (at[2] - (real)(grid->pz[j] - query->low[2]) * grid->unit) + points->oz;
+}
+
+/* M at all points, over the particles of the trimming weight. */
+void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  const mcor_points* points, mcor_symmetric* m)
+{
+  realv at[3], u[3], gx, gy, gz;
+  m->xx = m->yy = m->zz = m->xy = m->yz = m->zx = 0;
+  mcor_boundary_relative(grid, query, points, at);
+  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
+  {
+    for (int i = 0; i < tile->count; ++i)
+    {
+      const int j = tile->list[i];
+      mcor_boundary_offset(grid, query, points, at, j, u);
+      mcor_weight_gradient(u[0], u[1], u[2], grid->inv_h[j], &gx, &gy, &gz);
+      const real v = grid->trim_weight[j], half_v = (real)0.5 * v;
+      m->xx -= v * (u[0] * gx);
+      m->yy -= v * (u[1] * gy);
+      m->zz -= v * (u[2] * gz);
+      m->xy -= half_v * (u[0] * gy + u[1] * gx);
+      m->yz -= half_v * (u[1] * gz + u[2] * gy);
+      m->zx -= half_v * (u[2] * gx + u[0] * gz);
+    }
+  }
+}
+
+/* Evaluates at all points. The gradient of an eigenvalue is e . (dM/dx_k) e, with e its unit
+ * eigenvector; it is of no use where the two smallest coincide. */
+void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  const mcor_points* points, bool want_gradient, mcor_boundary_at* boundary)
+{
+  mcor_symmetric m;
+  realv at[3], e[3], u[3], g[3], d[3], sum[3] = { 0, 0, 0 };
+  mcor_boundary_matrix(grid, query, tile, points, &m);
+  boundary->value = mcor_eigen_smallest(&m, e);
+  mcor_boundary_relative(grid, query, points, at);
+  for (bool first = true; want_gradient && mcor_tile_next(grid, query, tile, first); first = false)
+  {
+    for (int i = 0; i < tile->count; ++i)
+    {
+      const int j = tile->list[i];
+      mcor_boundary_offset(grid, query, points, at, j, u);
+      mcor_weight_second(u, grid->inv_h[j], e, g, d);
+      const realv along_u = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
+      const realv along_g = e[0] * g[0] + e[1] * g[1] + e[2] * g[2];
+      for (int a = 0; a < 3; ++a)
+      {
+        sum[a] -= grid->trim_weight[j] * (e[a] * along_g + along_u * d[a]);
+      }
+    }
+  }
+  boundary->gx = sum[0];
+  boundary->gy = sum[1];
+  boundary->gz = sum[2];
+}
+
+/* One work-item = one group of points. Writes their boundary eigenvalues. */
+__kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, __global const real4* offset,
+  __global real* eigenvalue)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const int begin = groups[group], end = groups[group + 1];
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  mcor_tile tile;
+  mcor_boundary_at boundary;
+  int unused[MCOR_LANES];
+  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
+  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
+  mcor_tile_init(&tile);
+  mcor_evaluate_boundary(&grid, &query, &tile, &points, false, &boundary);
+  for (int lane = 0; begin + lane < end; ++lane)
+  {
+    eigenvalue[begin + lane] = MCOR_GET(boundary.value, lane);
+  }
+}

@@ -276,7 +276,8 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
   cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
   const char* sources[] = { mcor_source_mcor_prelude_cl, mcor_source_mcor_sph_kernel_h,
     mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl,
-    mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_march_cl,
+    mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl,
+    mcor_source_mcor_block_cl, mcor_source_mcor_march_cl,
     mcor_source_mcor_pair_cl, mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl,
     mcor_source_mcor_boundary_cl,
     mcor_source_mcor_trim_cl, mcor_source_mcor_output_cl, mcor_source_mcor_attribute_cl };
@@ -409,13 +410,13 @@ mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, 
   return MCOR_OK;
 }
 
-mcor_status mcor_copy(
-  mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t bytes)
+mcor_status mcor_copy(mcor_context* context, const mcor_buffer* from, mcor_buffer* to,
+  size_t to_offset, size_t bytes)
 {
   if (bytes > 0)
   {
     MCOR_CL_TRY(context,
-      clEnqueueCopyBuffer(context->cl.queue, from->mem, to->mem, 0, 0, bytes, 0, NULL, NULL),
+      clEnqueueCopyBuffer(context->cl.queue, from->mem, to->mem, 0, to_offset, bytes, 0, NULL, NULL),
       "clEnqueueCopyBuffer");
   }
   return MCOR_OK;

@@ -72,7 +72,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
     &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides, &b->block_keys,
-    &b->block_buckets, &b->states, &b->bits, &b->base, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
+    &b->block_buckets, &b->block_states, &b->quiet, &b->states, &b->bits, &b->base, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
     &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
     &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->boundary,
     &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct,
@@ -204,7 +204,7 @@ static mcor_status mcor_prepare(
   mcor_release_scratch(context);
   if (!context->nodes_valid)
   {
-    MCOR_TRY(mcor_make_blocks(context));
+    mcor_release_bricks(context, &context->bricks.now);
   }
   context->grid_valid = context->value_valid = context->nodes_valid = true;
   return MCOR_OK;

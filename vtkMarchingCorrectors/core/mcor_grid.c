@@ -392,10 +392,10 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   return mcor_needs_density(input) ? mcor_compute_volumes(context) : MCOR_OK;
 }
 
-/* One component of an array, or the scalar where `array` is NULL, less `shift`: from the caller's order
- * to the sorted one, to element to_offset. */
+/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from the
+ * caller's order to the sorted one, to element to_offset. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, mcor_buffer* to, int to_offset)
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_offset)
 {
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;
@@ -414,7 +414,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
     int n = 0;
     for (; done + n < grid->count && context->source[done + n] < first + count; ++n)
     {
-      used[n] = chunk[context->source[done + n] - first] - shift;
+      used[n] = (chunk[context->source[done + n] - first] - shift) * scale;
     }
     mcor_put_reals(context, values, done, used, n);
     done += n;
@@ -484,7 +484,7 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, &grid->value, 0));
+  MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, &grid->value, 0));
   return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
     MCOR_BUFFER(&grid->inv_h),

@@ -90,11 +90,12 @@ typedef struct mcor_brick_data
   mcor_buffer value, weight; /* real [64] */
 } mcor_brick_data;
 
-/* [III-B] Blocks where particles reach, and the bricks that exist in them. */
+/* [III-B] Blocks where there may be surface, and the bricks that exist in them. */
 typedef struct mcor_bricks
 {
   int block_count, block_shift;
   mcor_buffer block_keys, block_buckets;
+  mcor_buffer block_states, quiet; /* uchar; see mcor_block.cl */
   mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now;
@@ -180,9 +181,9 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, mcor_buffer* to, int to_offset);
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_offset);
 void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
-mcor_status mcor_make_blocks(mcor_context* context);
+mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);
@@ -240,6 +241,7 @@ extern const char mcor_source_mcor_grid_cl[];
 extern const char mcor_source_mcor_brick_cl[];
 extern const char mcor_source_mcor_node_cl[];
 extern const char mcor_source_mcor_seed_cl[];
+extern const char mcor_source_mcor_block_cl[];
 extern const char mcor_source_mcor_march_cl[];
 extern const char mcor_source_mcor_pair_cl[];
 extern const char mcor_source_mcor_correct_cl[];

@@ -3,6 +3,7 @@
 
 /* Output [III-D.4]: compaction, transfer, and what a surface carries besides its geometry. */
 
+#include "mcor_input.h"
 #include "mcor_internal.h"
 
 #include <math.h>
@@ -222,19 +223,42 @@ static mcor_status mcor_add_nearest(mcor_context* context, int points, mcor_surf
   return mcor_unmap(context, indices, &view);
 }
 
+/* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
+ * overflows whatever the device's precision. */
+static double mcor_component_scale(const mcor_array* array, int64_t count, int component)
+{
+  double most = 0;
+  for (int64_t first = 0; first < count; first += MCOR_CHUNK)
+  {
+    const int n = count - first < MCOR_CHUNK ? (int)(count - first) : MCOR_CHUNK;
+    double chunk[MCOR_CHUNK];
+    mcor_read_array(array, first, n, component, chunk);
+    for (int i = 0; i < n; ++i)
+    {
+      most = fabs(chunk[i]) > most ? fabs(chunk[i]) : most;
+    }
+  }
+  int exponent = 0;
+  frexp(most, &exponent);
+  return ldexp(1, exponent > -1000 ? -exponent : 1000);
+}
+
 /* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
 static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_input* input,
   const mcor_component* components, int count, int points, mcor_surface* surface)
 {
   const size_t real = context->cl.real_size, bytes = (size_t)points * (size_t)count * real;
   const int stride = context->grid.count;
+  double scale[MCOR_ATTRIBUTE_LIMIT];
   mcor_buffer* values = &context->out[5];
   MCOR_TRY(mcor_reserve(context, &context->attributes, (size_t)count * (size_t)stride * real));
   MCOR_TRY(mcor_reserve(context, values, bytes));
   for (int c = 0; c < count; ++c)
   {
-    MCOR_TRY(mcor_sort_values(context, input, &input->attributes[components[c].attribute],
-      components[c].component, 0, &context->attributes, c * stride));
+    const mcor_array* array = &input->attributes[components[c].attribute];
+    scale[c] = mcor_component_scale(array, input->count, components[c].component);
+    MCOR_TRY(mcor_sort_values(context, input, array, components[c].component, 0, scale[c],
+      &context->attributes, c * stride));
   }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, context->group_count,
     MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
@@ -250,7 +274,7 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
       surface->attributes[a] + surface->point_count * width + components[c].component;
     for (int64_t i = 0; i < points; ++i)
     {
-      to[i * width] = mcor_get_real(context, view, i * count + c);
+      to[i * width] = mcor_get_real(context, view, i * count + c) / scale[c];
     }
   }
   return mcor_unmap(context, values, &view);

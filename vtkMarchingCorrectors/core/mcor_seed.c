@@ -5,72 +5,16 @@
 
 #include "mcor_internal.h"
 
-/* Up to this many blocks, the lattice's blocks are asked for particles; above, the search cells name
- * their blocks, which costs nothing for empty space but repeats blocks under coarse particles. */
-#define MCOR_BLOCKS_ASKED (1 << 22)
-
 #define MCOR_CHUNK_PARTICLES 16 /* MCOR_CHUNK of mcor_seed.cl */
 
-static mcor_status mcor_ask_blocks(mcor_context* context, int lattice_blocks)
-{
-  mcor_bricks* bricks = &context->bricks;
-  const int* blocks = context->lattice.blocks;
-  mcor_buffer* flags = &context->scratch[0];
-  MCOR_TRY(mcor_reserve(context, flags, ((size_t)lattice_blocks + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_reached", MCOR_HEAVY, lattice_blocks,
-    MCOR_GRID_ARGS(context), MCOR_INT(lattice_blocks), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-    MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_scan(context, flags, lattice_blocks, &bricks->block_count));
-  MCOR_TRY(mcor_reserve(
-    context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_seed_reached_fill", MCOR_LIGHT, lattice_blocks,
-    MCOR_INT(lattice_blocks), MCOR_BUFFER(flags), MCOR_BUFFER(&bricks->block_keys));
-}
-
-static mcor_status mcor_name_blocks(mcor_context* context, uint64_t key_limit)
-{
-  mcor_bricks* bricks = &context->bricks;
-  const mcor_grid* grid = &context->grid;
-  const int* blocks = context->lattice.blocks;
-  mcor_buffer *counts = &context->scratch[0], *keys = &context->scratch[1],
-              *index_of = &context->scratch[2];
-  int key_count;
-  MCOR_TRY(mcor_reserve(context, counts, ((size_t)grid->count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_LIGHT, grid->count,
-    MCOR_GRID_ARGS(context), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_INT(blocks[2]),
-    MCOR_BUFFER(counts)));
-  MCOR_TRY(mcor_scan(context, counts, grid->count, &key_count));
-  MCOR_TRY(mcor_reserve(context, keys, (size_t)key_count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, grid->count,
-    MCOR_GRID_ARGS(context), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_INT(blocks[2]),
-    MCOR_BUFFER(counts), MCOR_BUFFER(keys)));
-  return mcor_unique(
-    context, keys, key_count, key_limit, &bricks->block_keys, index_of, &bricks->block_count);
-}
-
-/* The blocks that particles reach. They do not depend on scalar or iso value. */
-mcor_status mcor_make_blocks(mcor_context* context)
-{
-  mcor_bricks* bricks = &context->bricks;
-  const int* blocks = context->lattice.blocks;
-  const uint64_t key_limit = (uint64_t)blocks[0] * (uint64_t)blocks[1] * (uint64_t)blocks[2];
-  MCOR_TRY(key_limit <= MCOR_BLOCKS_ASKED ? mcor_ask_blocks(context, (int)key_limit)
-                                          : mcor_name_blocks(context, key_limit));
-  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, bricks->block_count, key_limit,
-    &bricks->block_buckets, &bricks->block_shift));
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
-  bricks->now.count = 0;
-  return mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint));
-}
-
-/* States of the blocks (per_block 1), their regions (64) or bricks (512); see mcor_seed.cl. */
+/* States of the blocks' regions (per_block 64) or bricks (512); see mcor_seed.cl. */
 static mcor_status mcor_find_states(mcor_context* context, double iso, int per_block,
   const mcor_buffer* before, mcor_buffer* states)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count * per_block;
   MCOR_TRY(mcor_reserve(context, states, (size_t)count));
-  return MCOR_LAUNCH(context, "mcor_seed_states", per_block == 1 ? MCOR_HEAVY : MCOR_LIGHT, count,
+  return MCOR_LAUNCH(context, "mcor_seed_states", MCOR_LIGHT, count,
     MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(per_block),
@@ -82,19 +26,12 @@ static mcor_status mcor_find_states(mcor_context* context, double iso, int per_b
 static mcor_status mcor_ask_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_buffer *of_blocks = &context->scratch[0], *of_regions = &context->scratch[1],
-              *quiet = &context->scratch[2];
-  MCOR_TRY(mcor_reserve(context, of_blocks, 1));
-  MCOR_TRY(mcor_find_states(context, iso, 1, of_blocks, of_blocks));
-  MCOR_TRY(mcor_find_states(context, iso, 64, of_blocks, of_regions));
-  MCOR_TRY(
-    mcor_find_states(context, iso, MCOR_BLOCK_BRICKS, of_regions, &bricks->states));
-  MCOR_TRY(mcor_reserve(context, quiet, (size_t)bricks->block_count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_quiet", MCOR_LIGHT, bricks->block_count,
-    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(of_blocks), MCOR_BUFFER(quiet)));
+  mcor_buffer* of_regions = &context->scratch[0];
+  MCOR_TRY(mcor_find_states(context, iso, 64, &bricks->block_states, of_regions));
+  MCOR_TRY(mcor_find_states(context, iso, MCOR_BLOCK_BRICKS, of_regions, &bricks->states));
   return MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
-    bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_BLOCK_ARGS(context), MCOR_BUFFER(quiet),
-    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
+    bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
 }
 
 /* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
@@ -131,10 +68,8 @@ static mcor_status mcor_find_sides(mcor_context* context, double iso)
 mcor_status mcor_select_seeds(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_RETURN_IF(bricks->block_count > INT32_MAX / MCOR_BLOCK_BRICKS, context, MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large: %d blocks of 32^3 cells hold particles. Use a larger cube size.",
-    bricks->block_count);
   MCOR_TRY(mcor_find_sides(context, iso));
+  MCOR_TRY(mcor_make_blocks(context, iso));
   const bool pairs = mcor_uses_pairs(context);
   MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_ask_complete(context, iso));
   MCOR_TRY(mcor_place_bricks(context));

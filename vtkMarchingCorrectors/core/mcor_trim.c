@@ -39,7 +39,7 @@ static mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_
   }
   mcor_buffer bigger = { 0 };
   MCOR_TRY(mcor_reserve(context, &bigger, bytes));
-  MCOR_TRY(mcor_copy(context, buffer, &bigger, old));
+  MCOR_TRY(mcor_copy(context, buffer, &bigger, 0, old));
   mcor_release(context, buffer);
   *buffer = bigger;
   return MCOR_OK;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where particles reach; a brick
+/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where there may be surface; a brick
  * has a slot (values, masks) where it is needed. Blocks are sorted by key, bricks by block, then
  * z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
 
@@ -77,79 +77,6 @@ int4 mcor_brick_of_mark(
   brick.z = (int)(key / blocks_x / blocks_y) * 8 + (local_brick >> 6);
   brick.w = 0;
   return brick;
-}
-
-/* Range of blocks that particles of the search cell of sorted particle i may touch. One brick is
- * added on the upper side, as cells need the nodes there. */
-void mcor_block_range(const mcor_grid* grid, int i, const int* blocks, int* low, int* high)
-{
-  int l = 0;
-  while (l + 1 < grid->level_count && grid->cell_keys[i] >= grid->levels[l + 1].base)
-  {
-    ++l;
-  }
-  const mcor_level level = grid->levels[l];
-  ulong key = grid->cell_keys[i] - level.base;
-  for (int a = 0; a < 3; ++a)
-  {
-    const float cell = (float)(key % level.cells[a]);
-    key /= level.cells[a];
-    const float size = ldexp(1 / level.inv_cell, -grid->fix_bits); /* cubes */
-    const float reach = level.support + 1;
-    const float first = floor((cell * size - reach) / MCOR_BLOCK_CUBES);
-    const float last = floor(((cell + 1) * size + reach + MCOR_BRICK) / MCOR_BLOCK_CUBES);
-    low[a] = max((int)first, 0);
-    high[a] = min((int)last, blocks[a] - 1);
-  }
-}
-
-/* One work-item = one sorted particle, the first of its search cell. Writes how many blocks the
- * cell's particles may touch. */
-__kernel void mcor_block_count(
-  MCOR_GRID_PARAMS, const int blocks_x, const int blocks_y, const int blocks_z, __global int* counts)
-{
-  const mcor_grid grid = MCOR_GRID;
-  const int i = get_global_id(0);
-  if (i >= particle_count)
-  {
-    return;
-  }
-  int count = 0;
-  if (i == 0 || cell_keys[i] != cell_keys[i - 1])
-  {
-    const int blocks[3] = { blocks_x, blocks_y, blocks_z };
-    int low[3], high[3];
-    mcor_block_range(&grid, i, blocks, low, high);
-    const long n = max((long)high[0] - low[0] + 1, 0L) * max((long)high[1] - low[1] + 1, 0L) *
-      max((long)high[2] - low[2] + 1, 0L);
-    count = (int)min(n, (long)INT_MAX);
-  }
-  counts[i] = count;
-}
-
-/* One work-item = the same. Reads the scanned counts. Writes the keys of the blocks. */
-__kernel void mcor_block_fill(MCOR_GRID_PARAMS, const int blocks_x, const int blocks_y,
-  const int blocks_z, __global const int* scanned, __global ulong* keys)
-{
-  const mcor_grid grid = MCOR_GRID;
-  const int i = get_global_id(0);
-  if (i >= particle_count || scanned[i] == scanned[i + 1])
-  {
-    return;
-  }
-  const int blocks[3] = { blocks_x, blocks_y, blocks_z };
-  int low[3], high[3], to = scanned[i];
-  mcor_block_range(&grid, i, blocks, low, high);
-  for (int z = low[2]; z <= high[2]; ++z)
-  {
-    for (int y = low[1]; y <= high[1]; ++y)
-    {
-      for (int x = low[0]; x <= high[0]; ++x)
-      {
-        keys[to++] = ((ulong)z * blocks_y + y) * blocks_x + x;
-      }
-    }
-  }
 }
 
 /* Asks for the brick with mark number m; true if nothing had asked for it before. It has no slot until

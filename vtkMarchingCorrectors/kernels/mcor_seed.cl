@@ -3,8 +3,8 @@
 
 /* Complete seeds [III-C]: which bricks of nodes are to be evaluated, so that no crossed edge is
  * missed. Nodes are left out where the side of the iso value that they are on is certain without, or
- * where their weight is certain to be too low: whole blocks (32^3 nodes), regions (8^3) and bricks
- * (4^3) of them. A crossed edge has nodes on both sides. If both were left out, two neighbouring
+ * where their weight is certain to be too low: whole blocks (32^3 nodes) or more of them, regions (8^3)
+ * and bricks (4^3). A crossed edge has nodes on both sides. If both were left out, two neighbouring
  * bricks would be certain of different sides: those are evaluated after all (mcor_seed_ask). If one
  * was, an evaluated brick would have a node on the other side than its neighbour: that is evaluated
  * then (mcor_seed_grow). */
@@ -105,43 +105,6 @@ void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bit
   }
 }
 
-/* One work-item = one block of the whole lattice. Writes 1 where a particle may reach it or, as cells
- * need nodes there, the brick before it. */
-__kernel void mcor_seed_reached(MCOR_GRID_PARAMS, const int lattice_blocks, const int blocks_x,
-  const int blocks_y, __global int* flags)
-{
-  const int i = get_global_id(0);
-  if (i >= lattice_blocks)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  mcor_query query;
-  mcor_seed_box(&query, i % blocks_x * MCOR_BLOCK_CUBES - MCOR_BRICK,
-    i / blocks_x % blocks_y * MCOR_BLOCK_CUBES - MCOR_BRICK,
-    i / blocks_x / blocks_y * MCOR_BLOCK_CUBES - MCOR_BRICK, MCOR_BLOCK_CUBES + MCOR_BRICK,
-    fix_bits);
-  bool reached = false;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; !reached && mcor_tile_next(&grid, &query, &tile, first); first = false)
-  {
-    reached = tile.count > 0;
-  }
-  flags[i] = reached;
-}
-
-/* One work-item = one block of the whole lattice. Reads the scanned flags. Writes the keys. */
-__kernel void mcor_seed_reached_fill(
-  const int lattice_blocks, __global const int* scanned, __global ulong* keys)
-{
-  const int i = get_global_id(0);
-  if (i < lattice_blocks && scanned[i] != scanned[i + 1])
-  {
-    keys[scanned[i]] = (ulong)i;
-  }
-}
-
 /* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
  * field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso, and
  *
@@ -239,7 +202,11 @@ int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, re
   return !certain ? MCOR_EXAMINE : from_below ? MCOR_ABOVE : MCOR_BELOW;
 }
 
-/* State of a cube of nodes, the query's box; a coarse one may miss that a part is void. */
+/* A coarse cube that more particles reach is divided without a bound. */
+#define MCOR_COARSE_PARTICLES 1024
+
+/* State of a cube of nodes, the query's box. Of a coarse one, less is asked: it may be taken for
+ * certain where a part is void, and for undecided. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
   __global const uchar* sides, real iso, real node_threshold)
 {
@@ -257,14 +224,18 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
     : iso <= 0                                            ? MCOR_ABOVE
                                                           : MCOR_BELOW;
   mcor_bound bound = { 0, 0, 0 };
-  bool from_below = false, some = false;
-  int seen = 0;
+  bool from_below = false;
+  int seen = 0, found = 0;
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
   {
-    some = some || tile.count > 0;
+    found += tile.count;
     seen |= mcor_tile_sides(&tile, iso);
+    if (coarse && found > MCOR_COARSE_PARTICLES)
+    {
+      return MCOR_EXAMINE;
+    }
     if (tile.complete && MCOR_RANGE_DECIDES && seen != 3)
     {
       break;
@@ -275,7 +246,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
     }
     mcor_seed_bound(query, &tile, iso, from_below, &bound);
   }
-  if (!some)
+  if (found == 0)
   {
     return empty;
   }
@@ -298,19 +269,17 @@ int mcor_seed_region_of(int m)
   return m / MCOR_BLOCK_BRICKS * MCOR_BLOCK_REGIONS + region;
 }
 
-/* Position in bricks and edge of cube i of a level, of per_block (1, 64, 512) cubes. */
+/* Position in bricks of cube i, of per_block (64 or 512) cubes in a block. */
 int4 mcor_seed_cube(__global const ulong* block_keys, const int blocks_x, const int blocks_y,
-  const int per_block, int i, int* cubes)
+  const int per_block, int i)
 {
   if (per_block == MCOR_BLOCK_BRICKS)
   {
-    *cubes = MCOR_BRICK;
     return mcor_brick_of_mark(block_keys, blocks_x, blocks_y, i);
   }
   const int r = i % per_block;
-  *cubes = per_block == 1 ? MCOR_BLOCK_CUBES : MCOR_REGION_CUBES;
   return mcor_brick_of_mark(block_keys, blocks_x, blocks_y, i / per_block * MCOR_BLOCK_BRICKS) +
-    (int4)(r & 3, r >> 2 & 3, r >> 4, 0) * (*cubes / MCOR_BRICK);
+    (int4)(r & 3, r >> 2 & 3, r >> 4, 0) * (MCOR_REGION_CUBES / MCOR_BRICK);
 }
 
 /* Whether the particles within half their support of a brick's nodes, an eighth of all, which make up
@@ -331,8 +300,8 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, real iso)
   return inside;
 }
 
-/* One work-item = one cube of nodes: a block (per_block 1), or one of its 64 regions or 512 bricks.
- * Reads the particles that reach it, and the states of the level before. Writes its state. */
+/* One work-item = one cube of nodes: one of a block's 64 regions or 512 bricks (per_block). Reads the
+ * particles that reach it, and the states of the level before. Writes its state. */
 __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, const int per_block,
   __global const uchar* before, __global const uchar* sides, const real iso,
@@ -343,47 +312,24 @@ __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const in
   {
     return;
   }
-  const int outer = per_block == MCOR_BLOCK_BRICKS ? mcor_seed_region_of(i) : i / per_block;
-  if (per_block > 1 && before[outer] != MCOR_EXAMINE)
+  const bool is_brick = per_block == MCOR_BLOCK_BRICKS;
+  const int outer = is_brick ? mcor_seed_region_of(i) : i / per_block;
+  if (before[outer] != MCOR_EXAMINE)
   {
     states[i] = before[outer];
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  int cubes;
-  const int4 brick = mcor_seed_cube(block_keys, blocks_x, blocks_y, per_block, i, &cubes);
-  if (MCOR_FIELD == 2 && !MCOR_TENSOR && per_block == MCOR_BLOCK_BRICKS &&
-    mcor_seed_is_inside(&grid, brick, iso))
+  const int4 brick = mcor_seed_cube(block_keys, blocks_x, blocks_y, per_block, i);
+  if (MCOR_FIELD == 2 && !MCOR_TENSOR && is_brick && mcor_seed_is_inside(&grid, brick, iso))
   {
     states[i] = MCOR_ABOVE;
     return;
   }
   mcor_query query;
   mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-    cubes - 1, fix_bits);
-  states[i] = (uchar)mcor_seed_state(
-    &grid, &query, per_block == 1, sides, iso, node_threshold);
-}
-
-/* One work-item = one block. Reads the states of blocks. Writes whether no brick in it can have a
- * neighbour on another side: all blocks around it are certain of its own side, or void. */
-__kernel void mcor_seed_quiet(MCOR_BLOCK_PARAMS, __global const uchar* block_states, __global uchar* quiet)
-{
-  const int block = get_global_id(0);
-  if (block >= block_count)
-  {
-    return;
-  }
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, block * MCOR_BLOCK_BRICKS);
-  int seen = 1 << block_states[block];
-  for (int d = 0; d < 27; ++d)
-  {
-    const int other = mcor_find_block(MCOR_BLOCK_ARGS, brick.x / 8 + d % 3 - 1,
-      brick.y / 8 + d / 3 % 3 - 1, brick.z / 8 + d / 9 - 1);
-    seen |= other < 0 ? 0 : 1 << block_states[other];
-  }
-  const int both = 1 << MCOR_ABOVE | 1 << MCOR_BELOW;
-  quiet[block] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
+    (is_brick ? MCOR_BRICK : MCOR_REGION_CUBES) - 1, fix_bits);
+  states[i] = (uchar)mcor_seed_state(&grid, &query, false, sides, iso, node_threshold);
 }
 
 /* State of neighbour d (0..26) of the brick with mark m; void where it has no block. */

@@ -1,0 +1,132 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The blocks in which there may be surface [III-B], found by dividing larger cubes. */
+
+#include "mcor_internal.h"
+
+/* The first level has the smallest cubes of which no more than this many cover the lattice. */
+#define MCOR_FIRST_CUBES 32768
+
+/* One size of cubes: 32 << level nodes long. */
+typedef struct mcor_cubes
+{
+  int level, n[3];
+} mcor_cubes;
+
+static mcor_cubes mcor_cubes_of(const mcor_context* context, int level)
+{
+  mcor_cubes cubes = { .level = level };
+  for (int a = 0; a < 3; ++a)
+  {
+    cubes.n[a] = ((context->lattice.blocks[a] - 1) >> level) + 1;
+  }
+  return cubes;
+}
+
+static uint64_t mcor_cube_total(const mcor_cubes* cubes)
+{
+  return (uint64_t)cubes->n[0] * (uint64_t)cubes->n[1] * (uint64_t)cubes->n[2];
+}
+
+/* States of the cubes whose keys are the block keys now, and which of them are quiet. */
+static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor_cubes* cubes)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int count = bricks->block_count;
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, mcor_cube_total(cubes),
+    &bricks->block_buckets, &bricks->block_shift));
+  MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
+  MCOR_TRY(mcor_reserve(context, &bricks->quiet, (size_t)count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+    MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_INT(MCOR_BLOCK_CUBES << cubes->level),
+    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->block_states)));
+  return MCOR_LAUNCH(context, "mcor_block_quiet", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
+    MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),
+    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->quiet));
+}
+
+/* Replaces the cubes by the parts of those that are not quiet, and by the blocks `kept` where these
+ * are blocks already. */
+static mcor_status mcor_divide_cubes(
+  mcor_context* context, const mcor_cubes* cubes, const mcor_buffer* kept, int kept_count)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_buffer *counts = &context->scratch[0], *keys = &context->scratch[1],
+              *index_of = &context->scratch[2];
+  const mcor_cubes finer = mcor_cubes_of(context, cubes->level - 1);
+  const int count = bricks->block_count, added = finer.level == 0 ? kept_count : 0;
+  int children;
+  MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_BUFFER(&bricks->quiet), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]),
+    MCOR_BUFFER(counts)));
+  MCOR_TRY(mcor_scan(context, counts, count, &children));
+  MCOR_TRY(mcor_reserve(context, keys, ((size_t)children + (size_t)added) * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]), MCOR_BUFFER(counts),
+    MCOR_BUFFER(keys)));
+  MCOR_TRY(mcor_copy(
+    context, kept, keys, (size_t)children * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
+  return mcor_unique(context, keys, children + added, mcor_cube_total(&finer),
+    &bricks->block_keys, index_of, &bricks->block_count);
+}
+
+/* Bits of bricks for the blocks; those that exist keep theirs. */
+static mcor_status mcor_keep_bricks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
+  return MCOR_LAUNCH(context, "mcor_block_keep", MCOR_LIGHT, bricks->now.count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->bits));
+}
+
+/* The blocks that are not quiet, and those of bricks that exist. iso: relative to A0. */
+mcor_status mcor_make_blocks(mcor_context* context, double iso)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_cubes cubes = mcor_cubes_of(context, 0);
+  while (mcor_cube_total(&cubes) > MCOR_FIRST_CUBES)
+  {
+    cubes = mcor_cubes_of(context, cubes.level + 1);
+  }
+  mcor_buffer kept = { 0 };
+  const int kept_count = bricks->now.count > 0 ? bricks->block_count : 0;
+  if (kept_count > 0)
+  {
+    kept = bricks->block_keys;
+    bricks->block_keys = (mcor_buffer){ 0 };
+  }
+  bricks->block_count = (int)mcor_cube_total(&cubes);
+  mcor_status status = mcor_reserve(
+    context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
+  if (status == MCOR_OK)
+  {
+    status = MCOR_LAUNCH(context, "mcor_block_all", MCOR_LIGHT, bricks->block_count,
+      MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->block_keys));
+  }
+  for (; cubes.level > 0 && status == MCOR_OK; cubes = mcor_cubes_of(context, cubes.level - 1))
+  {
+    status = mcor_test_cubes(context, iso, &cubes);
+    if (status == MCOR_OK)
+    {
+      status = mcor_divide_cubes(context, &cubes, &kept, kept_count);
+    }
+  }
+  mcor_release(context, &kept);
+  MCOR_TRY(status);
+  MCOR_RETURN_IF(bricks->block_count > INT32_MAX / MCOR_BLOCK_BRICKS, context,
+    MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large: in %d blocks of 32^3 cells there may be surface. Use a larger "
+    "cube size.",
+    bricks->block_count);
+  MCOR_TRY(mcor_test_cubes(context, iso, &cubes));
+  return mcor_keep_bricks(context);
+}

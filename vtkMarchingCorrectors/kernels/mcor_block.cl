@@ -1,0 +1,123 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Blocks: cubes of nodes are divided, from few that cover the whole lattice down to blocks, where they
+ * are not quiet. A quiet cube is certain of one side of the iso value, or void, and so are all around
+ * it: no crossed edge is in it, or leads out of it. Empty space, and space that coarse particles fill
+ * with values far from the iso value, cost next to nothing.
+ *
+ * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
+
+/* Position of a cube of a level, in such cubes. */
+int4 mcor_cube_of_key(ulong key, const int cubes_x, const int cubes_y)
+{
+  return (int4)((int)(key % cubes_x), (int)(key / cubes_x % cubes_y),
+    (int)(key / cubes_x / cubes_y), 0);
+}
+
+/* One work-item = one cube of the first level, all of which exist. Writes its key. */
+__kernel void mcor_block_all(const int count, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    keys[i] = (ulong)i;
+  }
+}
+
+/* One work-item = one cube, `size` nodes long. Reads the particles that reach it. Writes its state. */
+__kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cubes_x,
+  const int cubes_y, __global const ulong* keys, const int size, __global const uchar* sides,
+  const real iso, const real node_threshold, __global uchar* states)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int4 cube = mcor_cube_of_key(keys[i], cubes_x, cubes_y) * size;
+  mcor_query query;
+  mcor_seed_box(&query, cube.x, cube.y, cube.z, size - 1, fix_bits);
+  states[i] = (uchar)mcor_seed_state(&grid, &query, true, sides, iso, node_threshold);
+}
+
+/* One work-item = one cube. Reads the states of cubes. Writes whether it is quiet. A neighbour that
+ * does not exist was part of a quiet larger one. */
+__kernel void mcor_block_quiet(MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* quiet)
+{
+  const int i = get_global_id(0);
+  if (i >= block_count)
+  {
+    return;
+  }
+  const int4 cube = mcor_cube_of_key(block_keys[i], blocks_x, blocks_y);
+  int seen = 1 << states[i];
+  for (int d = 0; d < 27; ++d)
+  {
+    const int other = mcor_find_block(
+      MCOR_BLOCK_ARGS, cube.x + d % 3 - 1, cube.y + d / 3 % 3 - 1, cube.z + d / 9 - 1);
+    seen |= other < 0 ? 0 : 1 << states[other];
+  }
+  const int both = 1 << MCOR_ABOVE | 1 << MCOR_BELOW;
+  quiet[i] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
+}
+
+/* Whether child c (bits x, y, z) of a cube is within the level below, of nx * ny * nz cubes. */
+bool mcor_block_has_child(int4 cube, int c, int nx, int ny, int nz)
+{
+  return 2 * cube.x + (c & 1) < nx && 2 * cube.y + (c >> 1 & 1) < ny && 2 * cube.z + (c >> 2) < nz;
+}
+
+/* One work-item = one cube. Counts the cubes into which it is divided: none if it is quiet. */
+__kernel void mcor_block_count(const int count, const int cubes_x, const int cubes_y,
+  __global const ulong* keys, __global const uchar* quiet, const int nx, const int ny, const int nz,
+  __global int* counts)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int4 cube = mcor_cube_of_key(keys[i], cubes_x, cubes_y);
+  int children = 0;
+  for (int c = 0; c < 8 && !quiet[i]; ++c)
+  {
+    children += mcor_block_has_child(cube, c, nx, ny, nz);
+  }
+  counts[i] = children;
+}
+
+/* One work-item = one cube. Reads the scanned counts. Writes the keys of its children. */
+__kernel void mcor_block_fill(const int count, const int cubes_x, const int cubes_y,
+  __global const ulong* keys, const int nx, const int ny, const int nz,
+  __global const int* scanned, __global ulong* child_keys)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int4 cube = mcor_cube_of_key(keys[i], cubes_x, cubes_y);
+  int to = scanned[i];
+  for (int c = 0; c < 8 && to < scanned[i + 1]; ++c)
+  {
+    if (mcor_block_has_child(cube, c, nx, ny, nz))
+    {
+      child_keys[to++] = ((ulong)(2 * cube.z + (c >> 2)) * ny + (2 * cube.y + (c >> 1 & 1))) * nx +
+        (2 * cube.x + (c & 1));
+    }
+  }
+}
+
+/* One work-item = one brick that exists. Asks for it again, where blocks have been added. */
+__kernel void mcor_block_keep(MCOR_BLOCK_PARAMS, const int brick_count,
+  __global const int4* bricks, __global uint* brick_bits)
+{
+  const int slot = get_global_id(0);
+  if (slot < brick_count)
+  {
+    const int4 brick = bricks[slot];
+    mcor_ask_brick(brick_bits, mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
+  }
+}

@@ -329,6 +329,11 @@ static int make_variable_128(particle_set* set)
   return fill_graded(set, 0.25 / 128.0, 0.25);
 }
 
+static int make_variable_1024(particle_set* set)
+{
+  return fill_graded(set, 0.25 / 1024.0, 0.25);
+}
+
 /* Symmetric about x = 0 with A = x, spacing a power of 2: the surface A = 0 runs through nodes. */
 static int make_on_nodes(particle_set* set)
 {
@@ -372,6 +377,8 @@ const particle_set_entry particle_sets[] = {
   { "variable_4", "smoothing lengths 1:4", make_variable_4, -1.0, MCOR_SHEPARD },
   { "variable_16", "smoothing lengths 1:16", make_variable_16, -1.5, MCOR_SHEPARD },
   { "variable_128", "smoothing lengths 1:128", make_variable_128, -1.0, MCOR_SHEPARD },
+  { "variable_1024", "smoothing lengths 1:1024, a surface where they are small", make_variable_1024,
+    -5.3, MCOR_SHEPARD },
   { "on_nodes", "the surface runs through nodes", make_on_nodes, 0.0, MCOR_SHEPARD },
   { "plateau", "values equal to the iso value in a region", make_plateau, 1.0, MCOR_SHEPARD },
   { "single", "one particle", make_single, 0.5, MCOR_WEIGHT_SUM },

@@ -7,6 +7,7 @@
 
 #include "oracle_case.h"
 #include "oracle_check.h"
+#include "mesh_check.h"
 #include "particle_sets.h"
 
 #include <math.h>
@@ -378,10 +379,62 @@ static void test_attributes(const char* name, const char* device)
   free_bench(&b);
 }
 
+/* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: a lattice of 10^12 cells, too
+ * large for a reference. The surface is a closed manifold, and each vertex on it. */
+static void test_wide_range(const char* device)
+{
+  bench b;
+  char message[256];
+  oracle_reference reference; /* with large cubes: for its field alone */
+  memset(&reference, 0, sizeof(reference));
+  const int made = create_bench(&b, "variable_1024", device);
+  b.options.cube_size = 0.1;
+  if (made && oracle_create_reference(&reference, &b.input, &b.options, 10000000, message))
+  {
+    b.options.cube_size = 0.0;
+    b.options.node_threshold = b.options.vertex_threshold = 0.0; /* closed */
+    mcor_surface surface = extract(&b);
+    mesh_report report;
+    ORACLE_CHECK(surface.triangle_count > 5000 && surface.statistics.virtual_cells > 1000000000000,
+      "%lld triangles in %lld cells", (long long)surface.triangle_count,
+      (long long)surface.statistics.virtual_cells);
+    double worst = 0.0;
+    for (int64_t v = 0; v < surface.point_count; ++v)
+    {
+      oracle_sample sample;
+      oracle_evaluate(&reference.field, b.set.scalar, &surface.points[3 * v], &sample);
+      worst = fmax(worst, fabs(sample.value - b.iso));
+    }
+    const double range = surface.statistics.scalar_max - surface.statistics.scalar_min;
+    ORACLE_CHECK(worst <= 5e-6 * range, "1:1024: off by %g of the range", worst / range);
+    if (mesh_check(surface.points, surface.point_count, surface.triangles, surface.triangle_count,
+          &report))
+    {
+      for (int f = 0; f < MESH_FAULT_COUNT; ++f)
+      {
+        ORACLE_CHECK(report.faults[f] == 0, "1:1024: %s: %s", mesh_fault_name((mesh_fault)f),
+          report.first[f]);
+      }
+      ORACLE_CHECK(report.boundary_edges == 0 && report.components == 1 && report.euler == 2,
+        "1:1024: %lld boundary edges, %lld components, Euler characteristic %lld",
+        (long long)report.boundary_edges, (long long)report.components, (long long)report.euler);
+      mesh_free_report(&report);
+    }
+    mcor_free_surface(&surface);
+  }
+  else
+  {
+    ORACLE_CHECK(0, "variable_1024: no reference");
+  }
+  oracle_free_reference(&reference);
+  free_bench(&b);
+}
+
 int main(int argc, char** argv)
 {
   const char* device = argc > 1 ? argv[1] : NULL;
   const double shift[3] = { 3 * 0.0625, -40 * 0.0625, 1000 * 0.0625 };
+  const double far[3] = { 0x1p21, -0x1p21, 0x1p20 }; /* a million times the size */
   const double none[3] = { 0.0, 0.0, 0.0 };
   test_permutation("gyroid", device);
   test_permutation("variable_4", device);
@@ -390,8 +443,10 @@ int main(int argc, char** argv)
   test_reuse(device);
   test_iso_values(device);
   test_transform(device, 1.0, shift);
-  test_transform(device, 0x1p-12, none);
-  test_transform(device, 0x1p12, none);
+  test_transform(device, 1.0, far);
+  test_transform(device, 0x1p-30, none); /* about 1e-9 */
+  test_transform(device, 0x1p30, none);
+  test_wide_range(device);
   test_preview(device);
   test_attributes("gyroid", device);
   test_attributes("puddle", device);

@@ -98,7 +98,8 @@ void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_
 }
 
 /* One work-item = one group of points. Writes the nearest fluid particle, among those that reach the
- * points first; where smoothing lengths differ, others may be nearer that do not. */
+ * points first; where smoothing lengths differ, others may be nearer that do not. The weight's iso
+ * value may be so low that none reaches a point: one then reaches an end of its lattice edge. */
 __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)
@@ -118,14 +119,16 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   realv least = MAXFLOAT;
   fixv index = -1;
   mcor_attribute_nearer(&grid, &query, &points, &least, &index);
-  if (!uniform)
+  const bool none = MCOR_ANY(index < 0);
+  if (none || !uniform)
   {
     real farthest = 0;
     for (int lane = 0; lane < MCOR_LANES; ++lane)
     {
-      farthest = MCOR_GET_FIX(index, lane) >= 0 ? fmax(farthest, MCOR_GET(least, lane)) : farthest;
+      farthest = fmax(farthest, MCOR_GET_FIX(index, lane) >= 0 ? MCOR_GET(least, lane) : (real)0);
     }
     query.radius = (float)sqrt(farthest) * 1.0001f;
+    query.radius = none ? fmax(query.radius, levels[0].support + 2) : query.radius;
     mcor_attribute_nearer(&grid, &query, &points, &least, &index);
   }
   for (int lane = 0; begin + lane < end; ++lane)

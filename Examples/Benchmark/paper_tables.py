@@ -6,8 +6,7 @@ The paper: B. Schindler, R. Fuchs, J. Waser, R. Peikert: Marching Correctors - F
 Polygonal Isosurfaces of SPH Data, 2011; one core of a Xeon E5430 and a GeForce GTX 295. Its data
 sets are not public; ours have their number of particles, neighbours and kernels, and iso values
 that give surfaces of about the same number of triangles. Field and seeds are the paper's (sum,
-pairs), but for the vortex rings with a scaled kernel: our particles are a lattice of spacing h, so
-that no two are closer than the scaled h, and the seeds are complete.
+pairs).
 
 What the rows are, in phases of marching-correctors:
 
@@ -38,7 +37,6 @@ class Data:
     count: int
     scalar: str
     iso: float
-    lattice: bool  # particles are as far apart as h
     coarse_iso: float  # for few thousand particles, which do not resolve the other surface
     grid: tuple
     seeds: tuple
@@ -119,14 +117,13 @@ def run_columns(benchmark, data, count, iso):
     def run(column, field, *more):
         return benchmark.program.run(path, (
             "--scalar", data.scalar, "--iso", iso, *which.options, "--no-attributes",
-            "--field", field, "--seeds", column["seeds"], "--h-scale", column["h_scale"],
+            "--field", field, "--seeds", "pairs", "--h-scale", column["h_scale"],
             "--cube-factor", column["cube_factor"], *more))
 
     columns = []
     for scale in H_SCALES:
         for factor in CUBE_FACTORS:
-            seeds = "complete" if data.lattice and scale < 1 else "pairs"
-            column = {"h_scale": scale, "cube_factor": factor, "seeds": seeds}
+            column = {"h_scale": scale, "cube_factor": factor}
             column["corrected"] = run(column, "sum")
             column["preview"] = run(column, "sum", "--preview")
             if scale == 1:  # a kernel shorter than the particles' distance may leave nothing
@@ -165,7 +162,6 @@ def print_times(out, data, columns):
         time_row("Total with corr.", total_corrected, data.total_corrected),
         time_row("Cost of correction / total w/o", cost(total_corrected, total),
                  cost(data.total_corrected, data.total), percent),
-        ["Seeds", *(c["seeds"] for c in columns)],
         ["Triangles", *(f"{r['triangles']:,}" for r in corrected)],
         ["Vertices", *(f"{r['statistics']['points']:,}" for r in corrected)],
         ["Peak memory", *(report.mebibytes(r["bytes"]) for r in corrected)]]

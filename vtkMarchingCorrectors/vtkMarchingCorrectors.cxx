@@ -241,6 +241,7 @@ void vtkMarchingCorrectors::FillOptions(
   options.preview = IsOn(this->Preview);
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
+  options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
   options.normals = IsOn(this->ComputeNormals);
   options.gradients = IsOn(this->ComputeGradients);
@@ -373,5 +374,6 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   PrintName(os, indent, "Device", this->Device);
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Iteration Limit: " << this->IterationLimit << "\n";
+  os << indent << "Device Memory Limit: " << this->DeviceMemoryLimit << " MiB\n";
   PrintName(os, indent, "Error Message", this->ErrorMessage);
 }

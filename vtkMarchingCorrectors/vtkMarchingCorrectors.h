@@ -592,6 +592,15 @@ public:
 
   ///@{
   /**
+   * Most device memory in use and kept between updates, in MiB; 0, the default, means all that there
+   * is. An update that would need more fails with a sentence that says how much.
+   */
+  vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(DeviceMemoryLimit, int);
+  ///@}
+
+  ///@{
+  /**
    * The correction stops where |field - iso value| is at most Tolerance times the range of the
    * scalar. No unit, > 0, 1e-6 by default.
    */
@@ -664,6 +673,7 @@ protected:
   std::string Device;
   double Tolerance = 1e-6;
   int IterationLimit = 30;
+  int DeviceMemoryLimit = 0;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;

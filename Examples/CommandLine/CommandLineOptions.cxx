@@ -210,6 +210,8 @@ const std::vector<Option>& AllOptions()
     { "", "", "Device and help", {} },
     { "--device", "N|SUBSTRING", "OpenCL device: number, or part of its name (see --list-devices)",
       [](Options& o, Text, Text v) { o.Device = v; } },
+    { "--memory-limit", "MIB", "most device memory used (default all)",
+      [](Options& o, Text n, Text v) { o.MemoryLimit = ToCount(n, v, 1); } },
     { "--list-devices", "", "list the OpenCL devices",
       [](Options& o, Text, Text) { o.ListDevices = true; } },
     { "--help", "", "print this text", [](Options& o, Text, Text) { o.Help = true; } },

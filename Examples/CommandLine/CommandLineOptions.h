@@ -47,6 +47,7 @@ struct CommandLineOptions
   bool Attributes = true;
 
   std::string Device;
+  int MemoryLimit = 0;
   bool ListDevices = false;
   std::string StatisticsFile;
   std::string PictureFile;

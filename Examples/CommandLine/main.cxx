@@ -150,6 +150,7 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetComputeGradients(options.Gradients);
   filter->SetInterpolateAttributes(options.Attributes);
   filter->SetDevice(options.Device.c_str());
+  filter->SetDeviceMemoryLimit(options.MemoryLimit);
 }
 
 struct Run

@@ -68,7 +68,7 @@ class Usage(CommandLineTest):
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
                 --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
-                --weight-sum --boundary-eigenvalue --gradients --no-attributes --device
+                --weight-sum --boundary-eigenvalue --gradients --no-attributes --device --memory-limit
                 --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")

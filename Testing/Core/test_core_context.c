@@ -270,6 +270,36 @@ static void test_cancel_in_every_phase(void** state)
   core_free_set(&set);
 }
 
+/* A limit below the peak fails with a sentence; one at the peak suffices, also where a context still
+ * keeps what it had for other particles. */
+static void test_memory_limit(void** state)
+{
+  mcor_context* context = *state;
+  core_set big = core_make_block(16, 0.2, 3, core_slope), set = core_make_block(8, 0.2, 3, core_slope);
+  const double iso = 0;
+  mcor_input input = core_input(&set), big_input = core_input(&big);
+  mcor_options options = core_options(&iso);
+  mcor_release_memory(context);
+  mcor_surface surface = core_extract(context, &input, &options);
+  const uint64_t expected = core_hash(&surface);
+  const int64_t peak = surface.statistics.device_bytes_peak;
+  mcor_free_surface(&surface);
+  options.memory_limit = peak / 2;
+  mcor_release_memory(context);
+  assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  assert_null(surface.points);
+  assert_non_null(strstr(mcor_last_error(context), "may be used"));
+  mcor_options unlimited = core_options(&iso);
+  big_input.particles_version = big_input.scalar_version = 7; /* kept */
+  surface = core_extract(context, &big_input, &unlimited);
+  CORE_CHECK(surface.statistics.device_bytes_peak > peak, "the bigger set needs no more");
+  mcor_free_surface(&surface);
+  options.memory_limit = peak;
+  CORE_CHECK(hash_of(context, &input, &options) == expected, "another surface in limited memory");
+  core_free_set(&set);
+  core_free_set(&big);
+}
+
 static void test_devices(void** state)
 {
   (void)state;
@@ -353,7 +383,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_reuse_changes_nothing),
     cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
-    cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_devices),
+    cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_memory_limit),
+    cmocka_unit_test(test_devices),
     cmocka_unit_test(test_names), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

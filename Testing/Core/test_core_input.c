@@ -113,6 +113,7 @@ static void test_options(void** state)
     ARGUMENT("node threshold", call.options.node_threshold = bad[i]);
     ARGUMENT("vertex threshold", call.options.vertex_threshold = bad[i]);
   }
+  ARGUMENT("memory limit|-1", call.options.memory_limit = -1);
   ARGUMENT("iteration limit|-1|255", call.options.iteration_limit = -1);
   ARGUMENT("iteration limit|0|255", call.options.iteration_limit = 0);
   ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);

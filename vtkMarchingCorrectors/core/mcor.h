@@ -74,8 +74,9 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* every cell that a bound cannot exclude is examined; nothing is missed */
-    MCOR_PAIRS = 1 /* the paper's: cells between particle pairs that straddle the iso value; the same
-                    * as complete for MCOR_WEIGHT_SUM, which has no values at particles */
+    MCOR_PAIRS = 1 /* the paper's: cells between pairs of particles no farther apart than the smoothing
+                    * length (not scaled) that straddle the iso value; the same as complete for
+                    * MCOR_WEIGHT_SUM, which has no values at particles */
   } mcor_seed_mode;
 
   /* How the nodes of an ambiguous face (two above the iso value and two below, diagonally) and the
@@ -176,6 +177,8 @@ extern "C"
     double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;     /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;     /* of the field evaluation on the device; MCOR_FLOAT32 by default */
+    int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: all that there is. What is
+                           * kept for reuse is given back before a run fails for want of memory. */
 
     /* What the surface carries besides points and triangles. */
     int normals; /* default on */

@@ -156,6 +156,7 @@ static void mcor_query_device(mcor_cl* cl)
   clGetDeviceInfo(cl->device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof cl->device_memory,
     &cl->device_memory, NULL);
+  cl->memory_limit = cl->device_memory;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer,
     &cl->largest_buffer, NULL);
   cl->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
@@ -322,11 +323,11 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
     return MCOR_OK;
   }
   mcor_release(context, buffer);
-  MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->device_memory,
+  MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
     context, MCOR_OUT_OF_CAPACITY,
-    "This would need a buffer of %.0f MB besides %.0f MB in use, but device %s has %.0f MB, %.0f MB "
-    "at most in one buffer. Use a larger cube size, or fewer particles.",
-    (double)size / 1e6, (double)cl->bytes / 1e6, cl->device_name, (double)cl->device_memory / 1e6,
+    "This would need a buffer of %.0f MB besides %.0f MB in use, but %.0f MB of device %s may be used, "
+    "%.0f MB at most in one buffer. Use a larger cube size, or fewer particles.",
+    (double)size / 1e6, (double)cl->bytes / 1e6, (double)cl->memory_limit / 1e6, cl->device_name,
     (double)cl->largest_buffer / 1e6);
   cl_int error;
   buffer->mem = clCreateBuffer(cl->context, CL_MEM_READ_WRITE, size, NULL, &error);

@@ -49,6 +49,7 @@ typedef struct mcor_cl
   int chunks; /* runs into which scans and sorts cut their arrays */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
+  uint64_t memory_limit; /* what of device_memory may be used; of the call under way */
   int64_t bytes, bytes_peak;
   double build_seconds;
   char device_name[128], platform_name[128];

@@ -292,16 +292,10 @@ static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
   return mcor_finish_statistics(context);
 }
 
-mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
+/* One attempt; on failure the surface is empty and nothing is kept as valid. */
+static mcor_status mcor_try_extract(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface)
 {
-  if (!context || !surface)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
-  *surface = (mcor_surface){ 0 };
-  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
-  MCOR_RETURN_IF(!context->cl.queue, context, MCOR_DEVICE_ERROR, "The context has no device.");
   context->error[0] = '\0';
   context->options = options;
   context->statistics = &surface->statistics;
@@ -318,4 +312,27 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     mcor_free_surface(surface);
   }
   return status;
+}
+
+mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface)
+{
+  if (!context || !surface)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *surface = (mcor_surface){ 0 };
+  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
+  MCOR_RETURN_IF(!context->cl.queue, context, MCOR_DEVICE_ERROR, "The context has no device.");
+  mcor_cl* cl = &context->cl;
+  const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
+  cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
+  const bool keeps = context->grid_valid;
+  const mcor_status status = mcor_try_extract(context, input, options, surface);
+  if (status != MCOR_OUT_OF_CAPACITY || !keeps)
+  {
+    return status;
+  }
+  mcor_release_memory(context);
+  return mcor_try_extract(context, input, options, surface);
 }

@@ -118,6 +118,9 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     "The tolerance is %g; it must be above 0.", options->tolerance);
   MCOR_NEED(options->iteration_limit >= 1 && options->iteration_limit <= 255,
     "The iteration limit is %d; it must be 1 to 255.", options->iteration_limit);
+  MCOR_NEED(options->memory_limit >= 0,
+    "The memory limit is %lld bytes; it must be above 0, or 0 for no limit.",
+    (long long)options->memory_limit);
   MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
     "There are %d iso values.", options->iso_count);
   for (int i = 0; i < options->iso_count; ++i)

@@ -250,11 +250,14 @@ static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char*
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
   snprintf(text, size,
-    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_CPU=%d -DMCOR_DOUBLE=%d "
-    "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%d.0%s "
+    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_CPU=%d "
+    "-DMCOR_DOUBLE=%d "
+    "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s "
+    "-DMCOR_SUPPORT=%d.0%s "
     "-DMCOR_TENSOR=%d -DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
-    cl->lanes, cl->is_cpu, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm, is_double ? "" : "f",
-    kernels[k].support, is_double ? "" : "f", kernels[k].tensor, (int)build->field, build->solids);
+    cl->lanes, cl->is_cpu, is_double, kernels[k].name, kernels[k].name, kernels[k].name,
+    kernels[k].norm, is_double ? "" : "f", kernels[k].support, is_double ? "" : "f",
+    kernels[k].tensor, (int)build->field, build->solids);
 }
 
 mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
@@ -276,12 +279,12 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
   cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
   cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
   const char* sources[] = { mcor_source_mcor_prelude_cl, mcor_source_mcor_sph_kernel_h,
-    mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl,
-    mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl,
-    mcor_source_mcor_block_cl, mcor_source_mcor_march_cl,
-    mcor_source_mcor_pair_cl, mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl,
-    mcor_source_mcor_boundary_cl,
-    mcor_source_mcor_trim_cl, mcor_source_mcor_output_cl, mcor_source_mcor_attribute_cl };
+    mcor_source_mcor_query_cl, mcor_source_mcor_tile_cl, mcor_source_mcor_field_cl,
+    mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl, mcor_source_mcor_brick_cl,
+    mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_block_cl,
+    mcor_source_mcor_march_cl, mcor_source_mcor_pair_cl, mcor_source_mcor_correct_cl,
+    mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl,
+    mcor_source_mcor_output_cl, mcor_source_mcor_attribute_cl };
   char options[512];
   mcor_build_options(cl, build, options, sizeof options);
   cl_int error;
@@ -325,7 +328,8 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   mcor_release(context, buffer);
   MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
     context, MCOR_OUT_OF_CAPACITY,
-    "This would need a buffer of %.0f MB besides %.0f MB in use, but %.0f MB of device %s may be used, "
+    "This would need a buffer of %.0f MB besides %.0f MB in use, but %.0f MB of device %s may be "
+    "used, "
     "%.0f MB at most in one buffer. Use a larger cube size, or fewer particles.",
     (double)size / 1e6, (double)cl->bytes / 1e6, (double)cl->memory_limit / 1e6, cl->device_name,
     (double)cl->largest_buffer / 1e6);
@@ -417,7 +421,8 @@ mcor_status mcor_copy(mcor_context* context, const mcor_buffer* from, mcor_buffe
   if (bytes > 0)
   {
     MCOR_CL_TRY(context,
-      clEnqueueCopyBuffer(context->cl.queue, from->mem, to->mem, 0, to_offset, bytes, 0, NULL, NULL),
+      clEnqueueCopyBuffer(
+        context->cl.queue, from->mem, to->mem, 0, to_offset, bytes, 0, NULL, NULL),
       "clEnqueueCopyBuffer");
   }
   return MCOR_OK;

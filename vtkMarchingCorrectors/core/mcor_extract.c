@@ -71,14 +71,14 @@ void mcor_release_memory(mcor_context* context)
   mcor_bricks* b = &context->bricks;
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
-    &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides, &b->block_keys,
-    &b->block_buckets, &b->block_states, &b->quiet, &b->states, &b->bits, &b->base, &b->neighbours, &b->need, &m->above, &m->valid, &m->used,
-    &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
-    &m->field_value, &m->gradient, &m->vertex_weight, &m->flag, &m->evaluations, &m->boundary,
-    &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct,
-    &m->cut_index, &m->scanned, &m->decisions, &m->sample_base, &m->sample_node,
-    &m->sample_offset, &m->sample_side, &context->scan_sums, &context->attributes,
-    &context->groups };
+    &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides,
+    &b->block_keys, &b->block_buckets, &b->block_states, &b->quiet, &b->states, &b->bits, &b->base,
+    &b->neighbours, &b->need, &m->above, &m->valid, &m->used, &m->edges, &m->vertex_base,
+    &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient,
+    &m->vertex_weight, &m->flag, &m->evaluations, &m->boundary, &m->triangles, &m->trimmed,
+    &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index, &m->scanned,
+    &m->decisions, &m->sample_base, &m->sample_node, &m->sample_offset, &m->sample_side,
+    &context->scan_sums, &context->attributes, &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
@@ -153,7 +153,8 @@ static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
 
 /* What of the last call still holds. The caller's version numbers stand for the arrays' content; all
  * else that the search grid, the scalar and the node values depend on is compared. */
-static void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options)
+static void mcor_check_reuse(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   const mcor_input* last = &context->last_input;
   const mcor_options* o = &context->last_options;

@@ -80,8 +80,8 @@ static void mcor_put_reals(
 
 /* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
  * truncating rounds them. */
-static void mcor_put_fixed(
-  const mcor_context* context, void* array, int64_t first, int axis, const double* values, int count)
+static void mcor_put_fixed(const mcor_context* context, void* array, int64_t first, int axis,
+  const double* values, int count)
 {
   if (context->cl.fix_size == sizeof(int32_t))
   {
@@ -346,7 +346,8 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   return MCOR_LAUNCH(context, "mcor_grid_gather", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size),
     MCOR_BUFFER(solid), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
-    MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+    MCOR_BUFFER(&grid->inv_h),
+    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&grid->trim_weight));
 }
 
@@ -395,7 +396,8 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
 /* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from the
  * caller's order to the sorted one, to element to_offset. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_offset)
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
+  int to_offset)
 {
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;

@@ -91,8 +91,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 {
 #define MCOR_NEED(condition, ...)                                                                  \
   MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
-  MCOR_NEED((unsigned)options->sph_kernel < MCOR_SPH_KERNEL_COUNT, "There is no SPH kernel number %d.",
-    (int)options->sph_kernel);
+  MCOR_NEED((unsigned)options->sph_kernel < MCOR_SPH_KERNEL_COUNT,
+    "There is no SPH kernel number %d.", (int)options->sph_kernel);
   MCOR_NEED((unsigned)options->field <= MCOR_WEIGHT_SUM, "There is no field number %d.",
     (int)options->field);
   MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "There is no seed mode number %d.",
@@ -106,7 +106,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
   MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,
     "The h scale factor is %g; it must be above 0.", options->h_scale);
   MCOR_NEED(isfinite(options->cube_size) && options->cube_size >= 0,
-    "The cube size is %g; it must be above 0, or 0 to use the cube size factor.", options->cube_size);
+    "The cube size is %g; it must be above 0, or 0 to use the cube size factor.",
+    options->cube_size);
   MCOR_NEED(options->cube_size > 0 ||
       (isfinite(options->cube_size_factor) && options->cube_size_factor > 0),
     "The cube size factor is %g; it must be above 0.", options->cube_size_factor);
@@ -220,8 +221,8 @@ static mcor_status mcor_check_scalar(
     context, MCOR_INVALID_ARGUMENT,
     "Component %d of array %s was asked for, but it has %d. Choose 0 to %d, or the magnitude.",
     input->scalar_component, mcor_array_name(&input->scalar, "scalar"), components, components - 1);
-  MCOR_RETURN_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components, context,
-    MCOR_INVALID_ARGUMENT,
+  MCOR_RETURN_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components,
+    context, MCOR_INVALID_ARGUMENT,
     "The dot product needs two arrays with as many components each; %s has %d and %s has %d.",
     mcor_array_name(&input->scalar, "the first"), components,
     mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
@@ -278,105 +279,12 @@ mcor_status mcor_check_input(
   return MCOR_OK;
 }
 
-/* The order of samples by a hash of their position, so that input order does not matter. */
-typedef struct mcor_sample
-{
-  uint64_t hash;
-  double x[3];
-} mcor_sample;
-
-static uint64_t mcor_hash_position(const double x[3])
-{
-  uint64_t hash = 0x9E3779B97F4A7C15u;
-  for (int a = 0; a < 3; ++a)
-  {
-    uint64_t bits;
-    memcpy(&bits, x + a, sizeof bits);
-    hash = (hash ^ bits) * 0xBF58476D1CE4E5B9u;
-    hash ^= hash >> 31;
-  }
-  return hash;
-}
-
-static int mcor_compare_double(const void* a, const void* b)
-{
-  const double x = *(const double*)a, y = *(const double*)b;
-  return (x > y) - (x < y);
-}
-
-#define MCOR_SAMPLES 256
-#define MCOR_SAMPLE_NEIGHBOURS 32
-
-/* Distance from x to its 32nd nearest other particle, or the farthest if there are fewer. */
-static double mcor_neighbour_distance(const mcor_input* input, const double x[3], double* nearest)
-{
-  int found = 0;
-  for (int64_t i = 0; i < input->count; ++i)
-  {
-    double d2 = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      const double d = mcor_array_at(&input->positions, i, a) - x[a];
-      d2 += d * d;
-    }
-    if (found < MCOR_SAMPLE_NEIGHBOURS + 1 || d2 < nearest[found - 1])
-    {
-      int to = found < MCOR_SAMPLE_NEIGHBOURS + 1 ? found++ : found - 1;
-      for (; to > 0 && nearest[to - 1] > d2; --to)
-      {
-        nearest[to] = nearest[to - 1];
-      }
-      nearest[to] = d2;
-    }
-  }
-  return sqrt(nearest[found - 1]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / found);
-}
-
-/* 1.3 times the median, over a sample of particles, of the spacing of a lattice that has as many
- * particles within the distance of the 32nd neighbour. */
-static double mcor_estimate_smoothing_length(const mcor_input* input)
-{
-  mcor_sample samples[MCOR_SAMPLES];
-  int count = 0;
-  const int64_t affordable = 1 + 300000000 / (input->count + 1);
-  const int most = (int)(affordable < 16 ? 16 : affordable > MCOR_SAMPLES ? MCOR_SAMPLES : affordable);
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  mcor_input view = *input;
-  view.positions = positions;
-  for (int64_t i = 0; i < input->count; ++i)
-  {
-    mcor_sample sample;
-    for (int a = 0; a < 3; ++a)
-    {
-      sample.x[a] = mcor_array_at(&positions, i, a);
-    }
-    sample.hash = mcor_hash_position(sample.x);
-    if (count == most && sample.hash >= samples[count - 1].hash)
-    {
-      continue;
-    }
-    int to = count < most ? count++ : count - 1;
-    for (; to > 0 && samples[to - 1].hash > sample.hash; --to)
-    {
-      samples[to] = samples[to - 1];
-    }
-    samples[to] = sample;
-  }
-  double spacing[MCOR_SAMPLES], nearest[MCOR_SAMPLE_NEIGHBOURS + 2];
-  for (int s = 0; s < count; ++s)
-  {
-    spacing[s] = mcor_neighbour_distance(&view, samples[s].x, nearest);
-  }
-  qsort(spacing, (size_t)count, sizeof spacing[0], mcor_compare_double);
-  return 1.3 * spacing[count / 2];
-}
-
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out)
 {
   const mcor_array estimate = { .constant = context->measure.h_estimate };
-  const double scale = input->smoothing_length_is_support_radius && !input->estimate_smoothing_length
+  const double scale =
+    input->smoothing_length_is_support_radius && !input->estimate_smoothing_length
     ? 1 / mcor_support_factor(context->options->sph_kernel)
     : 1;
   mcor_read_array(
@@ -487,7 +395,8 @@ mcor_status mcor_measure_input(
   const double cube =
     options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
   MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, or "
+    "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
+    "or "
     "remove particles of such a smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   lattice->cube = m->cube = cube;
@@ -495,10 +404,11 @@ mcor_status mcor_measure_input(
   for (int a = 0; a < 3; ++a)
   {
     const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
-    MCOR_RETURN_IF(!(fabs(first) < 1e15) || !(fabs(last) < 1e15) ||
-        last - first > MCOR_LATTICE_LIMIT,
-      context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. Use a "
+    MCOR_RETURN_IF(
+      !(fabs(first) < 1e15) || !(fabs(last) < 1e15) || last - first > MCOR_LATTICE_LIMIT, context,
+      MCOR_OUT_OF_CAPACITY,
+      "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
+      "Use a "
       "larger cube size, or remove particles that are far away from the rest.",
       cube, last - first, a, MCOR_LATTICE_LIMIT);
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
@@ -508,7 +418,8 @@ mcor_status mcor_measure_input(
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  while ((extent + 64) << lattice->fix_bits >= INT64_C(1) << (options->precision == MCOR_FLOAT64 ? 62 : 30))
+  while ((extent + 64) << lattice->fix_bits >= INT64_C(1)
+      << (options->precision == MCOR_FLOAT64 ? 62 : 30))
   {
     --lattice->fix_bits;
   }

@@ -181,7 +181,8 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_offset);
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
+  int to_offset);
 void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
@@ -235,6 +236,8 @@ void mcor_make_topology_table(mcor_topology_table* table);
 
 extern const char mcor_source_mcor_prelude_cl[];
 extern const char mcor_source_mcor_sph_kernel_h[];
+extern const char mcor_source_mcor_query_cl[];
+extern const char mcor_source_mcor_tile_cl[];
 extern const char mcor_source_mcor_field_cl[];
 extern const char mcor_source_mcor_scan_cl[];
 extern const char mcor_source_mcor_grid_cl[];

@@ -92,8 +92,8 @@ static mcor_status mcor_grow(
   return MCOR_OK;
 }
 
-static mcor_status mcor_grow_surface(
-  mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points, int64_t triangles)
+static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* input,
+  mcor_surface* s, int64_t points, int64_t triangles)
 {
   const mcor_options* o = context->options;
   const int64_t n = s->point_count;
@@ -122,7 +122,8 @@ static mcor_status mcor_grow_surface(
   }
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    const int components = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
+    const int components =
+      input->attributes[a].components > 0 ? input->attributes[a].components : 1;
     MCOR_TRY(mcor_grow(
       context, (void**)&s->attributes[a], n, points, (size_t)components * sizeof(double)));
   }
@@ -157,8 +158,8 @@ static void mcor_count_correction(mcor_context* context, const mcor_download* d)
 }
 
 /* Vertex i of the download becomes point `to` of the surface. */
-static void mcor_put_point(
-  const mcor_context* context, const mcor_download* d, int i, double iso, mcor_surface* s, int64_t to)
+static void mcor_put_point(const mcor_context* context, const mcor_download* d, int i, double iso,
+  mcor_surface* s, int64_t to)
 {
   const double cube = context->lattice.cube;
   for (int a = 0; a < 3; ++a)

@@ -14,12 +14,11 @@ static mcor_status mcor_find_states(mcor_context* context, double iso, int per_b
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count * per_block;
   MCOR_TRY(mcor_reserve(context, states, (size_t)count));
-  return MCOR_LAUNCH(context, "mcor_seed_states", MCOR_LIGHT, count,
-    MCOR_GRID_ARGS(context),
+  return MCOR_LAUNCH(context, "mcor_seed_states", MCOR_LIGHT, count, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(per_block),
-    MCOR_BUFFER(before), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold),
-    MCOR_BUFFER(states));
+    MCOR_BUFFER(before), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(states));
 }
 
 /* Asks for every brick whose nodes must be evaluated. */

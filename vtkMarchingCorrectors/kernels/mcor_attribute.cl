@@ -6,8 +6,8 @@
 #define MCOR_ATTRIBUTE_LIMIT 8
 
 /* Points relative to a query's box. */
-void mcor_attribute_points(const mcor_grid* grid, const mcor_query* query, const mcor_points* points,
-  realv* x, realv* y, realv* z)
+void mcor_attribute_points(const mcor_grid* grid, const mcor_query* query,
+  const mcor_points* points, realv* x, realv* y, realv* z)
 {
   *x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
   *y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;

@@ -44,7 +44,8 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
 
 /* One work-item = one cube. Reads the states of cubes. Writes whether it is quiet. A neighbour that
  * does not exist was part of a quiet larger one. */
-__kernel void mcor_block_quiet(MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* quiet)
+__kernel void mcor_block_quiet(
+  MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* quiet)
 {
   const int i = get_global_id(0);
   if (i >= block_count)

@@ -90,8 +90,8 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
 /* One work-item = one brick. Reads node values, those needed being known by now. Writes which nodes
  * are above the iso value, and which are valid (weight not below the node threshold). */
 __kernel void mcor_march_sign(const int brick_count, __global const ulong* need,
-  __global ulong* known, __global const real* node_value, __global const real* node_weight, const real iso,
-  const real node_threshold, __global ulong* above, __global ulong* valid)
+  __global ulong* known, __global const real* node_value, __global const real* node_weight,
+  const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -161,7 +161,8 @@ int mcor_march_case(const ulong* m, int cell)
   int result = 0;
   for (int c = 0; c < 8; ++c)
   {
-    const int x = (cell & 3) + (c & 1), y = (cell >> 2 & 3) + (c >> 1 & 1), z = (cell >> 4) + (c >> 2);
+    const int x = (cell & 3) + (c & 1), y = (cell >> 2 & 3) + (c >> 1 & 1),
+              z = (cell >> 4) + (c >> 2);
     const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
     result |= (int)(m[d] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1) << c;
   }

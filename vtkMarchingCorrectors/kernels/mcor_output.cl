@@ -9,8 +9,9 @@
 __kernel void mcor_output_vertices(const int vertex_count, const int march_count,
   __global const int* scanned, __global const int4* node, __global const real4* offset,
   __global const real* linear, __global const real* value, __global const real4* gradient,
-  __global const real* weight, __global const uchar* flag, __global int4* out_node, __global real4* out_offset, __global float4* out_normal,
-  __global real4* out_gradient, __global real4* out_numbers)
+  __global const real* weight, __global const uchar* flag, __global int4* out_node,
+  __global real4* out_offset, __global float4* out_normal, __global real4* out_gradient,
+  __global real4* out_numbers)
 {
   const int v = get_global_id(0);
   if (v >= vertex_count || scanned[v] == scanned[v + 1])

@@ -333,7 +333,8 @@ __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const in
 }
 
 /* State of neighbour d (0..26) of the brick with mark m; void where it has no block. */
-int mcor_seed_neighbour(MCOR_BLOCK_PARAMS, int m, int4 brick, int d, __global const uchar* states, int* other)
+int mcor_seed_neighbour(
+  MCOR_BLOCK_PARAMS, int m, int4 brick, int d, __global const uchar* states, int* other)
 {
   const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
   const bool same_block = (uint)((brick.x & 7) + x) < 8 && (uint)((brick.y & 7) + y) < 8 &&

@@ -1,0 +1,231 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The search grid [III-A]: rows of particles that may reach a box.
+ *
+ * The search grid has one level for each factor of 2 of support radius that occurs, so that a
+ * particle costs work only where its own support reaches. Particles are sorted by (level, z, y, x)
+ * cell and, in a cell, by position: the order of every sum is fixed by the particles alone. */
+
+typedef struct
+{
+  ulong base;       /* key of the level's cell (0, 0, 0) */
+  int cells[3];     /* extent of the level, in its cells */
+  float inv_cell;   /* 1 / cell size, in fixed-point units */
+  float support;    /* largest support radius of the level's particles, cubes, rounded up */
+  int unused;
+} mcor_level;
+
+#define MCOR_GRID_PARAMS                                                                           \
+  const int particle_count, const int level_count, const int bucket_shift, const int fix_bits,     \
+    __global const mcor_level *levels, __global const int *buckets,                                \
+    __global const ulong *cell_keys, __global const fix *px, __global const fix *py,               \
+    __global const fix *pz, __global const real *p_inv_h, __global const real *p_weight,           \
+    __global const real *p_trim_weight, __global const real *p_value
+
+/* Arrays are padded by 16 elements, so that a vector load may run over the end. */
+typedef struct
+{
+  int particle_count, level_count, bucket_shift, fix_bits;
+  real unit;
+  __global const mcor_level* levels;
+  __global const int* buckets;     /* first particle with cell key >= bucket << bucket_shift */
+  __global const ulong* cell_keys; /* sorted */
+  __global const fix *px, *py, *pz;
+  __global const real* inv_h;       /* 1 / (h scale * smoothing length), per cube */
+  __global const real* weight;      /* V norm / (scaled h)^3; 0 for solids */
+  __global const real* trim_weight; /* the same, solids included */
+  __global const real* value;       /* A - A0 */
+} mcor_grid;
+
+#define MCOR_GRID                                                                                  \
+  {                                                                                                \
+    particle_count, level_count, bucket_shift, fix_bits, ldexp((real)1, -fix_bits), levels,        \
+      buckets, cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                    \
+  }
+
+/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. */
+int mcor_cell_of(fix x, float inv_cell)
+{
+  return (int)floor((float)x * inv_cell);
+}
+
+/* Index of the first particle whose cell key is >= key. */
+int mcor_first_particle(const mcor_grid* grid, ulong key)
+{
+  const ulong bucket = key >> grid->bucket_shift;
+  int low = grid->buckets[bucket];
+  if (grid->bucket_shift == 0)
+  {
+    return low;
+  }
+  int high = grid->buckets[bucket + 1];
+  while (low < high)
+  {
+    const int middle = low + (high - low) / 2;
+    if (grid->cell_keys[middle] < key)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/* All particles that may reach the box [low, high], row by row of search cells. */
+typedef struct
+{
+  fix low[3], high[3];
+  real center[3], half_size[3]; /* cubes, relative to low */
+  float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
+  float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
+  int level, first[3], last[3], y, z;
+  int begin, end; /* particles left of the current row */
+} mcor_query;
+
+/* A level whose rows in reach outnumber its particles is taken as one run, so that a coarse particle
+ * does not walk through the empty rows of fine levels. */
+void mcor_query_sparse_level(const mcor_grid* grid, mcor_query* query, const mcor_level* level)
+{
+  const long rows =
+    (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1);
+  if (rows <= 64)
+  {
+    return;
+  }
+  const ulong cells = (ulong)level->cells[0] * level->cells[1] * level->cells[2];
+  const int begin = mcor_first_particle(grid, level->base);
+  const int end = mcor_first_particle(grid, level->base + cells);
+  if (end - begin < rows)
+  {
+    query->begin = begin;
+    query->end = end;
+    query->z = query->last[2];
+  }
+}
+
+/* The part of a query that depends on the level; false where the level has no cell in reach. */
+bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
+{
+  const mcor_level level = grid->levels[query->level];
+  const float support = query->radius >= 0 ? query->radius : -query->radius * level.support;
+  const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
+  const fix reach = (fix)far;
+  query->cell_size = 1 / level.inv_cell;
+  query->reach2 = far * far;
+  bool some = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    query->first[a] = max(mcor_cell_of(query->low[a] - reach, level.inv_cell), 0);
+    query->last[a] = min(mcor_cell_of(query->high[a] + reach, level.inv_cell), level.cells[a] - 1);
+    some = some && query->first[a] <= query->last[a];
+  }
+  query->y = query->last[1]; /* as if the row before the first one had just ended */
+  query->z = query->first[2] - 1;
+  query->begin = query->end = 0;
+  if (some)
+  {
+    mcor_query_sparse_level(grid, query, &level);
+  }
+  return some;
+}
+
+/* Moves to the first level from `level` on that has cells in reach. */
+bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int level)
+{
+  query->begin = query->end = 0;
+  for (query->level = level; query->level < grid->level_count; ++query->level)
+  {
+    if (mcor_query_level(grid, query))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    query->half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
+    query->center[a] = query->half_size[a];
+  }
+  mcor_query_next_level(grid, query, 0);
+}
+
+/* Square of the distance between the box and a cell along an axis, less what rounding may have moved
+ * a particle across the cell's face. */
+float mcor_query_distance2(const mcor_query* query, int axis, int cell)
+{
+  const float low = (float)query->low[axis], high = (float)query->high[axis];
+  const float begin = (float)cell * query->cell_size, end = begin + query->cell_size;
+  const float d = fmax(low - end, begin - high) - 1e-6f * (fabs(low) + fabs(high)) - 1;
+  return d > 0 ? d * d : 0;
+}
+
+/* Particles [begin, end) of the current row that may be in reach. */
+void mcor_query_row(const mcor_grid* grid, mcor_query* query)
+{
+  __global const mcor_level* level = grid->levels + query->level;
+  const ulong row = level->base + ((ulong)query->z * level->cells[1] + query->y) * level->cells[0];
+  int first = query->first[0], last = query->last[0];
+#if !MCOR_TENSOR
+  const float rest = query->reach2 - query->z2 - mcor_query_distance2(query, 1, query->y);
+  if (rest < 0)
+  {
+    query->begin = query->end = 0;
+    return;
+  }
+#endif
+  query->begin = mcor_first_particle(grid, row + first);
+  query->end = mcor_first_particle(grid, row + last + 1);
+}
+
+/* Moves to the next row with particles; false at the end. */
+bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
+{
+  while (query->level < grid->level_count)
+  {
+    if (++query->y > query->last[1])
+    {
+      query->y = query->first[1];
+      if (++query->z > query->last[2])
+      {
+        if (mcor_query_next_level(grid, query, query->level + 1) && query->begin < query->end)
+        {
+          return true;
+        }
+        continue;
+      }
+      query->z2 = MCOR_TENSOR ? 0 : mcor_query_distance2(query, 2, query->z);
+    }
+    mcor_query_row(grid, query);
+    if (query->begin < query->end)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Fits the query's box to sorted particles [begin, begin + count); returns the least of their inv_h. */
+real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, int count)
+{
+  real coarsest = grid->inv_h[begin];
+  for (int a = 0; a < 3; ++a)
+  {
+    __global const fix* p = a == 0 ? grid->px : a == 1 ? grid->py : grid->pz;
+    query->low[a] = query->high[a] = p[begin];
+    for (int i = begin + 1; i < begin + count; ++i)
+    {
+      query->low[a] = min(query->low[a], p[i]);
+      query->high[a] = max(query->high[a], p[i]);
+      coarsest = min(coarsest, grid->inv_h[i]);
+    }
+  }
+  return coarsest;
+}

@@ -16,21 +16,37 @@
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 #define FUZZ_PARTICLES 48
-#define FUZZ_CHECK(condition)                                                   \
-  do                                                                            \
-  {                                                                             \
-    if (!(condition))                                                           \
-    {                                                                           \
-      fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, __LINE__, #condition); \
-      abort();                                                                  \
-    }                                                                           \
-  } while (0)
-
 typedef struct fuzz_bytes
 {
   const uint8_t* at;
   size_t left;
 } fuzz_bytes;
+
+/* The input under way, to be written to the file FUZZ_FOUND of the environment where a check fails:
+ * OpenCL drivers take the signal by which the fuzzer would learn of it. */
+static fuzz_bytes fuzz_input;
+
+static void fuzz_fail(const char* condition, int line)
+{
+  fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, line, condition);
+  const char* name = getenv("FUZZ_FOUND");
+  FILE* file = name ? fopen(name, "wb") : NULL;
+  if (file)
+  {
+    fwrite(fuzz_input.at, 1, fuzz_input.left, file);
+    fclose(file);
+  }
+  abort();
+}
+
+#define FUZZ_CHECK(condition)          \
+  do                                   \
+  {                                    \
+    if (!(condition))                  \
+    {                                  \
+      fuzz_fail(#condition, __LINE__); \
+    }                                  \
+  } while (0)
 
 static unsigned fuzz_byte(fuzz_bytes* bytes)
 {
@@ -281,7 +297,7 @@ static mcor_context* fuzz_context(const fuzz_call* call)
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
-  fuzz_bytes bytes = { data, size };
+  fuzz_bytes bytes = fuzz_input = (fuzz_bytes){ data, size };
   fuzz_call call = { .iso = { 0, 0 } };
   fuzz_options(&bytes, &call);
   const unsigned rules = fuzz_byte(&bytes);

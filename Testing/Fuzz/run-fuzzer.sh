@@ -32,7 +32,7 @@ cmake -S "$here/../.." -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_C
 cmake --build "$build" --target fuzz_extract > "$build/build.log" || { cat "$build/build.log"; exit 1; }
 
 # Leaks: OpenCL drivers keep memory until the process ends.
-export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export FUZZ_FOUND=$build/found/failed-check ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 "$(find "$build" -name fuzz_extract -type f -perm -u+x | head -n 1)" -max_total_time="$seconds" \
   -max_len=512 -timeout=60 -rss_limit_mb=6000 -artifact_prefix="$build/found/" -print_final_stats=1 \
   "$build/corpus" "$here/corpus"

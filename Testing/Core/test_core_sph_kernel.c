@@ -19,7 +19,7 @@ static const char source[] =
   "  const realv x = offset[3 * i], y = offset[3 * i + 1], z = offset[3 * i + 2];\n"
   "  realv gx, gy, gz;\n"
   "  const realv w = mcor_weight_gradient(x, y, z, inv_h, &gx, &gy, &gz);\n"
-  "  const realv plain = mcor_weight(mcor_planar(x, y, inv_h), z, inv_h);\n"
+  "  const realv plain = mcor_weight(mcor_planar(x, y, inv_h), mcor_height(z, inv_h), inv_h);\n"
   "  out[5 * i] = MCOR_GET(w, MCOR_LANES - 1) * MCOR_NORM;\n"
   "  out[5 * i + 1] = MCOR_GET(plain, 0) * MCOR_NORM;\n"
   "  out[5 * i + 2] = MCOR_GET(gx, 0) * MCOR_NORM;\n"

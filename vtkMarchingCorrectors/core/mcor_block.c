@@ -66,6 +66,11 @@ static mcor_status mcor_divide_cubes(
     MCOR_BUFFER(&bricks->quiet), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]),
     MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &children));
+  MCOR_RETURN_IF((int64_t)children + added > INT32_MAX / MCOR_BLOCK_BRICKS, context,
+    MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large: there may be surface in %lld cubes of %d cells along each axis, and "
+    "%d is the limit. Use a larger cube size.",
+    (long long)children + added, MCOR_BLOCK_CUBES << finer.level, INT32_MAX / MCOR_BLOCK_BRICKS);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)children + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
@@ -122,11 +127,6 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);
-  MCOR_RETURN_IF(bricks->block_count > INT32_MAX / MCOR_BLOCK_BRICKS, context,
-    MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large: in %d blocks of 32^3 cells there may be surface. Use a larger "
-    "cube size.",
-    bricks->block_count);
   MCOR_TRY(mcor_test_cubes(context, iso, &cubes));
   return mcor_keep_bricks(context);
 }

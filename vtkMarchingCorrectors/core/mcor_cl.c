@@ -260,12 +260,18 @@ static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char*
     kernels[k].tensor, (int)build->field, build->solids);
 }
 
+static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
+{
+  return a->sph_kernel == b->sph_kernel && a->field == b->field && a->precision == b->precision &&
+    a->solids == b->solids;
+}
+
 mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
   const int lanes = mcor_lanes(cl, build->precision);
   cl->build_seconds = 0;
-  if (cl->program && cl->lanes == lanes && memcmp(&cl->build, build, sizeof *build) == 0)
+  if (cl->program && cl->lanes == lanes && mcor_same_build(&cl->build, build))
   {
     return MCOR_OK;
   }

@@ -53,14 +53,14 @@ class Data:
 # The totals are those printed in the paper, also where they are not the sum of the rows above them.
 PAPER = {
     "rings": Data(
-        "I", "vortex rings", sets.vortex_rings, 10000000, "VorticityMagnitude", 50, True, 20,
+        "I", "vortex rings", sets.vortex_rings, 10000000, "VorticityMagnitude", 50, 20,
         grid=(1.13, 1.13, 1.4, 1.4, 2.15, 2.15),
         seeds=(0.72, 0.72, 0.55, 0.55, 0.35, 0.35),
         preview=(3.48, 0.73, 2.90, 0.59, 1.94, 0.39),
         total=(4.20, 1.45, 3.45, 1.14, 2.29, 0.74)),
     "tsunami": Data(
         "II", "tsunami: a tank with 200 neighbours", sets.dense_tank, 1200000, "Pressure", 5500,
-        False, 2500,
+        2500,
         grid=(0.08, 0.08, 0.1, 0.1, 0.16, 0.16),
         seeds=(0.7, 0.7, 0.36, 0.36, 0.17, 0.17),
         preview=(2.65, 0.5, 1.72, 0.34, 0.94, 0.19),
@@ -72,7 +72,7 @@ PAPER = {
         lengths=((0.000218, 0.000807), (0.009890, 0.018360), (0.000402, 0.001253))),
     "dam": Data(
         "III", "dam break: variable smoothing length", sets.dam_break, 670000, "Lambda2", -170,
-        False, -100,
+        -100,
         grid=(0.07, 0.07, 0.1, 0.1, 0.17, 0.17),
         seeds=(0.08, 0.08, 0.05, 0.05, 0.04, 0.04),
         preview=(0.73, 0.17, 0.54, 0.13, 0.38, 0.09),

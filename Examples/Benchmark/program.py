@@ -24,7 +24,7 @@ class Program:
 
     def run(self, path, options, runs=None):
         """Medians of the timed runs: one process that extracts the surface once more than it is
-        timed, each time from scratch. The first run, which loads the OpenCL program, is apart."""
+        timed, each time from scratch but for the OpenCL program. The first, which loads that, is apart."""
         runs = runs or self.runs
         key = (str(path), tuple(map(str, options)), runs)
         if key not in self.known:

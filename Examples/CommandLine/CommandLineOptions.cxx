@@ -202,7 +202,7 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text, Text v) { o.StatisticsFile = v; } },
     { "--screenshot", "FILE.png", "write a picture of the surface (may need a display)",
       [](Options& o, Text, Text v) { o.PictureFile = v; } },
-    { "--repeat", "N", "run N times from scratch, statistics of each (default 1)",
+    { "--repeat", "N", "run N times, statistics of each (default 1)",
       [](Options& o, Text n, Text v) { o.Repeat = ToCount(n, v, 1); } },
     { "--quiet", "", "print errors and warnings only",
       [](Options& o, Text, Text) { o.Quiet = true; } },

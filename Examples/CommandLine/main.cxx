@@ -159,26 +159,17 @@ struct Run
   double WallSeconds = 0.0;
 };
 
-/// One run from scratch. Throws std::runtime_error with the filter's sentence.
-Run Extract(const CommandLineOptions& options, vtkPointSet* particles, MessageCapture* messages)
+/// One run, from scratch but for the program on the device. Throws std::runtime_error with the
+/// filter's sentence.
+Run Extract(vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages)
 {
   messages->Clear();
-  vtkNew<vtkMarchingCorrectors> filter;
-  SetParticles(filter, options, particles);
-  SetContour(filter, options);
-  SetMethod(filter, options);
-  filter->SetInputData(particles);
-  const bool progress = !options.Quiet && IsTerminal(stderr);
-  if (progress)
-  {
-    vtkNew<vtkCallbackCommand> observer;
-    observer->SetCallback(ShowProgress);
-    filter->AddObserver(vtkCommand::ProgressEvent, observer);
-  }
+  filter->ReleaseDeviceMemory();
+  filter->Modified();
   const auto start = std::chrono::steady_clock::now();
   filter->Update();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (progress)
+  if (!options.Quiet && IsTerminal(stderr))
   {
     std::fputs("\r\033[K", stderr);
   }
@@ -188,7 +179,9 @@ Run Extract(const CommandLineOptions& options, vtkPointSet* particles, MessageCa
     throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
   }
   Run run;
-  run.Surface = filter->GetOutput();
+  run.Surface = vtkSmartPointer<vtkPolyData>::New();
+  run.Surface->ShallowCopy(filter->GetOutput());
+  filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
   run.WallSeconds = elapsed.count();
   return run;
 }
@@ -254,13 +247,24 @@ void Execute(const CommandLineOptions& options)
     }
   }
   vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Input, messages);
+  vtkNew<vtkMarchingCorrectors> filter;
+  SetParticles(filter, options, particles);
+  SetContour(filter, options);
+  SetMethod(filter, options);
+  filter->SetInputData(particles);
+  if (!options.Quiet && IsTerminal(stderr))
+  {
+    vtkNew<vtkCallbackCommand> observer;
+    observer->SetCallback(ShowProgress);
+    filter->AddObserver(vtkCommand::ProgressEvent, observer);
+  }
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
   std::vector<double> wallSeconds;
   vtkSmartPointer<vtkPolyData> surface;
   for (int i = 0; i < options.Repeat; ++i)
   {
-    surface = nullptr; // not two at once: the peak of memory is a statistic
-    Run run = Extract(options, particles, messages);
+    surface = nullptr;
+    Run run = Extract(filter, options, messages);
     surface = run.Surface;
     runs.emplace_back(surface->GetFieldData());
     wallSeconds.push_back(run.WallSeconds);

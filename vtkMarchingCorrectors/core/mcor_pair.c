@@ -8,12 +8,13 @@
 static mcor_status mcor_mark(mcor_context* context, double iso, int mark_cells)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int lanes = context->cl.lanes;
-  return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY,
-    (context->grid.count + lanes - 1) / lanes, MCOR_GRID_ARGS(context), MCOR_BRICK_ARGS(context),
-    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(&bricks->bits),
-    MCOR_BUFFER(&bricks->now.cells));
+  const int lanes = context->cl.lanes, items = (context->grid.count + lanes - 1) / lanes;
+  mcor_buffer* has_pairs = &context->scratch[3]; /* from one launch to the next */
+  MCOR_TRY(mcor_reserve(context, has_pairs, (size_t)items));
+  return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_LIGHT, items, MCOR_GRID_ARGS(context),
+    MCOR_BRICK_ARGS(context), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(has_pairs),
+    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells));
 }
 
 /* The bricks in which cells will be marked. iso: relative to A0. */

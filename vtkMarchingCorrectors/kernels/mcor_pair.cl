@@ -101,8 +101,8 @@ int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_ti
 }
 
 /* Marks for particle j and the particles of the tile that pair with it: the cells on the lines, or the
- * bricks of the box around these. */
-void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
+ * bricks of the box around these. Returns whether there are any. */
+bool mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
   const mcor_tile* tile, int j, real iso, real h_scale, int mark_cells,
   __global uint* asked, __global uint* cells)
 {
@@ -139,16 +139,18 @@ void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mco
   {
     mcor_pair_ask_bricks(MCOR_BLOCK_ARGS, low, high, asked);
   }
+  return count > 0;
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
- * each. mark_cells 0: asks for bricks for pairs that straddle the iso value; 1: marks cells. */
+ * each. mark_cells 0: asks for bricks for pairs that straddle the iso value, and writes whether there
+ * are any; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
-  const real iso, const real h_scale, const int mark_cells, __global uint* asked,
-  __global uint* cells)
+  const real iso, const real h_scale, const int mark_cells, __global uchar* has_pairs,
+  __global uint* asked, __global uint* cells)
 {
-  const int begin = get_global_id(0) * MCOR_LANES;
-  if (begin >= particle_count)
+  const int item = get_global_id(0), begin = item * MCOR_LANES;
+  if (begin >= particle_count || (mark_cells && !has_pairs[item]))
   {
     return;
   }
@@ -157,8 +159,10 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
   mcor_query query;
   const real coarsest = mcor_query_particles(&grid, &query, begin, end - begin);
   query.radius = (float)(MCOR_PAIR_REACH / (coarsest * h_scale));
+  bool some = false;
   if (mcor_query_sides(&grid, &query, sides) != 3)
   {
+    has_pairs[item] = 0;
     return;
   }
   mcor_tile tile;
@@ -170,11 +174,12 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
     {
       if (!MCOR_SOLIDS || p_weight[j] != 0)
       {
-        mcor_pair_mark_particle(
+        some |= mcor_pair_mark_particle(
           &grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, asked, cells);
       }
     }
   }
+  has_pairs[item] = some;
 }
 
 /* Per cell of a brick: whether its lower face across an axis is crossed, i.e. has nodes on both

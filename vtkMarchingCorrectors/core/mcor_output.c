@@ -360,12 +360,30 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   return MCOR_OK;
 }
 
+/* Gives back what only making the mesh needed, so that the output finds room. */
+static void mcor_release_construction(mcor_context* context)
+{
+  mcor_mesh* m = &context->mesh;
+  mcor_buffer* const buffers[] = { &m->edges, &m->ends, &m->evaluations, &m->remaining, &m->cuts,
+    &m->cut_keys, &m->cut_distinct, &m->cut_index, &context->bricks.need };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+}
+
 /* Appends the mesh of one iso value to the surface. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
 {
   mcor_download download = { 0 };
+  mcor_release_construction(context);
   const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
   const mcor_status unmapped = mcor_unmap_vertices(context, &download);
+  for (size_t i = 0; i < sizeof context->out / sizeof context->out[0]; ++i)
+  {
+    mcor_release(context, &context->out[i]);
+  }
+  mcor_release(context, &context->attributes);
   return status != MCOR_OK ? status : unmapped;
 }

@@ -167,6 +167,10 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCaptu
   {
     throw std::runtime_error(file + " holds no points");
   }
+  if (vtkPolyData* polyData = vtkPolyData::SafeDownCast(points))
+  {
+    polyData->SetVerts(nullptr); // one per particle, for nothing
+  }
   return points;
 }
 

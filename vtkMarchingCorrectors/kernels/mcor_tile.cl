@@ -49,6 +49,10 @@ void mcor_tile_init(mcor_tile* tile)
   tile->complete = false;
 }
 
+#ifndef __has_builtin
+#define __has_builtin(name) 0
+#endif
+
 /* The lanes of a group of particles that are kept, as a mask, and their packing into an array's
  * next elements. The array needs room for MCOR_LANES elements. */
 #if MCOR_LANES == 1

@@ -186,6 +186,25 @@ static void mcor_read_stage_chunk(mcor_context* context, const mcor_input* input
   }
 }
 
+/* A volume that is huge against the smoothing length would make infinite weights on the device. */
+static mcor_status mcor_check_sizes(
+  mcor_context* context, const mcor_input* input, const mcor_stage_chunk* chunk)
+{
+  const bool single = context->cl.real_size == sizeof(float);
+  const double limit = single ? 1e30 : 1e290;
+  const double scaled_cube = context->lattice.cube / context->options->h_scale;
+  for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
+  {
+    const double inv_h = scaled_cube / chunk->h[i];
+    MCOR_RETURN_IF(!(chunk->size[i] * inv_h * inv_h * inv_h < limit), context, MCOR_INVALID_DATA,
+      "The volume of particle %lld is %.3g times the cube of its smoothing length, too much for %s "
+      "precision. Correct it or remove such particles.",
+      (long long)chunk->source[i], chunk->size[i] * inv_h * inv_h * inv_h,
+      single ? "single" : "double");
+  }
+  return MCOR_OK;
+}
+
 /* Drops particles that are not used. */
 static void mcor_pack_stage_chunk(
   const mcor_context* context, const mcor_input* input, mcor_stage_chunk* chunk)
@@ -251,6 +270,7 @@ static mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mc
     {
       mcor_pack_stage_chunk(context, input, &chunk);
     }
+    MCOR_TRY(mcor_check_sizes(context, input, &chunk));
     mcor_put_stage_chunk(context, input, &chunk, staging);
   }
   return MCOR_OK;

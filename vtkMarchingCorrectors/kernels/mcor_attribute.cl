@@ -5,6 +5,9 @@
 
 #define MCOR_ATTRIBUTE_LIMIT 8
 
+/* A lower sum of weights has no digits that could be divided by. */
+#define MCOR_LEAST_SUM ((real)1e-30f)
+
 /* Points relative to a query's box. */
 void mcor_attribute_points(const mcor_grid* grid, const mcor_query* query,
   const mcor_points* points, realv* x, realv* y, realv* z)
@@ -67,7 +70,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
     for (int c = 0; c < attribute_count; ++c)
     {
       out[(begin + lane) * (long)attribute_count + c] =
-        weight != 0 ? MCOR_GET(sums[c], lane) / weight : (real)0;
+        fabs(weight) > MCOR_LEAST_SUM ? MCOR_GET(sums[c], lane) / weight : (real)0;
     }
   }
 }

@@ -65,19 +65,18 @@ extern "C"
   /* What is contoured. V: particle volume, A: scalar, W: kernel. */
   typedef enum mcor_field
   {
-    MCOR_SHEPARD = 0, /* sum V A W / sum V W; the default */
-    MCOR_SUM = 1, /* sum V A W, the paper's field; 0 in all empty space, so iso value 0 with node
-                         * threshold 0 gives no sensible surface */
+    MCOR_SHEPARD = 0,   /* sum V A W / sum V W; the default */
+    MCOR_SUM = 1,       /* sum V A W, the paper's field; 0 in all empty space, so iso value 0 with
+                         * node threshold 0 gives no sensible surface */
     MCOR_WEIGHT_SUM = 2 /* sum V W: the free surface; needs no scalar, applies no threshold */
   } mcor_field;
 
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* every cell that a bound cannot exclude is examined; nothing is missed */
-    MCOR_PAIRS =
-      1 /* the paper's: cells between pairs of particles no farther apart than the smoothing
-                    * length (not scaled) that straddle the iso value; the same as complete for
-                    * MCOR_WEIGHT_SUM, which has no values at particles */
+    MCOR_PAIRS = 1     /* the paper's: cells between pairs of particles no farther apart than the
+                        * smoothing length (not scaled) that straddle the iso value; the same as
+                        * complete for MCOR_WEIGHT_SUM, which has no values at particles */
   } mcor_seed_mode;
 
   /* How the nodes of an ambiguous face (two above the iso value and two below, diagonally) and the
@@ -85,9 +84,9 @@ extern "C"
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
-    MCOR_TOPOLOGY_FIELD = 1 /* as the field is at the saddle of the face's bilinear interpolant, and
-                              * at those of the cell's trilinear one: bridges and tunnels as wide as a
-                              * cube are those of the field */
+    MCOR_TOPOLOGY_FIELD = 1  /* as the field is at the saddle of the face's bilinear interpolant, and
+                              * at those of the cell's trilinear one: bridges and tunnels as wide as
+                              * a cube are those of the field */
   } mcor_topology;
 
   /* How trimming tells where the fluid ends. Both are about 1 inside and have no unit. */
@@ -178,9 +177,8 @@ extern "C"
     double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;     /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;     /* of the field evaluation on the device; MCOR_FLOAT32 by default */
-    int64_t
-      memory_limit; /* bytes of device memory in use and kept, >= 0; 0: all that there is. What is
-                           * kept for reuse is given back before a run fails for want of memory. */
+    int64_t memory_limit;    /* bytes of device memory in use and kept, >= 0; 0: all there is. What
+                              * is kept for reuse is given back before a run fails for want of it. */
 
     /* What the surface carries besides points and triangles. */
     int normals; /* default on */

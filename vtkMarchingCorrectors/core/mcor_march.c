@@ -13,8 +13,7 @@ static mcor_status mcor_evaluate_nodes(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_INT(!mcor_uses_pairs(context)), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->need)));
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
   /* One item per brick where one gathers for many lanes, else one per node. */
   const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
   return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),

@@ -8,15 +8,6 @@
 /* A lower sum of weights has no digits that could be divided by. */
 #define MCOR_LEAST_SUM ((real)1e-30f)
 
-/* Points relative to a query's box. */
-void mcor_attribute_points(const mcor_grid* grid, const mcor_query* query,
-  const mcor_points* points, realv* x, realv* y, realv* z)
-{
-  *x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
-  *y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
-  *z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
-}
-
 /* One work-item = one group of points. Reads `attribute_count` (at most MCOR_ATTRIBUTE_LIMIT) sorted
  * arrays, one after the other. Writes their Shepard means. */
 __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
@@ -28,15 +19,14 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   {
     return;
   }
-  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  int unused[MCOR_LANES];
-  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
-  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
-  realv x, y, z, sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
-  mcor_attribute_points(&grid, &query, &points, &x, &y, &z);
+  int begin;
+  const int count =
+    mcor_group_load(groups, group, node, offset, 0, fix_bits, &begin, &points, &query);
+  realv at[3], d[3], sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
+  mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < attribute_count; ++c)
   {
     sums[c] = 0;
@@ -48,9 +38,9 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
     realv weight[MCOR_TILE];
     for (int i = 0; i < tile.count; ++i)
     {
-      const realv planar = mcor_planar(
-        (x - tile.x[i]) + points.ox, (y - tile.y[i]) + points.oy, tile.inv_h[i]);
-      const realv height = mcor_height((z - tile.z[i]) + points.oz, (realv)tile.inv_h[i]);
+      mcor_points_from(at, &points, &tile, i, d);
+      const realv planar = mcor_planar(d[0], d[1], tile.inv_h[i]);
+      const realv height = mcor_height(d[2], (realv)tile.inv_h[i]);
       weight[i] = tile.weight[i] * mcor_weight(planar, height, tile.inv_h[i]);
       w += weight[i];
     }
@@ -64,7 +54,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
       sums[c] = sum;
     }
   }
-  for (int lane = 0; begin + lane < end; ++lane)
+  for (int lane = 0; lane < count; ++lane)
   {
     const real weight = MCOR_GET(w, lane);
     for (int c = 0; c < attribute_count; ++c)
@@ -79,8 +69,8 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
 void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   realv* least, fixv* index)
 {
-  realv x, y, z;
-  mcor_attribute_points(grid, query, points, &x, &y, &z);
+  realv at[3], d[3];
+  mcor_points_relative(grid, query, points, at);
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
@@ -91,9 +81,8 @@ void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_
       {
         continue;
       }
-      const realv dx = (x - tile.x[i]) + points->ox, dy = (y - tile.y[i]) + points->oy,
-                  dz = (z - tile.z[i]) + points->oz;
-      const realv r2 = dx * dx + dy * dy + dz * dz;
+      mcor_points_from(at, points, &tile, i, d);
+      const realv r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       *index = r2 < *least ? (fixv)tile.list[i] : *index;
       *least = fmin(*least, r2);
     }
@@ -112,13 +101,12 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   {
     return;
   }
-  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  int unused[MCOR_LANES];
-  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
-  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
+  int begin;
+  const int count =
+    mcor_group_load(groups, group, node, offset, 0, fix_bits, &begin, &points, &query);
   realv least = MAXFLOAT;
   fixv index = -1;
   mcor_attribute_nearer(&grid, &query, &points, &least, &index);
@@ -134,7 +122,7 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
     query.radius = none ? fmax(query.radius, levels[0].support + 2) : query.radius;
     mcor_attribute_nearer(&grid, &query, &points, &least, &index);
   }
-  for (int lane = 0; begin + lane < end; ++lane)
+  for (int lane = 0; lane < count; ++lane)
   {
     const int j = (int)MCOR_GET_FIX(index, lane);
     nearest[begin + lane] = j < 0 ? -1 : order[j];

@@ -8,13 +8,6 @@
  *
  * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
 
-/* Position of a cube of a level, in such cubes. */
-int4 mcor_cube_of_key(ulong key, const int cubes_x, const int cubes_y)
-{
-  return (int4)((int)(key % cubes_x), (int)(key / cubes_x % cubes_y),
-    (int)(key / cubes_x / cubes_y), 0);
-}
-
 /* One work-item = one cube of the first level, all of which exist. Writes its key. */
 __kernel void mcor_block_all(const int count, __global ulong* keys)
 {
@@ -36,7 +29,7 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int4 cube = mcor_cube_of_key(keys[i], cubes_x, cubes_y) * size;
+  const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y) * size;
   mcor_query query;
   mcor_seed_box(&query, cube.x, cube.y, cube.z, size - 1, fix_bits);
   states[i] = (uchar)mcor_seed_state(&grid, &query, true, sides, iso, node_threshold);
@@ -52,7 +45,7 @@ __kernel void mcor_block_quiet(
   {
     return;
   }
-  const int4 cube = mcor_cube_of_key(block_keys[i], blocks_x, blocks_y);
+  const int4 cube = mcor_block_of_key(block_keys[i], blocks_x, blocks_y);
   int seen = 1 << states[i];
   for (int d = 0; d < 27; ++d)
   {
@@ -80,7 +73,7 @@ __kernel void mcor_block_count(const int count, const int cubes_x, const int cub
   {
     return;
   }
-  const int4 cube = mcor_cube_of_key(keys[i], cubes_x, cubes_y);
+  const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
   int children = 0;
   for (int c = 0; c < 8 && !quiet[i]; ++c)
   {
@@ -99,7 +92,7 @@ __kernel void mcor_block_fill(const int count, const int cubes_x, const int cube
   {
     return;
   }
-  const int4 cube = mcor_cube_of_key(keys[i], cubes_x, cubes_y);
+  const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
   int to = scanned[i];
   for (int c = 0; c < 8 && to < scanned[i + 1]; ++c)
   {

@@ -107,39 +107,20 @@ realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
     (real)2 * (m->xy * e[0] * e[1] + m->yz * e[1] * e[2] + m->zx * e[2] * e[0]);
 }
 
-/* Points relative to the query's box, exact as in mcor_evaluate. */
-void mcor_boundary_relative(
-  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
-{
-  at[0] = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
-  at[1] = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
-  at[2] = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
-}
-
-/* Offset u of the points from particle j. */
-void mcor_boundary_offset(const mcor_grid* grid, const mcor_query* query, const mcor_points* points,
-  const realv at[3], int j, realv u[3])
-{
-  u[0] = (at[0] - (real)(grid->px[j] - query->low[0]) * grid->unit) + points->ox;
-  u[1] = (at[1] - (real)(grid->py[j] - query->low[1]) * grid->unit) + points->oy;
-  u[2] = (at[2] - (real)(grid->pz[j] - query->low[2]) * grid->unit) + points->oz;
-}
-
 /* M at all points, over the particles of the trimming weight. */
 void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, mcor_symmetric* m)
 {
   realv at[3], u[3], gx, gy, gz;
   m->xx = m->yy = m->zz = m->xy = m->yz = m->zx = 0;
-  mcor_boundary_relative(grid, query, points, at);
+  mcor_points_relative(grid, query, points, at);
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      const int j = tile->list[i];
-      mcor_boundary_offset(grid, query, points, at, j, u);
-      mcor_weight_gradient(u[0], u[1], u[2], grid->inv_h[j], &gx, &gy, &gz);
-      const real v = grid->trim_weight[j], half_v = (real)0.5 * v;
+      mcor_points_from(at, points, tile, i, u);
+      mcor_weight_gradient(u[0], u[1], u[2], tile->inv_h[i], &gx, &gy, &gz);
+      const real v = MCOR_TILE_TRIM(tile)[i], half_v = (real)0.5 * v;
       m->xx -= v * (u[0] * gx);
       m->yy -= v * (u[1] * gy);
       m->zz -= v * (u[2] * gz);
@@ -159,19 +140,18 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
   realv at[3], e[3], u[3], g[3], d[3], sum[3] = { 0, 0, 0 };
   mcor_boundary_matrix(grid, query, tile, points, &m);
   boundary->value = mcor_eigen_smallest(&m, e);
-  mcor_boundary_relative(grid, query, points, at);
+  mcor_points_relative(grid, query, points, at);
   for (bool first = true; want_gradient && mcor_tile_next(grid, query, tile, first); first = false)
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      const int j = tile->list[i];
-      mcor_boundary_offset(grid, query, points, at, j, u);
-      mcor_weight_second(u, grid->inv_h[j], e, g, d);
+      mcor_points_from(at, points, tile, i, u);
+      mcor_weight_second(u, tile->inv_h[i], e, g, d);
       const realv along_u = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
       const realv along_g = e[0] * g[0] + e[1] * g[1] + e[2] * g[2];
       for (int a = 0; a < 3; ++a)
       {
-        sum[a] -= grid->trim_weight[j] * (e[a] * along_g + along_u * d[a]);
+        sum[a] -= MCOR_TILE_TRIM(tile)[i] * (e[a] * along_g + along_u * d[a]);
       }
     }
   }
@@ -190,18 +170,17 @@ __kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
   {
     return;
   }
-  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   mcor_tile tile;
   mcor_boundary_at boundary;
-  int unused[MCOR_LANES];
-  mcor_points_load(node, begin, end, fix_bits, &points, &query, unused);
-  mcor_points_load_offsets(offset, begin, end, 0, fix_bits, &points, &query);
+  int begin;
+  const int count =
+    mcor_group_load(groups, group, node, offset, 0, fix_bits, &begin, &points, &query);
   mcor_tile_init(&tile);
   mcor_evaluate_boundary(&grid, &query, &tile, &points, false, &boundary);
-  for (int lane = 0; begin + lane < end; ++lane)
+  for (int lane = 0; lane < count; ++lane)
   {
     eigenvalue[begin + lane] = MCOR_GET(boundary.value, lane);
   }

@@ -65,18 +65,20 @@ int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
 
+/* Position of a block, in blocks. */
+int4 mcor_block_of_key(ulong key, const int blocks_x, const int blocks_y)
+{
+  return (int4)((int)(key % blocks_x), (int)(key / blocks_x % blocks_y),
+    (int)(key / blocks_x / blocks_y), 0);
+}
+
 /* Brick coordinates of mark number m. */
 int4 mcor_brick_of_mark(
   __global const ulong* block_keys, const int blocks_x, const int blocks_y, int m)
 {
-  const ulong key = block_keys[m / MCOR_BLOCK_BRICKS];
   const int local_brick = m % MCOR_BLOCK_BRICKS;
-  int4 brick;
-  brick.x = (int)(key % blocks_x) * 8 + (local_brick & 7);
-  brick.y = (int)(key / blocks_x % blocks_y) * 8 + ((local_brick >> 3) & 7);
-  brick.z = (int)(key / blocks_x / blocks_y) * 8 + (local_brick >> 6);
-  brick.w = 0;
-  return brick;
+  return mcor_block_of_key(block_keys[m / MCOR_BLOCK_BRICKS], blocks_x, blocks_y) * 8 +
+    (int4)(local_brick & 7, local_brick >> 3 & 7, local_brick >> 6, 0);
 }
 
 /* Asks for the brick with mark number m; true if nothing had asked for it before. It has no slot until

@@ -128,6 +128,38 @@ void mcor_points_load_offsets(__global const real4* offset, int begin, int end, 
   mcor_points_extend(query, 2, low.z - margin, high.z + margin, fix_bits);
 }
 
+/* Loads group number `group` of points and their offsets, and fits the query to them, `margin` added.
+ * Returns the number of points; they begin at *begin. */
+int mcor_group_load(__global const int* groups, int group, __global const int4* node,
+  __global const real4* offset, real margin, int fix_bits, int* begin, mcor_points* points,
+  mcor_query* query)
+{
+  int unused[MCOR_LANES];
+  const int end = groups[group + 1];
+  *begin = groups[group];
+  mcor_points_load(node, *begin, end, fix_bits, points, query, unused);
+  mcor_points_load_offsets(offset, *begin, end, margin, fix_bits, points, query);
+  return end - *begin;
+}
+
+/* The points' nodes from the query's low corner, as particles are in a tile. */
+void mcor_points_relative(
+  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
+{
+  at[0] = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
+  at[1] = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
+  at[2] = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
+}
+
+/* Where the points are from particle i of the tile; `at` is of mcor_points_relative. */
+void mcor_points_from(
+  const realv at[3], const mcor_points* points, const mcor_tile* tile, int i, realv d[3])
+{
+  d[0] = (at[0] - tile->x[i]) + points->ox;
+  d[1] = (at[1] - tile->y[i]) + points->oy;
+  d[2] = (at[2] - tile->z[i]) + points->oz;
+}
+
 /* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
 void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, real iso, mcor_field_at* at)
@@ -136,18 +168,14 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
 #if MCOR_SOLIDS
   realv t = 0, tx = 0, ty = 0, tz = 0;
 #endif
-  const realv x = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
-  const realv y = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
-  const realv z = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
+  realv at_node[3], d[3], gx, gy, gz;
+  mcor_points_relative(grid, query, points, at_node);
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      const realv dx = (x - tile->x[i]) + points->ox;
-      const realv dy = (y - tile->y[i]) + points->oy;
-      const realv dz = (z - tile->z[i]) + points->oz;
-      realv gx, gy, gz;
-      const realv k = mcor_weight_gradient(dx, dy, dz, tile->inv_h[i], &gx, &gy, &gz);
+      mcor_points_from(at_node, points, tile, i, d);
+      const realv k = mcor_weight_gradient(d[0], d[1], d[2], tile->inv_h[i], &gx, &gy, &gz);
       const real m = tile->weight[i];
 #if MCOR_FIELD == 0
       const real c = m * (tile->value[i] - iso);

@@ -8,10 +8,10 @@
  * over voids without any fluid, and rounding noise of a kernel's rim would count as a value. */
 #define MCOR_LEAST_WEIGHT ((real)1e-3)
 
-/* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need (rounded up
- * to whole planes of 16) or all, less those that are known. */
+/* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
+ * are not yet known, rounded up to whole planes of 16. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
-  __global const ulong* cells, const int all, __global const ulong* known, __global ulong* need)
+  __global const ulong* cells, __global const ulong* known, __global ulong* need)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -32,7 +32,7 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   ulong planes = 0;
   for (int z = 0; z < 4; ++z)
   {
-    planes |= (all || (m[0] >> (16 * z) & MCOR_LOW_Z)) ? MCOR_LOW_Z << (16 * z) : 0;
+    planes |= (m[0] >> (16 * z) & MCOR_LOW_Z) ? MCOR_LOW_Z << (16 * z) : 0;
   }
   need[slot] = planes & ~known[slot];
 }

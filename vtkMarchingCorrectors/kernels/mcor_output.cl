@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a surface carries [III-D.4]: compaction, normals, attributes. */
+/* What a surface carries [III-D.4]: compaction, normals. */
 
 /* One work-item = one vertex. Reads the vertex and the scanned uses. Writes it to its final place:
  * node with flag, offset, normal (zero where the gradient vanishes), gradient, and the three numbers

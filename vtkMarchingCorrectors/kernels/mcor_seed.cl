@@ -219,10 +219,6 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
       return of_sides[seen];
     }
   }
-  const int empty = MCOR_FIELD != 2 && node_threshold > 0 ? MCOR_VOID
-    : (MCOR_FIELD == 0)                                   ? MCOR_VOID
-    : iso <= 0                                            ? MCOR_ABOVE
-                                                          : MCOR_BELOW;
   mcor_bound bound = { 0, 0, 0 };
   bool from_below = false;
   int seen = 0, found = 0;
@@ -248,7 +244,8 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
   }
   if (found == 0)
   {
-    return empty;
+    const bool is_void = MCOR_FIELD == 0 || (MCOR_FIELD == 1 && node_threshold > 0);
+    return is_void ? MCOR_VOID : iso <= 0 ? MCOR_ABOVE : MCOR_BELOW;
   }
   if (MCOR_RANGE_DECIDES && seen != 3)
   {

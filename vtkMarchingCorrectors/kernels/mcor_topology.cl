@@ -128,18 +128,17 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   {
     return;
   }
-  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   mcor_field_at at;
   mcor_tile tile;
-  int unused[MCOR_LANES];
-  mcor_points_load(sample_node, begin, end, fix_bits, &points, &query, unused);
-  mcor_points_load_offsets(sample_offset, begin, end, 0, fix_bits, &points, &query);
+  int begin;
+  const int count = mcor_group_load(
+    groups, group, sample_node, sample_offset, 0, fix_bits, &begin, &points, &query);
   mcor_tile_init(&tile);
   mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
-  for (int lane = 0; begin + lane < end; ++lane)
+  for (int lane = 0; lane < count; ++lane)
   {
     const real value = MCOR_GET(at.value, lane);
     side[begin + lane] = (uchar)(value == (real)1e30f

@@ -226,16 +226,15 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   {
     return;
   }
-  const int begin = groups[group], end = groups[group + 1];
   mcor_points points;
   mcor_query query;
   mcor_field_at at;
-  int borders[MCOR_LANES];
-  mcor_points_load(node, begin, end, grid->fix_bits, &points, &query, borders);
-  mcor_points_load_offsets(offset, begin, end, MCOR_TRIM_REACH, grid->fix_bits, &points, &query);
+  int begin;
+  const int count = mcor_group_load(
+    groups, group, node, offset, MCOR_TRIM_REACH, grid->fix_bits, &begin, &points, &query);
   const fixv linear = mcor_trim_group(
     grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &at);
-  for (int lane = 0; begin + lane < end; ++lane)
+  for (int lane = 0; lane < count; ++lane)
   {
     mcor_points_store(&points, &at, lane, begin + lane, offset, value, gradient, weight);
     flag[begin + lane] = MCOR_GET_FIX(linear, lane) ? 2 : 1;

@@ -254,12 +254,32 @@ static void test_empty_results(void** state)
   expect_good(*state);
 }
 
+/* Scalars whose range is no finite number: whatever becomes of the surface, nothing breaks. */
+static void test_endless_range(void** state)
+{
+  for (int precision = MCOR_FLOAT32; precision <= MCOR_FLOAT64; ++precision)
+  {
+    bad_call call = make_call();
+    call.options.iso_values = call.iso;
+    call.options.precision = (mcor_type)precision;
+    for (int64_t i = 0; i < call.set.count; ++i)
+    {
+      call.set.scalar[i] = i % 2 ? 1.7e308 : -1.7e308;
+    }
+    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    mcor_free_surface(&surface);
+    free_call(&call);
+  }
+  expect_good(*state);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
     cmocka_unit_test(test_options), cmocka_unit_test(test_missing_arrays),
     cmocka_unit_test(test_components), cmocka_unit_test(test_bad_elements),
     cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
-    cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results) };
+    cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results),
+    cmocka_unit_test(test_endless_range) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

@@ -218,6 +218,36 @@ static void test_nodes_at_iso(void** state)
   core_free_set(&set);
 }
 
+/* The surface around one huge value is found, and ends where the support does. */
+static void test_outlier(void** state)
+{
+  for (int sign = -1; sign <= 1; sign += 2)
+  {
+    core_set set = core_make_block(9, 0, 1, core_ball);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.scalar[i] = i == set.count / 2 ? sign * 1e30 : 0;
+    }
+    const double iso = sign, reach = 2 * set.smoothing_length[0];
+    const mcor_input input = core_input(&set);
+    const mcor_options options = core_options(&iso);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    mesh_report report = core_check_mesh(&surface);
+    CORE_CHECK(report.triangles >= 8 && report.boundary_edges == 0,
+      "sign %d: %lld triangles, %lld boundary edges", sign, (long long)report.triangles,
+      (long long)report.boundary_edges);
+    for (int64_t i = 0; i < surface.point_count; ++i)
+    {
+      const double* x = surface.points + 3 * i;
+      const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+      CORE_CHECK(r > 0.9 * reach && r < 1.01 * reach, "sign %d: a point at distance %g", sign, r);
+    }
+    mesh_free_report(&report);
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
+}
+
 /* Triangles face lower values. */
 static void test_orientation(void** state)
 {
@@ -241,6 +271,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks), cmocka_unit_test(test_sphere),
     cmocka_unit_test(test_torus_and_two_balls), cmocka_unit_test(test_free_surface_is_closed),
-    cmocka_unit_test(test_nodes_at_iso), cmocka_unit_test(test_orientation) };
+    cmocka_unit_test(test_nodes_at_iso), cmocka_unit_test(test_outlier),
+    cmocka_unit_test(test_orientation) };
   return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
 }

@@ -447,54 +447,6 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
     MCOR_INT(to_offset));
 }
 
-#define MCOR_MEDIAN_BINS 4096
-#define MCOR_MEDIAN_PASSES 3
-
-/* About the median of the scalar of fluid particles: a histogram of its range, then of the bin that
- * holds the median, if many are in that bin. Counts do not depend on the order of the particles. */
-static double mcor_scalar_median(const mcor_context* context, const mcor_input* input)
-{
-  double low = context->measure.scalar_min, high = context->measure.scalar_max;
-  int64_t below = 0;
-  for (int pass = 0; pass < MCOR_MEDIAN_PASSES; ++pass)
-  {
-    int64_t bins[MCOR_MEDIAN_BINS] = { 0 };
-    const double width = high / MCOR_MEDIAN_BINS - low / MCOR_MEDIAN_BINS;
-    if (!(width > 0))
-    {
-      break;
-    }
-    double chunk[MCOR_CHUNK];
-    for (int64_t i = 0; i < input->count; ++i)
-    {
-      if (i % MCOR_CHUNK == 0)
-      {
-        const int64_t rest = input->count - i;
-        mcor_read_scalar(input, i, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, chunk);
-      }
-      const double v = chunk[i % MCOR_CHUNK];
-      if ((!input->solid || !input->solid[i]) && v >= low && v <= high)
-      {
-        const int bin = (int)((v - low) / width);
-        ++bins[bin < MCOR_MEDIAN_BINS ? bin : MCOR_MEDIAN_BINS - 1];
-      }
-    }
-    int bin = 0;
-    while (bin < MCOR_MEDIAN_BINS - 1 &&
-      2 * (below + bins[bin]) < context->measure.fluid_count)
-    {
-      below += bins[bin++];
-    }
-    low += bin * width;
-    high = low + width;
-    if (bins[bin] < context->measure.fluid_count / 16)
-    {
-      break;
-    }
-  }
-  return 0.5 * low + 0.5 * high;
-}
-
 /* A Shepard mean shifts with its values. A - A0 with A0 where most values are keeps the digits of a
  * scalar with a large offset, and of one with a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)

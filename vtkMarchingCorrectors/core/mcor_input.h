@@ -31,6 +31,8 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
 
 /* The scalar A of particle i. */
 double mcor_scalar_at(const mcor_input* input, int64_t i);
+/* About the median of the scalar of fluid particles; measured before. */
+double mcor_scalar_median(const mcor_context* context, const mcor_input* input);
 /* One for all particles, from their spacing. */
 double mcor_estimate_smoothing_length(const mcor_input* input);
 /* Smoothing lengths, unscaled, unit L. */

@@ -19,7 +19,8 @@
  *
  * Every function that can fail returns a mcor_status, MCOR_OK being 0; outputs are then empty and
  * safe to free. The library never prints, never exits and keeps no global state. A context may be
- * used by one thread at a time; different contexts by different threads.
+ * used by one thread at a time; different contexts by different threads. mcor_extract has up to 15
+ * threads help it, on the processors that its caller's thread may use; they end before it returns.
  *
  * Lengths are in the unit of the particle positions ("length unit L").
  */

@@ -1,22 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Checks of everything a caller hands in, and what the other phases need to know of it. */
+/* Reading and checking everything a caller hands in. */
 
-#include "mcor_internal.h"
 #include "mcor_input.h"
+#include "mcor_parallel.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-10 cubes. */
-#define MCOR_LATTICE_LIMIT (1 << 20)
-
-/* Support radius in cubes at least: below, no node is likely to see a particle, and search cells would
- * be too many to number. */
-#define MCOR_LEAST_SUPPORT 1e-3
 
 static const char* mcor_array_name(const mcor_array* array, const char* role)
 {
@@ -55,6 +47,53 @@ void mcor_read_array(
       out[i] = (double)data[i * stride];
     }
   }
+}
+
+/* The bits of absolute values are in the order of the values; compilers vectorise their maximum where
+ * they know the stride. */
+static inline double mcor_largest_float(const float* data, int64_t count, int64_t stride)
+{
+  int32_t most = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    int32_t bits;
+    memcpy(&bits, data + i * stride, sizeof bits);
+    bits &= INT32_MAX;
+    most = bits > most ? bits : most;
+  }
+  float value;
+  memcpy(&value, &most, sizeof value);
+  return (double)value;
+}
+
+static inline double mcor_largest_double(const double* data, int64_t count, int64_t stride)
+{
+  int64_t most = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    int64_t bits;
+    memcpy(&bits, data + i * stride, sizeof bits);
+    bits &= INT64_MAX;
+    most = bits > most ? bits : most;
+  }
+  double value;
+  memcpy(&value, &most, sizeof value);
+  return value;
+}
+
+double mcor_largest(const mcor_array* array, int64_t count, int component)
+{
+  const int64_t stride = mcor_components(array);
+  if (!array->data)
+  {
+    return fabs(array->constant);
+  }
+  if (array->type == MCOR_FLOAT64)
+  {
+    return mcor_largest_double((const double*)array->data + component, count, stride);
+  }
+  return stride == 1 ? mcor_largest_float(array->data, count, 1)
+                     : mcor_largest_float((const float*)array->data + component, count, stride);
 }
 
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
@@ -135,25 +174,46 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 #undef MCOR_NEED
 }
 
-/* Whether all elements are finite, and above 0 where they must be; written to be vectorised. */
-static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
+typedef struct mcor_check
 {
+  const mcor_array* array;
+  bool positive;
+  bool illegal[MCOR_SLICES];
+} mcor_check;
+
+/* Whether elements are finite, and above 0 where they must be; written to be vectorised. */
+static void mcor_check_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_check* check = data;
+  const bool positive = check->positive;
   int illegal = 0;
-  if (array->type == MCOR_FLOAT64)
+  if (check->array->type == MCOR_FLOAT64)
   {
-    const double *x = array->data, least = positive ? 0 : -DBL_MAX;
-    for (int64_t i = 0; i < elements; ++i)
+    const double *x = check->array->data, least = positive ? 0 : -DBL_MAX;
+    for (int64_t i = first; i < last; ++i)
     {
       illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > least : x[i] >= least));
     }
   }
   else
   {
-    const float *x = array->data, least = positive ? 0 : -FLT_MAX;
-    for (int64_t i = 0; i < elements; ++i)
+    const float *x = check->array->data, least = positive ? 0 : -FLT_MAX;
+    for (int64_t i = first; i < last; ++i)
     {
       illegal |= !((x[i] <= FLT_MAX) & (positive ? x[i] > least : x[i] >= least));
     }
+  }
+  check->illegal[slice] = illegal;
+}
+
+static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
+{
+  mcor_check check = { .array = array, .positive = positive };
+  const int slices = mcor_parallel_for(elements, MCOR_MEMORY_GRAIN, mcor_check_slice, &check);
+  bool illegal = false;
+  for (int s = 0; s < slices; ++s)
+  {
+    illegal = illegal || check.illegal[s];
   }
   return !illegal;
 }
@@ -293,135 +353,4 @@ void mcor_read_smoothing_length(
   {
     out[i] *= scale;
   }
-}
-
-/* One chunk of the particles, as double. */
-typedef struct mcor_chunk
-{
-  int count;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], scalar[MCOR_CHUNK];
-} mcor_chunk;
-
-static void mcor_read_chunk(
-  const mcor_context* context, const mcor_input* input, int64_t first, mcor_chunk* chunk)
-{
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  chunk->count =
-    input->count - first < MCOR_CHUNK ? (int)(input->count - first) : MCOR_CHUNK;
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_read_array(&positions, first, chunk->count, a, chunk->x[a]);
-  }
-  mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
-  if (context->options->field != MCOR_WEIGHT_SUM)
-  {
-    mcor_read_scalar(input, first, chunk->count, chunk->scalar);
-  }
-}
-
-static void mcor_measure_particle(
-  mcor_measure* m, const mcor_chunk* chunk, int i, bool solid, bool has_scalar, double reach)
-{
-  const double h = chunk->h[i], support = h * reach;
-  m->support_min = support < m->support_min ? support : m->support_min;
-  m->support_max = support > m->support_max ? support : m->support_max;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double low = chunk->x[a][i] - support, high = chunk->x[a][i] + support;
-    m->low[a] = low < m->low[a] ? low : m->low[a];
-    m->high[a] = high > m->high[a] ? high : m->high[a];
-  }
-  if (!solid)
-  {
-    m->h_min = h < m->h_min ? h : m->h_min;
-    m->h_max = h > m->h_max ? h : m->h_max;
-  }
-  if (!solid && has_scalar)
-  {
-    m->scalar_min = chunk->scalar[i] < m->scalar_min ? chunk->scalar[i] : m->scalar_min;
-    m->scalar_max = chunk->scalar[i] > m->scalar_max ? chunk->scalar[i] : m->scalar_max;
-  }
-}
-
-static void mcor_measure_particles(mcor_context* context, const mcor_input* input, double reach)
-{
-  mcor_measure* m = &context->measure;
-  const bool has_scalar = context->options->field != MCOR_WEIGHT_SUM;
-  mcor_chunk chunk;
-  for (int64_t first = 0; first < input->count; first += MCOR_CHUNK)
-  {
-    mcor_read_chunk(context, input, first, &chunk);
-    for (int i = 0; i < chunk.count; ++i)
-    {
-      const bool solid = input->solid && input->solid[first + i];
-      m->solid_count += solid;
-      m->fluid_count += !solid;
-      if (mcor_is_used(context, input, first + i))
-      {
-        mcor_measure_particle(m, &chunk, i, solid, has_scalar, reach);
-      }
-    }
-  }
-}
-
-/* Bounds, ranges and the virtual grid's cube size; then the lattice. */
-mcor_status mcor_measure_input(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  mcor_measure* m = &context->measure;
-  *m = (mcor_measure){ .low = { DBL_MAX, DBL_MAX, DBL_MAX },
-    .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
-    .h_min = DBL_MAX,
-    .support_min = DBL_MAX,
-    .scalar_min = DBL_MAX,
-    .scalar_max = -DBL_MAX };
-  if (input->estimate_smoothing_length)
-  {
-    m->h_estimate = mcor_estimate_smoothing_length(input);
-    MCOR_RETURN_IF(!(m->h_estimate > 0), context, MCOR_INVALID_DATA,
-      "The smoothing length cannot be estimated: most particles lie at one point.");
-  }
-  mcor_measure_particles(
-    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale);
-  MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
-    "None of the %lld particles is marked as fluid.", (long long)input->count);
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    m->scalar_min = 0;
-    m->scalar_max = 1;
-  }
-  mcor_lattice* lattice = &context->lattice;
-  const double cube =
-    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
-  MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
-    "or "
-    "remove particles of such a smoothing length.",
-    cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
-  lattice->cube = m->cube = cube;
-  int64_t extent = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
-    MCOR_RETURN_IF(
-      !(fabs(first) < 1e15) || !(fabs(last) < 1e15) || last - first > MCOR_LATTICE_LIMIT, context,
-      MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
-      "Use a "
-      "larger cube size, or remove particles that are far away from the rest.",
-      cube, last - first, a, MCOR_LATTICE_LIMIT);
-    lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
-    lattice->first[a] = (int64_t)first - lattice->origin[a];
-    lattice->last[a] = (int64_t)last - lattice->origin[a];
-    lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
-    extent = lattice->last[a] > extent ? lattice->last[a] : extent;
-  }
-  lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  while ((extent + 64) << lattice->fix_bits >= INT64_C(1)
-      << (options->precision == MCOR_FLOAT64 ? 62 : 30))
-  {
-    --lattice->fix_bits;
-  }
-  return MCOR_OK;
 }

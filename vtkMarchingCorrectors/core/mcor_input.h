@@ -29,10 +29,13 @@ void mcor_read_array(
   const mcor_array* array, int64_t first, int count, int component, double* out);
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
+/* The largest absolute value of one component; all are finite. */
+double mcor_largest(const mcor_array* array, int64_t count, int component);
+
 /* The scalar A of particle i. */
 double mcor_scalar_at(const mcor_input* input, int64_t i);
 /* About the median of the scalar of fluid particles; measured before. */
-double mcor_scalar_median(const mcor_context* context, const mcor_input* input);
+mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
 /* One for all particles, from their spacing. */
 double mcor_estimate_smoothing_length(const mcor_input* input);
 /* Smoothing lengths, unscaled, unit L. */

@@ -162,7 +162,7 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
 
-/* mcor_input.c: checks and measures. */
+/* mcor_input.c, mcor_measure.c */
 mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(

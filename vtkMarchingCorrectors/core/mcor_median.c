@@ -4,6 +4,9 @@
 /* Where most values of the scalar are. */
 
 #include "mcor_input.h"
+#include "mcor_parallel.h"
+
+#include <stdlib.h>
 
 #define MCOR_MEDIAN_BINS 1024
 #define MCOR_MEDIAN_PASSES 8
@@ -14,24 +17,34 @@ typedef struct mcor_bin
   double low, high; /* of the values in it */
 } mcor_bin;
 
-/* Sorts the values of fluid particles in [low, high] into bins. */
-static void mcor_fill_bins(
-  const mcor_input* input, double low, double high, mcor_bin bins[MCOR_MEDIAN_BINS])
+typedef struct mcor_bin_job
 {
+  const mcor_input* input;
+  double low, high;
+  mcor_bin (*bins)[MCOR_MEDIAN_BINS]; /* [MCOR_SLICES] */
+} mcor_bin_job;
+
+/* Sorts the values of fluid particles in [low, high] into bins. */
+static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_bin_job* job = data;
+  const mcor_input* input = job->input;
+  const double low = job->low, high = job->high;
   const double width = high / MCOR_MEDIAN_BINS - low / MCOR_MEDIAN_BINS;
+  mcor_bin* bins = job->bins[slice];
   for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
   {
     bins[b] = (mcor_bin){ 0, high, low };
   }
   double chunk[MCOR_CHUNK];
-  for (int64_t i = 0; i < input->count; ++i)
+  for (int64_t i = first; i < last; ++i)
   {
-    if (i % MCOR_CHUNK == 0)
+    const int64_t at = (i - first) % MCOR_CHUNK, rest = last - i;
+    if (at == 0)
     {
-      const int64_t rest = input->count - i;
       mcor_read_scalar(input, i, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, chunk);
     }
-    const double v = chunk[i % MCOR_CHUNK];
+    const double v = chunk[at];
     if ((!input->solid || !input->solid[i]) && v >= low && v <= high)
     {
       /* Halved, as the difference may be too large for a number. */
@@ -44,36 +57,63 @@ static void mcor_fill_bins(
   }
 }
 
-/* About the median of the scalar of fluid particles: of the bin that holds it, while many are in
- * that bin. A bin ends where its values do, so that a huge outlier does not move the median away
- * from them. Counts, and least and greatest values, do not depend on the order of the particles. */
-double mcor_scalar_median(const mcor_context* context, const mcor_input* input)
+/* The bins of all particles. */
+static mcor_bin* mcor_make_bins(mcor_bin_job* job)
 {
-  double low = context->measure.scalar_min, high = context->measure.scalar_max;
+  mcor_bin* all = job->bins[0];
+  const int slices = mcor_parallel_for(job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job);
+  for (int s = 1; s < slices; ++s)
+  {
+    for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
+    {
+      const mcor_bin* bin = &job->bins[s][b];
+      all[b].count += bin->count;
+      all[b].low = bin->low < all[b].low ? bin->low : all[b].low;
+      all[b].high = bin->high > all[b].high ? bin->high : all[b].high;
+    }
+  }
+  return all;
+}
+
+/* Of the bin that holds the median, while many are in that bin. A bin ends where its values do, so
+ * that a huge outlier does not move the median away from them. Counts, and least and greatest values,
+ * do not depend on the order of the particles. */
+static double mcor_narrow_median(mcor_bin_job* job, int64_t fluid_count)
+{
   int64_t below = 0;
   for (int pass = 0; pass < MCOR_MEDIAN_PASSES; ++pass)
   {
-    if (!(high / MCOR_MEDIAN_BINS - low / MCOR_MEDIAN_BINS > 0))
+    if (!(job->high / MCOR_MEDIAN_BINS - job->low / MCOR_MEDIAN_BINS > 0))
     {
       break;
     }
-    mcor_bin bins[MCOR_MEDIAN_BINS];
-    mcor_fill_bins(input, low, high, bins);
-    int b = 0;
-    while (b < MCOR_MEDIAN_BINS - 1 && 2 * (below + bins[b].count) < context->measure.fluid_count)
+    const mcor_bin* bin = mcor_make_bins(job);
+    const mcor_bin* last = bin + MCOR_MEDIAN_BINS - 1;
+    for (; bin < last && 2 * (below + bin->count) < fluid_count; ++bin)
     {
-      below += bins[b++].count;
+      below += bin->count;
     }
-    if (bins[b].count == 0)
+    if (bin->count == 0)
     {
       break;
     }
-    low = bins[b].low;
-    high = bins[b].high;
-    if (bins[b].count < context->measure.fluid_count / 16)
+    job->low = bin->low;
+    job->high = bin->high;
+    if (bin->count < fluid_count / 16)
     {
       break;
     }
   }
-  return 0.5 * low + 0.5 * high;
+  return 0.5 * job->low + 0.5 * job->high;
+}
+
+mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median)
+{
+  const mcor_measure* m = &context->measure;
+  mcor_bin_job job = { input, m->scalar_min, m->scalar_max,
+    malloc(MCOR_SLICES * sizeof *job.bins) };
+  MCOR_RETURN_IF(!job.bins, context, MCOR_OUT_OF_CAPACITY, "Host memory for the median ran out.");
+  *median = mcor_narrow_median(&job, m->fluid_count);
+  free(job.bins);
+  return MCOR_OK;
 }

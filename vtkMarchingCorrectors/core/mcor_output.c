@@ -4,7 +4,7 @@
 /* Output [III-D.4]: compaction, transfer, and what a surface carries besides its geometry. */
 
 #include "mcor_input.h"
-#include "mcor_internal.h"
+#include "mcor_parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -131,30 +131,56 @@ static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* in
     context, (void**)&s->triangles, s->triangle_count, triangles, 3 * sizeof(int32_t));
 }
 
-static void mcor_count_correction(mcor_context* context, const mcor_download* d)
+/* Statistics of some vertices. */
+typedef struct mcor_tally
 {
-  mcor_statistics* s = context->statistics;
-  const double cube = context->lattice.cube;
+  int64_t trim_vertices, linear, above_tolerance;
+  double count, sum, squares, correction_max, residual_max;
+} mcor_tally;
+
+/* One iso value's vertices on their way to the surface. */
+typedef struct mcor_delivery
+{
+  const mcor_context* context;
+  const mcor_download* download;
+  double iso;
+  mcor_surface* surface; /* the first of them becomes its point point_count */
+  mcor_tally tallies[MCOR_SLICES];
+} mcor_delivery;
+
+static void mcor_count_correction(
+  const mcor_context* context, const mcor_download* d, int i, mcor_tally* tally)
+{
   const double tolerance =
     context->options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
-  for (int i = 0; i < d->count; ++i)
+  const int flag = d->node[4 * i + 3];
+  if (flag == 1 || flag == 2)
   {
-    const int flag = d->node[4 * i + 3];
-    const double residual = fabs(mcor_get_real(context, d->numbers, 4 * i + 1));
-    s->trim_vertices += flag == 1 || flag == 2;
-    s->trim_vertices_linear += flag == 2;
-    if (flag == 1 || flag == 2)
-    {
-      continue;
-    }
-    const double length = fabs(mcor_get_real(context, d->numbers, 4 * i)) * cube;
-    context->correction_count += 1;
-    context->correction_sum += length;
-    context->correction_squares += length * length;
-    s->correction_max = fmax(s->correction_max, length);
-    s->residual_max = fmax(s->residual_max, residual);
-    s->vertices_above_tolerance += residual > tolerance;
+    ++tally->trim_vertices;
+    tally->linear += flag == 2;
+    return;
   }
+  const double length = fabs(mcor_get_real(context, d->numbers, 4 * i)) * context->lattice.cube;
+  const double residual = fabs(mcor_get_real(context, d->numbers, 4 * i + 1));
+  tally->count += 1;
+  tally->sum += length;
+  tally->squares += length * length;
+  tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
+  tally->residual_max = residual > tally->residual_max ? residual : tally->residual_max;
+  tally->above_tolerance += residual > tolerance;
+}
+
+static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
+{
+  mcor_statistics* s = context->statistics;
+  s->trim_vertices += tally->trim_vertices;
+  s->trim_vertices_linear += tally->linear;
+  s->vertices_above_tolerance += tally->above_tolerance;
+  context->correction_count += tally->count;
+  context->correction_sum += tally->sum;
+  context->correction_squares += tally->squares;
+  s->correction_max = fmax(s->correction_max, tally->correction_max);
+  s->residual_max = fmax(s->residual_max, tally->residual_max);
 }
 
 /* Vertex i of the download becomes point `to` of the surface. */
@@ -197,6 +223,67 @@ static void mcor_put_point(const mcor_context* context, const mcor_download* d, 
   }
 }
 
+static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_delivery* delivery = data;
+  mcor_surface* surface = delivery->surface;
+  mcor_tally tally = { 0 };
+  for (int64_t i = first; i < last; ++i)
+  {
+    mcor_put_point(delivery->context, delivery->download, (int)i, delivery->iso, surface,
+      surface->point_count + i);
+    mcor_count_correction(delivery->context, delivery->download, (int)i, &tally);
+  }
+  delivery->tallies[slice] = tally;
+}
+
+static void mcor_deliver_vertices(
+  mcor_context* context, const mcor_download* download, double iso, mcor_surface* surface)
+{
+  mcor_delivery delivery = {
+    .context = context, .download = download, .iso = iso, .surface = surface
+  };
+  const int slices =
+    mcor_parallel_for(download->count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery);
+  for (int s = 0; s < slices; ++s)
+  {
+    mcor_add_tally(context, &delivery.tallies[s]);
+  }
+}
+
+typedef struct mcor_corners
+{
+  const cl_int* from;
+  int32_t* to;
+  int32_t base;
+} mcor_corners;
+
+static void mcor_copy_corners(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_corners* corners = data;
+  for (int64_t i = first; i < last; ++i)
+  {
+    corners->to[i] = corners->from[i] + corners->base;
+  }
+  (void)slice;
+}
+
+static mcor_status mcor_deliver_triangles(
+  mcor_context* context, int64_t triangles, mcor_surface* surface)
+{
+  const mcor_buffer* buffer = &context->mesh.triangles;
+  void* view;
+  if (triangles == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_map(context, buffer, (size_t)triangles * 3 * sizeof(cl_int), false, &view));
+  mcor_corners corners = { view, surface->triangles + 3 * surface->triangle_count,
+    (int32_t)surface->point_count };
+  mcor_parallel_for(3 * triangles, MCOR_LIGHT_GRAIN, mcor_copy_corners, &corners);
+  return mcor_unmap(context, buffer, &view);
+}
+
 /* One component of one attribute. */
 typedef struct mcor_component
 {
@@ -228,20 +315,31 @@ static mcor_status mcor_add_nearest(mcor_context* context, int points, mcor_surf
  * overflows whatever the device's precision. */
 static double mcor_component_scale(const mcor_array* array, int64_t count, int component)
 {
-  double most = 0;
-  for (int64_t first = 0; first < count; first += MCOR_CHUNK)
-  {
-    const int n = count - first < MCOR_CHUNK ? (int)(count - first) : MCOR_CHUNK;
-    double chunk[MCOR_CHUNK];
-    mcor_read_array(array, first, n, component, chunk);
-    for (int i = 0; i < n; ++i)
-    {
-      most = fabs(chunk[i]) > most ? fabs(chunk[i]) : most;
-    }
-  }
   int exponent = 0;
-  frexp(most, &exponent);
+  frexp(mcor_largest(array, count, component), &exponent);
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
+}
+
+/* Component c of the `count` that were evaluated, to every `width`-th element. */
+typedef struct mcor_means
+{
+  const mcor_context* context;
+  const void* values;
+  int count, c, width;
+  double scale;
+  double* to;
+} mcor_means;
+
+static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_means* m = data;
+  const double scale = m->scale;
+  double* to = m->to;
+  for (int64_t i = first; i < last; ++i)
+  {
+    to[i * m->width] = mcor_get_real(m->context, m->values, i * m->count + m->c) / scale;
+  }
+  (void)slice;
 }
 
 /* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
@@ -273,10 +371,8 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_in
     const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
     double* to =
       surface->attributes[a] + surface->point_count * width + components[c].component;
-    for (int64_t i = 0; i < points; ++i)
-    {
-      to[i * width] = mcor_get_real(context, view, i * count + c) / scale[c];
-    }
+    mcor_means means = { context, view, count, c, width, scale[c], to };
+    mcor_parallel_for(points, MCOR_LIGHT_GRAIN, mcor_put_means, &means);
   }
   return mcor_unmap(context, values, &view);
 }
@@ -342,19 +438,9 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_grow_surface(context, input, surface, download->count, triangles));
   MCOR_TRY(mcor_add_attributes(context, input, download->count, surface));
   MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->count, surface));
+  MCOR_TRY(mcor_deliver_triangles(context, triangles, surface));
   MCOR_TRY(mcor_map_vertices(context, download));
-  int32_t* to = surface->triangles + 3 * surface->triangle_count;
-  MCOR_TRY(mcor_read(
-    context, &context->mesh.triangles, 0, to, (size_t)triangles * 3 * sizeof(int32_t)));
-  for (int64_t i = 0; i < 3 * triangles; ++i)
-  {
-    to[i] += (int32_t)base;
-  }
-  for (int i = 0; i < download->count; ++i)
-  {
-    mcor_put_point(context, download, i, iso, surface, base + i);
-  }
-  mcor_count_correction(context, download);
+  mcor_deliver_vertices(context, download, iso, surface);
   surface->point_count += download->count;
   surface->triangle_count += triangles;
   return MCOR_OK;

@@ -1,0 +1,258 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Loops in several threads: every element once, and results that do not depend on how many threads. */
+
+#if defined(__linux__) && !defined(_GNU_SOURCE)
+#define _GNU_SOURCE /* for sched_setaffinity */
+#endif
+
+#include "core_fixture.h"
+#include "mcor_parallel.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef _WIN32
+#include <pthread.h>
+#include <sched.h>
+#endif
+
+/* How often the elements and slices of a loop were visited. */
+typedef struct visits
+{
+  int64_t count;
+  uint8_t* elements;
+  int64_t sizes[MCOR_SLICES];
+  int strange; /* slices that do not exist */
+} visits;
+
+static void visit(void* data, int slice, int64_t first, int64_t last)
+{
+  visits* v = data;
+  if (slice < 0 || slice >= MCOR_SLICES || first < 0 || last > v->count || first >= last)
+  {
+    v->strange = 1;
+    return;
+  }
+  v->sizes[slice] += last - first;
+  for (int64_t i = first; i < last; ++i)
+  {
+    ++v->elements[i];
+  }
+}
+
+/* Whether a loop visits everything once. */
+static bool is_complete(int64_t count, int64_t grain)
+{
+  visits v = { .count = count, .elements = calloc((size_t)count + 1, 1) };
+  bool good = v.elements != NULL;
+  const int slices = good ? mcor_parallel_for(count, grain, visit, &v) : 0;
+  int64_t sum = 0;
+  for (int s = 0; s < MCOR_SLICES; ++s)
+  {
+    good = good && (v.sizes[s] > 0) == (s < slices) &&
+      (s >= slices || slices == 1 || v.sizes[s] >= grain);
+    sum += v.sizes[s];
+  }
+  for (int64_t i = 0; good && i < count; ++i)
+  {
+    good = v.elements[i] == 1;
+  }
+  free(v.elements);
+  return good && sum == count && !v.strange;
+}
+
+static bool are_all_complete(void)
+{
+  const int64_t grains[] = { 1, 7, 1000 };
+  bool good = true;
+  for (int g = 0; g < 3; ++g)
+  {
+    const int64_t grain = grains[g];
+    const int64_t counts[] = { 0, 1, grain - 1, grain, grain + 1, 2 * grain - 1, 2 * grain,
+      2 * grain + 1, MCOR_SLICES * grain - 1, MCOR_SLICES * grain, 100 * grain + 13, 300007 };
+    for (size_t c = 0; c < sizeof counts / sizeof counts[0]; ++c)
+    {
+      good = is_complete(counts[c], grain) && good;
+    }
+  }
+  return good;
+}
+
+static void test_every_element_once(void** state)
+{
+  (void)state;
+  assert_true(are_all_complete());
+}
+
+#ifndef _WIN32
+static void* check_all(void* good)
+{
+  *(bool*)good = are_all_complete();
+  return NULL;
+}
+#endif
+
+static void test_several_at_once(void** state)
+{
+  (void)state;
+#ifdef _WIN32
+  skip();
+#else
+  pthread_t threads[4];
+  bool good[4] = { false };
+  for (int t = 0; t < 4; ++t)
+  {
+    assert_int_equal(pthread_create(&threads[t], NULL, check_all, &good[t]), 0);
+  }
+  for (int t = 0; t < 4; ++t)
+  {
+    assert_int_equal(pthread_join(threads[t], NULL), 0);
+    assert_true(good[t]);
+  }
+#endif
+}
+
+/* Enough particles for several slices; one in 8 is solid. */
+static core_set make_large_set(void)
+{
+  core_set set = core_make_block(40, 0.2, 3, core_ball);
+  uint64_t seed = 5;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] *= 1 + 0.2 * random_unit(&seed);
+    set.solid[i] = random_bits(&seed) % 8 == 0;
+  }
+  set.has_solids = 1;
+  assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
+  return set;
+}
+
+typedef struct outcome
+{
+  mcor_surface surface;
+  uint64_t hash;
+} outcome;
+
+static outcome extract(mcor_context* context, const core_set* set)
+{
+  const double iso = -250;
+  const mcor_array attributes[2] = { core_array(set->position, 3), core_array(set->scalar, 1) };
+  mcor_input input = core_input(set);
+  input.ignore_solids = 1;
+  input.attributes = attributes;
+  input.attribute_count = 2;
+  mcor_options options = core_options(&iso);
+  options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
+  options.boundary_flag = 1;
+  options.cube_size_factor = 0.4;
+  outcome result = { .surface = core_extract(context, &input, &options) };
+  result.hash = core_hash(&result.surface);
+  assert_true(result.surface.point_count > 2 * MCOR_HEAVY_GRAIN);
+  return result;
+}
+
+static void expect_same(const outcome* a, const outcome* b)
+{
+  const mcor_statistics *x = &a->surface.statistics, *y = &b->surface.statistics;
+  const size_t points = (size_t)a->surface.point_count;
+  assert_true(a->hash == b->hash);
+  assert_memory_equal(
+    a->surface.attributes[0], b->surface.attributes[0], points * 3 * sizeof(double));
+  assert_memory_equal(a->surface.attributes[1], b->surface.attributes[1], points * sizeof(double));
+  assert_true(x->fluid_particles == y->fluid_particles);
+  assert_true(x->correction_mean == y->correction_mean);
+  assert_true(x->correction_deviation == y->correction_deviation);
+  assert_true(x->correction_max == y->correction_max && x->residual_max == y->residual_max);
+  assert_true(x->scalar_min == y->scalar_min && x->scalar_max == y->scalar_max);
+}
+
+/* The calling thread decides on which processors its threads run. */
+static void test_one_processor(void** state)
+{
+#ifdef __linux__
+  core_set set = make_large_set();
+  outcome all = extract(*state, &set);
+  cpu_set_t before, one;
+  assert_int_equal(sched_getaffinity(0, sizeof before, &before), 0);
+  size_t processor = 0;
+  while (!CPU_ISSET(processor, &before))
+  {
+    ++processor;
+  }
+  CPU_ZERO(&one);
+  CPU_SET(processor, &one);
+  assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+  outcome alone = extract(*state, &set);
+  assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
+  expect_same(&all, &alone);
+  mcor_free_surface(&all.surface);
+  mcor_free_surface(&alone.surface);
+  core_free_set(&set);
+#else
+  (void)state;
+  skip();
+#endif
+}
+
+/* Particles that are left out leave the others in order. */
+static void test_solids_left_out(void** state)
+{
+  core_set set = make_large_set();
+  outcome ignored = extract(*state, &set);
+  int64_t to = 0;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    if (!set.solid[i])
+    {
+      memmove(set.position + 3 * to, set.position + 3 * i, 3 * sizeof(double));
+      set.smoothing_length[to] = set.smoothing_length[i];
+      set.volume[to] = set.volume[i];
+      set.scalar[to++] = set.scalar[i];
+    }
+  }
+  set.count = to;
+  set.has_solids = 0;
+  outcome removed = extract(*state, &set);
+  expect_same(&ignored, &removed);
+  mcor_free_surface(&ignored.surface);
+  mcor_free_surface(&removed.surface);
+  core_free_set(&set);
+}
+
+/* Of several bad particles the first is named, whichever thread finds one first. */
+static void test_first_bad_particle(void** state)
+{
+  core_set set = make_large_set();
+  set.has_solids = 0;
+  const double iso = 0;
+  const mcor_input input = core_input(&set);
+  const mcor_options options = core_options(&iso);
+  for (int kind = 0; kind < 3; ++kind)
+  {
+    double* const arrays[] = { set.volume, set.volume, set.scalar };
+    const double good = arrays[kind][1], bad = kind == 0 ? 1e35 : kind == 1 ? -1 : NAN;
+    for (int64_t i = 30007; i < set.count; i += 5000)
+    {
+      arrays[kind][i] = bad;
+    }
+    mcor_surface surface;
+    assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
+    CORE_CHECK(strstr(mcor_last_error(*state), "particle 30007 "), "%s", mcor_last_error(*state));
+    for (int64_t i = 30007; i < set.count; i += 5000)
+    {
+      arrays[kind][i] = good;
+    }
+  }
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_element_once),
+    cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_one_processor),
+    cmocka_unit_test(test_solids_left_out), cmocka_unit_test(test_first_bad_particle) };
+  return cmocka_run_group_tests_name("parallel", tests, core_set_up, core_tear_down);
+}

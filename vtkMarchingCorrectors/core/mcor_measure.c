@@ -1,0 +1,196 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What the other phases need to know of the particles: ranges, bounds, the lattice. */
+
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-10 cubes. */
+#define MCOR_LATTICE_LIMIT (1 << 20)
+
+/* Support radius in cubes at least: below, no node is likely to see a particle, and search cells would
+ * be too many to number. */
+#define MCOR_LEAST_SUPPORT 1e-3
+
+/* One chunk of the particles, as double. */
+typedef struct mcor_chunk
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], scalar[MCOR_CHUNK];
+} mcor_chunk;
+
+static void mcor_read_chunk(
+  const mcor_context* context, const mcor_input* input, int64_t first, mcor_chunk* chunk)
+{
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_read_array(&positions, first, chunk->count, a, chunk->x[a]);
+  }
+  mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
+  if (context->options->field != MCOR_WEIGHT_SUM)
+  {
+    mcor_read_scalar(input, first, chunk->count, chunk->scalar);
+  }
+}
+
+static double mcor_least(double a, double b)
+{
+  return b < a ? b : a;
+}
+
+static double mcor_most(double a, double b)
+{
+  return b > a ? b : a;
+}
+
+static void mcor_measure_particle(
+  mcor_measure* m, const mcor_chunk* chunk, int i, bool solid, bool has_scalar, double reach)
+{
+  const double h = chunk->h[i], support = h * reach;
+  m->support_min = mcor_least(m->support_min, support);
+  m->support_max = mcor_most(m->support_max, support);
+  for (int a = 0; a < 3; ++a)
+  {
+    m->low[a] = mcor_least(m->low[a], chunk->x[a][i] - support);
+    m->high[a] = mcor_most(m->high[a], chunk->x[a][i] + support);
+  }
+  if (!solid)
+  {
+    m->h_min = mcor_least(m->h_min, h);
+    m->h_max = mcor_most(m->h_max, h);
+  }
+  if (!solid && has_scalar)
+  {
+    m->scalar_min = mcor_least(m->scalar_min, chunk->scalar[i]);
+    m->scalar_max = mcor_most(m->scalar_max, chunk->scalar[i]);
+  }
+}
+
+static const mcor_measure mcor_nothing = { .low = { DBL_MAX, DBL_MAX, DBL_MAX },
+  .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
+  .h_min = DBL_MAX,
+  .support_min = DBL_MAX,
+  .scalar_min = DBL_MAX,
+  .scalar_max = -DBL_MAX };
+
+static void mcor_merge_measure(mcor_measure* m, const mcor_measure* other)
+{
+  m->fluid_count += other->fluid_count;
+  m->solid_count += other->solid_count;
+  for (int a = 0; a < 3; ++a)
+  {
+    m->low[a] = mcor_least(m->low[a], other->low[a]);
+    m->high[a] = mcor_most(m->high[a], other->high[a]);
+  }
+  m->h_min = mcor_least(m->h_min, other->h_min);
+  m->h_max = mcor_most(m->h_max, other->h_max);
+  m->support_min = mcor_least(m->support_min, other->support_min);
+  m->support_max = mcor_most(m->support_max, other->support_max);
+  m->scalar_min = mcor_least(m->scalar_min, other->scalar_min);
+  m->scalar_max = mcor_most(m->scalar_max, other->scalar_max);
+}
+
+typedef struct mcor_measuring
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  double reach; /* support radius / smoothing length */
+  mcor_measure measures[MCOR_SLICES];
+} mcor_measuring;
+
+static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_measuring* job = data;
+  const mcor_input* input = job->input;
+  const bool has_scalar = job->context->options->field != MCOR_WEIGHT_SUM;
+  mcor_measure m = mcor_nothing;
+  mcor_chunk chunk;
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    mcor_read_chunk(job->context, input, begin, &chunk);
+    for (int i = 0; i < chunk.count; ++i)
+    {
+      const bool solid = input->solid && input->solid[begin + i];
+      m.solid_count += solid;
+      m.fluid_count += !solid;
+      if (mcor_is_used(job->context, input, begin + i))
+      {
+        mcor_measure_particle(&m, &chunk, i, solid, has_scalar, job->reach);
+      }
+    }
+  }
+  job->measures[slice] = m;
+}
+
+static void mcor_measure_particles(mcor_context* context, const mcor_input* input, double reach)
+{
+  mcor_measuring job = { .context = context, .input = input, .reach = reach };
+  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job);
+  for (int s = 0; s < slices; ++s)
+  {
+    mcor_merge_measure(&context->measure, &job.measures[s]);
+  }
+}
+
+/* Bounds, ranges and the virtual grid's cube size; then the lattice. */
+mcor_status mcor_measure_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  mcor_measure* m = &context->measure;
+  *m = mcor_nothing;
+  if (input->estimate_smoothing_length)
+  {
+    m->h_estimate = mcor_estimate_smoothing_length(input);
+    MCOR_RETURN_IF(!(m->h_estimate > 0), context, MCOR_INVALID_DATA,
+      "The smoothing length cannot be estimated: most particles lie at one point.");
+  }
+  mcor_measure_particles(
+    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale);
+  MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
+    "None of the %lld particles is marked as fluid.", (long long)input->count);
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    m->scalar_min = 0;
+    m->scalar_max = 1;
+  }
+  mcor_lattice* lattice = &context->lattice;
+  const double cube =
+    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
+    "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
+    "or "
+    "remove particles of such a smoothing length.",
+    cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
+  lattice->cube = m->cube = cube;
+  int64_t extent = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
+    MCOR_RETURN_IF(
+      !(fabs(first) < 1e15) || !(fabs(last) < 1e15) || last - first > MCOR_LATTICE_LIMIT, context,
+      MCOR_OUT_OF_CAPACITY,
+      "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
+      "Use a "
+      "larger cube size, or remove particles that are far away from the rest.",
+      cube, last - first, a, MCOR_LATTICE_LIMIT);
+    lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
+    lattice->first[a] = (int64_t)first - lattice->origin[a];
+    lattice->last[a] = (int64_t)last - lattice->origin[a];
+    lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
+    extent = lattice->last[a] > extent ? lattice->last[a] : extent;
+  }
+  lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
+  while ((extent + 64) << lattice->fix_bits >= INT64_C(1)
+      << (options->precision == MCOR_FLOAT64 ? 62 : 30))
+  {
+    --lattice->fix_bits;
+  }
+  return MCOR_OK;
+}

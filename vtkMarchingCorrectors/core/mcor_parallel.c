@@ -1,0 +1,93 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Threads live for one loop: there is no pool to be shared, ended, or lost in a fork. */
+
+#if defined(__linux__) && !defined(_GNU_SOURCE)
+#define _GNU_SOURCE /* for sched_getaffinity */
+#endif
+
+#include "mcor_parallel.h"
+
+static int mcor_slice_count(int64_t count, int64_t grain)
+{
+  const int64_t slices = count / grain;
+  return slices > MCOR_SLICES ? MCOR_SLICES : slices > 0 ? (int)slices : count > 0;
+}
+
+#ifdef _WIN32
+
+int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
+{
+  const int slices = mcor_slice_count(count, grain);
+  for (int s = 0; s < slices; ++s)
+  {
+    body(data, s, count * s / slices, count * (s + 1) / slices);
+  }
+  return slices;
+}
+
+#else
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+#define MCOR_THREADS 16 /* at most, the calling one included */
+
+typedef struct mcor_loop
+{
+  int64_t count;
+  int slices;
+  mcor_slice_body body;
+  void* data;
+  atomic_int next; /* slice */
+} mcor_loop;
+
+static void* mcor_run_slices(void* data)
+{
+  mcor_loop* loop = data;
+  const int slices = loop->slices;
+  for (int s = atomic_fetch_add(&loop->next, 1); s < slices; s = atomic_fetch_add(&loop->next, 1))
+  {
+    loop->body(loop->data, s, loop->count * s / slices, loop->count * (s + 1) / slices);
+  }
+  return NULL;
+}
+
+static int mcor_thread_limit(void)
+{
+  long processors = 0;
+#ifdef __linux__
+  cpu_set_t set;
+  processors = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
+#endif
+  processors = processors > 0 ? processors : sysconf(_SC_NPROCESSORS_ONLN);
+  return processors < 1 ? 1 : processors < MCOR_THREADS ? (int)processors : MCOR_THREADS;
+}
+
+int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
+{
+  mcor_loop loop = {
+    .count = count, .slices = mcor_slice_count(count, grain), .body = body, .data = data
+  };
+  atomic_init(&loop.next, 0);
+  const int limit = loop.slices > 1 ? mcor_thread_limit() : 1;
+  pthread_t threads[MCOR_THREADS];
+  int made = 0;
+  /* Without a further thread, or when the first have done everything, these go on alone. */
+  while (made + 1 < limit && atomic_load(&loop.next) + 1 < loop.slices &&
+    pthread_create(&threads[made], NULL, mcor_run_slices, &loop) == 0)
+  {
+    ++made;
+  }
+  mcor_run_slices(&loop);
+  for (int t = 0; t < made; ++t)
+  {
+    pthread_join(threads[t], NULL);
+  }
+  return loop.slices;
+}
+
+#endif

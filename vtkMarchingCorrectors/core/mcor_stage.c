@@ -1,0 +1,357 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* From the caller's arrays to the device: particles and values, in input order. */
+
+#include "mcor_stage.h"
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static mcor_status mcor_map_staging(mcor_context* context, int64_t count, mcor_staging* staging)
+{
+  const size_t n = (size_t)count, real = context->cl.real_size;
+  const size_t bytes[MCOR_STAGE_COUNT] = { n * 3 * context->cl.fix_size, n * real, n * real, n, n };
+  void** const views[MCOR_STAGE_COUNT] = { &staging->xyz, &staging->inv_h, &staging->size,
+    &staging->solid, &staging->level };
+  for (int i = 0; i < MCOR_STAGE_COUNT; ++i)
+  {
+    MCOR_TRY(mcor_reserve(context, &context->scratch[i], bytes[i]));
+    MCOR_TRY(mcor_map(context, &context->scratch[i], bytes[i], true, views[i]));
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
+{
+  void** const views[MCOR_STAGE_COUNT] = { &staging->xyz, &staging->inv_h, &staging->size,
+    &staging->solid, &staging->level };
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < MCOR_STAGE_COUNT; ++i)
+  {
+    const mcor_status unmapped = mcor_unmap(context, &context->scratch[i], views[i]);
+    status = status == MCOR_OK ? unmapped : status;
+  }
+  return status;
+}
+
+static void mcor_put_reals(
+  const mcor_context* context, void* array, int64_t first, const double* values, int count)
+{
+  if (context->cl.real_size == sizeof(float))
+  {
+    float* to = (float*)array + first;
+    for (int i = 0; i < count; ++i)
+    {
+      to[i] = (float)values[i];
+    }
+  }
+  else
+  {
+    memcpy((double*)array + first, values, (size_t)count * sizeof *values);
+  }
+}
+
+/* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
+ * truncating rounds them. */
+static void mcor_put_fixed(const mcor_context* context, void* array, int64_t first, int axis,
+  const double* values, int count)
+{
+  if (context->cl.fix_size == sizeof(int32_t))
+  {
+    int32_t* to = (int32_t*)array + 3 * first + axis;
+    for (int i = 0; i < count; ++i)
+    {
+      to[3 * i] = (int32_t)(values[i] + 0.5);
+    }
+  }
+  else
+  {
+    int64_t* to = (int64_t*)array + 3 * first + axis;
+    for (int i = 0; i < count; ++i)
+    {
+      to[3 * i] = (int64_t)(values[i] + 0.5);
+    }
+  }
+}
+
+/* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume in
+ * cubes, the mass over the largest one, or 1. */
+static double mcor_size_scale(const mcor_context* context, const mcor_input* input)
+{
+  const double cube = context->lattice.cube;
+  if (input->has_volume || (input->has_mass && input->has_density))
+  {
+    return 1 / (cube * cube * cube);
+  }
+  if (!input->has_mass)
+  {
+    return 1;
+  }
+  return 1 / mcor_largest(&input->mass, input->count, 0);
+}
+
+static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
+{
+  static const mcor_array one = { .constant = 1 };
+  mcor_read_array(input->has_volume ? &input->volume
+      : input->has_mass             ? &input->mass
+                                    : &one,
+    first, count, 0, out);
+  if (!input->has_volume && input->has_mass && input->has_density)
+  {
+    double density[MCOR_CHUNK];
+    mcor_read_array(&input->density, first, count, 0, density);
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] /= density[i];
+    }
+  }
+}
+
+static int mcor_level_of(double support_max, double support)
+{
+  const int level = support < support_max ? ilogb(support_max / support) : 0;
+  return level < 0 ? 0 : level >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : level;
+}
+
+/* Particles of a chunk in the staging arrays' units. */
+typedef struct mcor_stage_chunk
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK];
+  int32_t source[MCOR_CHUNK];
+} mcor_stage_chunk;
+
+static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
+  int64_t first, const mcor_staging* staging, mcor_stage_chunk* chunk)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const double scale = ldexp(1, lattice->fix_bits);
+  const int count = chunk->count;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double origin = (double)lattice->origin[a];
+    double* x = chunk->x[a];
+    mcor_read_array(&positions, first, count, a, x);
+    for (int i = 0; i < count; ++i)
+    {
+      x[i] = (x[i] / lattice->cube - origin) * scale;
+    }
+  }
+  mcor_read_smoothing_length(context, input, first, count, chunk->h);
+  mcor_read_size(input, first, count, chunk->size);
+  for (int i = 0; i < count; ++i)
+  {
+    chunk->size[i] *= staging->size_scale;
+    chunk->source[i] = (int32_t)(first + i);
+  }
+}
+
+/* Weight of particle i of a chunk on the device. One that is huge against the smoothing length would
+ * be infinite there. */
+static double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
+{
+  const double inv_h = context->lattice.cube / context->options->h_scale / chunk->h[i];
+  return chunk->size[i] * inv_h * inv_h * inv_h;
+}
+
+/* Input index of the first particle of a chunk whose weight is too large; -1 if there is none. */
+static int64_t mcor_find_heavy(
+  const mcor_context* context, const mcor_input* input, const mcor_stage_chunk* chunk)
+{
+  const double limit = context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
+  for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
+  {
+    if (!(mcor_stage_weight(context, chunk, i) < limit))
+    {
+      return chunk->source[i];
+    }
+  }
+  return -1;
+}
+
+/* Drops particles that are not used. */
+static void mcor_pack_stage_chunk(
+  const mcor_context* context, const mcor_input* input, mcor_stage_chunk* chunk)
+{
+  int to = 0;
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    if (mcor_is_used(context, input, chunk->source[i]))
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        chunk->x[a][to] = chunk->x[a][i];
+      }
+      chunk->h[to] = chunk->h[i];
+      chunk->size[to] = chunk->size[i];
+      chunk->source[to++] = chunk->source[i];
+    }
+  }
+  chunk->count = to;
+}
+
+/* To element `to` of the staging arrays. */
+static void mcor_put_stage_chunk(const mcor_context* context, const mcor_input* input,
+  mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to)
+{
+  const mcor_measure* m = &context->measure;
+  const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
+  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
+  uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_put_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
+  }
+  mcor_put_reals(context, staging->size, to, chunk->size, chunk->count);
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    solid[i] = input->solid && input->solid[chunk->source[i]];
+    level[i] = m->support_min < m->support_max
+      ? (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach)
+      : 0;
+    chunk->h[i] = scaled_cube / chunk->h[i];
+  }
+  mcor_put_reals(context, staging->inv_h, to, chunk->h, chunk->count);
+  memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
+}
+
+typedef struct mcor_stage_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_staging* staging;
+  int64_t used[MCOR_SLICES];  /* particles in each slice */
+  int64_t to[MCOR_SLICES];    /* where the first of them goes */
+  int64_t heavy[MCOR_SLICES]; /* see mcor_find_heavy */
+} mcor_stage_job;
+
+static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_stage_job* job = data;
+  int64_t used = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    used += mcor_is_used(job->context, job->input, i);
+  }
+  job->used[slice] = used;
+}
+
+static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_stage_job* job = data;
+  int64_t to = job->to[slice], heavy = -1;
+  mcor_stage_chunk chunk;
+  for (int64_t begin = first; begin < last && heavy < 0; begin += MCOR_CHUNK)
+  {
+    chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    mcor_read_stage_chunk(job->context, job->input, begin, job->staging, &chunk);
+    if (job->input->solid)
+    {
+      mcor_pack_stage_chunk(job->context, job->input, &chunk);
+    }
+    heavy = mcor_find_heavy(job->context, job->input, &chunk);
+    if (heavy < 0)
+    {
+      mcor_put_stage_chunk(job->context, job->input, &chunk, job->staging, to);
+      to += chunk.count;
+    }
+  }
+  job->heavy[slice] = heavy;
+}
+
+static mcor_status mcor_refuse_heavy(
+  mcor_context* context, const mcor_input* input, const mcor_staging* staging, int64_t i)
+{
+  mcor_stage_chunk chunk = { .count = 1 };
+  mcor_read_stage_chunk(context, input, i, staging, &chunk);
+  return mcor_fail(context, MCOR_INVALID_DATA,
+    "The volume of particle %lld is %.3g times the cube of its smoothing length, too much for %s "
+    "precision. Correct it or remove such particles.",
+    (long long)i, mcor_stage_weight(context, &chunk, 0),
+    context->cl.real_size == sizeof(float) ? "single" : "double");
+}
+
+mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging)
+{
+  staging->size_scale = mcor_size_scale(context, input);
+  free(context->source);
+  context->source = malloc((size_t)input->count * sizeof(int32_t));
+  MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld particles could not be allocated.", (long long)input->count);
+  MCOR_TRY(mcor_map_staging(context, input->count, staging));
+  mcor_stage_job job = { .context = context, .input = input, .staging = staging };
+  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_count_slice, &job);
+  for (int s = 0; s < slices; ++s)
+  {
+    job.to[s] = staging->count;
+    staging->count += (int)job.used[s];
+  }
+  mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, &job);
+  for (int s = 0; s < slices; ++s)
+  {
+    if (job.heavy[s] >= 0)
+    {
+      return mcor_refuse_heavy(context, input, staging, job.heavy[s]);
+    }
+  }
+  return MCOR_OK;
+}
+
+typedef struct mcor_value_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_array* array;
+  int component;
+  double shift, scale;
+  void* values;
+} mcor_value_job;
+
+static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_value_job* job = data;
+  const mcor_input* input = job->input;
+  const int32_t* source = job->context->source;
+  const double shift = job->shift, scale = job->scale;
+  int n = 0;
+  for (int64_t begin = first; begin < last; begin += n)
+  {
+    const int64_t from = source[begin], rest = input->count - from;
+    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
+    job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
+               : mcor_read_scalar(input, from, count, chunk);
+    for (n = 0; begin + n < last && source[begin + n] < from + count; ++n)
+    {
+      used[n] = (chunk[source[begin + n] - from] - shift) * scale;
+    }
+    mcor_put_reals(job->context, job->values, begin, used, n);
+  }
+  (void)slice;
+}
+
+/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from the
+ * caller's order to the sorted one, to element to_offset. */
+mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
+  int to_offset)
+{
+  const mcor_grid* grid = &context->grid;
+  const size_t bytes = (size_t)grid->count * context->cl.real_size;
+  mcor_buffer* raw = &context->scratch[0];
+  mcor_value_job job = { context, input, array, component, shift, scale, NULL };
+  MCOR_TRY(mcor_reserve(context, raw, bytes));
+  MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
+  mcor_parallel_for(grid->count, MCOR_LIGHT_GRAIN, mcor_put_value_slice, &job);
+  MCOR_TRY(mcor_unmap(context, raw, &job.values));
+  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
+    MCOR_INT(to_offset));
+}

@@ -1,0 +1,37 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_stage_h
+#define mcor_stage_h
+
+#include "mcor_internal.h"
+
+/* The input in the device's form, in input order; solids that are not used left out. Arrays are views
+ * of the scratch buffers named like them. */
+typedef struct mcor_staging
+{
+  int count;
+  void *xyz, *inv_h, *size; /* fix [count][3], real [count]; size: volume, mass, or 1 */
+  double size_scale;        /* see mcor_size_scale */
+  void *solid, *level;      /* uint8_t */
+} mcor_staging;
+
+enum
+{
+  MCOR_STAGE_XYZ, /* scratch buffers */
+  MCOR_STAGE_INV_H,
+  MCOR_STAGE_SIZE,
+  MCOR_STAGE_SOLID,
+  MCOR_STAGE_LEVEL,
+  MCOR_STAGE_COUNT
+};
+
+/* Whether volumes are computed from the particles' density on the device. */
+static inline bool mcor_needs_density(const mcor_input* input)
+{
+  return !input->has_volume && !(input->has_mass && input->has_density);
+}
+
+mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
+mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);
+
+#endif

@@ -22,9 +22,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  int begin;
-  const int count =
-    mcor_group_load(groups, group, node, offset, 0, fix_bits, &begin, &points, &query);
+  mcor_group_load(&grid, groups, group, node, offset, 0, &points, &query);
   realv at[3], d[3], sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < attribute_count; ++c)
@@ -38,7 +36,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
     realv weight[MCOR_TILE];
     for (int i = 0; i < tile.count; ++i)
     {
-      mcor_points_from(at, &points, &tile, i, d);
+      mcor_points_from(at, &points, tile.x[i], tile.y[i], tile.z[i], d);
       const realv planar = mcor_planar(d[0], d[1], tile.inv_h[i]);
       const realv height = mcor_height(d[2], (realv)tile.inv_h[i]);
       weight[i] = tile.weight[i] * mcor_weight(planar, height, tile.inv_h[i]);
@@ -54,12 +52,13 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
       sums[c] = sum;
     }
   }
-  for (int lane = 0; lane < count; ++lane)
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const real weight = MCOR_GET(w, lane);
-    for (int c = 0; c < attribute_count; ++c)
+    const long v = points.index[lane];
+    for (int c = 0; c < attribute_count && v >= 0; ++c)
     {
-      out[(begin + lane) * (long)attribute_count + c] =
+      out[v * attribute_count + c] =
         fabs(weight) > MCOR_LEAST_SUM ? MCOR_GET(sums[c], lane) / weight : (real)0;
     }
   }
@@ -81,7 +80,7 @@ void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_
       {
         continue;
       }
-      mcor_points_from(at, points, &tile, i, d);
+      mcor_points_from(at, points, tile.x[i], tile.y[i], tile.z[i], d);
       const realv r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       *index = r2 < *least ? (fixv)tile.list[i] : *index;
       *least = fmin(*least, r2);
@@ -104,9 +103,7 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  int begin;
-  const int count =
-    mcor_group_load(groups, group, node, offset, 0, fix_bits, &begin, &points, &query);
+  mcor_group_load(&grid, groups, group, node, offset, 0, &points, &query);
   realv least = MAXFLOAT;
   fixv index = -1;
   mcor_attribute_nearer(&grid, &query, &points, &least, &index);
@@ -122,9 +119,12 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
     query.radius = none ? fmax(query.radius, levels[0].support + 2) : query.radius;
     mcor_attribute_nearer(&grid, &query, &points, &least, &index);
   }
-  for (int lane = 0; lane < count; ++lane)
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const int j = (int)MCOR_GET_FIX(index, lane);
-    nearest[begin + lane] = j < 0 ? -1 : order[j];
+    const int v = points.index[lane], j = (int)MCOR_GET_FIX(index, lane);
+    if (v >= 0)
+    {
+      nearest[v] = j < 0 ? -1 : order[j];
+    }
   }
 }

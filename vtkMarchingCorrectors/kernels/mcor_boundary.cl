@@ -118,7 +118,7 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      mcor_points_from(at, points, tile, i, u);
+      mcor_points_from(at, points, tile->x[i], tile->y[i], tile->z[i], u);
       mcor_weight_gradient(u[0], u[1], u[2], tile->inv_h[i], &gx, &gy, &gz);
       const real v = MCOR_TILE_TRIM(tile)[i], half_v = (real)0.5 * v;
       m->xx -= v * (u[0] * gx);
@@ -145,7 +145,7 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      mcor_points_from(at, points, tile, i, u);
+      mcor_points_from(at, points, tile->x[i], tile->y[i], tile->z[i], u);
       mcor_weight_second(u, tile->inv_h[i], e, g, d);
       const realv along_u = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
       const realv along_g = e[0] * g[0] + e[1] * g[1] + e[2] * g[2];
@@ -175,13 +175,14 @@ __kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
   mcor_query query;
   mcor_tile tile;
   mcor_boundary_at boundary;
-  int begin;
-  const int count =
-    mcor_group_load(groups, group, node, offset, 0, fix_bits, &begin, &points, &query);
+  mcor_group_load(&grid, groups, group, node, offset, 0, &points, &query);
   mcor_tile_init(&tile);
   mcor_evaluate_boundary(&grid, &query, &tile, &points, false, &boundary);
-  for (int lane = 0; lane < count; ++lane)
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    eigenvalue[begin + lane] = MCOR_GET(boundary.value, lane);
+    if (points.index[lane] >= 0)
+    {
+      eigenvalue[points.index[lane]] = MCOR_GET(boundary.value, lane);
+    }
   }
 }

@@ -4,13 +4,6 @@
 /* Correction [III-D.2]: evaluation of field and gradient at MCOR_LANES points at a time, and the
  * safeguarded Newton iteration along a lattice edge. */
 
-/* Points: lattice node plus offset in cubes. */
-typedef struct
-{
-  fixv x, y, z;
-  realv ox, oy, oz;
-} mcor_points;
-
 /* Field minus iso value, its gradient, and the trimming weight with its gradient; per cube. */
 typedef struct
 {
@@ -18,150 +11,8 @@ typedef struct
   realv weight, wx, wy, wz;
 } mcor_field_at;
 
-bool mcor_same_brick(int4 a, int4 b)
-{
-  return a.x >> 2 == b.x >> 2 && a.y >> 2 == b.y >> 2 && a.z >> 2 == b.z >> 2;
-}
-
-/* Points that are evaluated together should lie close together, as then fewer particles reach them:
- * a group is up to MCOR_LANES successive points of one brick. */
-#define MCOR_GROUP_CHUNK 64
-
-/* One work-item = MCOR_GROUP_CHUNK points, of `count` from `first`. Writes 1 where a group starts. */
-__kernel void mcor_group_count(
-  const int first, const int count, __global const int4* all_nodes, __global int* flags)
-{
-  __global const int4* node = all_nodes + first;
-  const int begin = get_global_id(0) * MCOR_GROUP_CHUNK;
-  int before = 0; /* points of the same brick just before this one */
-  for (int i = begin; i < min(begin + MCOR_GROUP_CHUNK, count); ++i)
-  {
-    if (i == begin)
-    {
-      while (before < i && mcor_same_brick(node[i - before - 1], node[i]))
-      {
-        ++before;
-      }
-    }
-    else
-    {
-      before = mcor_same_brick(node[i - 1], node[i]) ? before + 1 : 0;
-    }
-    flags[i] = before % MCOR_LANES == 0;
-  }
-}
-
-/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last entry
- * is the end. */
-__kernel void mcor_group_fill(
-  const int first, const int count, __global const int* scanned, __global int* groups)
-{
-  const int i = get_global_id(0);
-  if (i < count && scanned[i] != scanned[i + 1])
-  {
-    groups[scanned[i]] = first + i;
-  }
-  if (i == count)
-  {
-    groups[scanned[count]] = first + count;
-  }
-}
-
-/* Loads the nodes of points begin.. (the last one repeated beyond `end`) and fits the query. */
-void mcor_points_load(__global const int4* node, int begin, int end, int fix_bits,
-  mcor_points* points, mcor_query* query, int* bits)
-{
-  fix n[3][MCOR_LANES];
-  int low[3] = { INT_MAX, INT_MAX, INT_MAX }, high[3] = { INT_MIN, INT_MIN, INT_MIN };
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const int4 p = node[min(begin + lane, end - 1)];
-    const int c[3] = { p.x, p.y, p.z };
-    for (int a = 0; a < 3; ++a)
-    {
-      n[a][lane] = (fix)c[a] << fix_bits;
-      low[a] = min(low[a], c[a]);
-      high[a] = max(high[a], c[a]);
-    }
-    bits[lane] = p.w;
-  }
-#if MCOR_LANES == 1
-  points->x = n[0][0];
-  points->y = n[1][0];
-  points->z = n[2][0];
-#else
-  points->x = MCOR_CAT(vload, MCOR_LANES)(0, n[0]);
-  points->y = MCOR_CAT(vload, MCOR_LANES)(0, n[1]);
-  points->z = MCOR_CAT(vload, MCOR_LANES)(0, n[2]);
-#endif
-  query->radius = -1;
-  for (int a = 0; a < 3; ++a)
-  {
-    query->low[a] = (fix)low[a] << fix_bits;
-    query->high[a] = (fix)high[a] << fix_bits;
-  }
-}
-
-/* Extends the query from the nodes to all points with offsets in [low, high]. */
-void mcor_points_extend(mcor_query* query, int axis, real low, real high, int fix_bits)
-{
-  query->low[axis] += (fix)floor(ldexp(low, fix_bits)) - 1;
-  query->high[axis] += (fix)ceil(ldexp(high, fix_bits)) + 1;
-}
-
-/* Loads the offsets of the same points, and extends the query by them and by `margin` more. */
-void mcor_points_load_offsets(__global const real4* offset, int begin, int end, real margin,
-  int fix_bits, mcor_points* points, mcor_query* query)
-{
-  real4 low = (real4)INFINITY, high = (real4)-INFINITY;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const real4 o = offset[min(begin + lane, end - 1)];
-    MCOR_SET(points->ox, lane) = o.x;
-    MCOR_SET(points->oy, lane) = o.y;
-    MCOR_SET(points->oz, lane) = o.z;
-    low = fmin(low, o);
-    high = fmax(high, o);
-  }
-  mcor_points_extend(query, 0, low.x - margin, high.x + margin, fix_bits);
-  mcor_points_extend(query, 1, low.y - margin, high.y + margin, fix_bits);
-  mcor_points_extend(query, 2, low.z - margin, high.z + margin, fix_bits);
-}
-
-/* Loads group number `group` of points and their offsets, and fits the query to them, `margin` added.
- * Returns the number of points; they begin at *begin. */
-int mcor_group_load(__global const int* groups, int group, __global const int4* node,
-  __global const real4* offset, real margin, int fix_bits, int* begin, mcor_points* points,
-  mcor_query* query)
-{
-  int unused[MCOR_LANES];
-  const int end = groups[group + 1];
-  *begin = groups[group];
-  mcor_points_load(node, *begin, end, fix_bits, points, query, unused);
-  mcor_points_load_offsets(offset, *begin, end, margin, fix_bits, points, query);
-  return end - *begin;
-}
-
-/* The points' nodes from the query's low corner, as particles are in a tile. */
-void mcor_points_relative(
-  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
-{
-  at[0] = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
-  at[1] = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
-  at[2] = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
-}
-
-/* Where the points are from particle i of the tile; `at` is of mcor_points_relative. */
-void mcor_points_from(
-  const realv at[3], const mcor_points* points, const mcor_tile* tile, int i, realv d[3])
-{
-  d[0] = (at[0] - tile->x[i]) + points->ox;
-  d[1] = (at[1] - tile->y[i]) + points->oy;
-  d[2] = (at[2] - tile->z[i]) + points->oz;
-}
-
 /* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
-void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, real iso, mcor_field_at* at)
 {
   realv s = 0, sx = 0, sy = 0, sz = 0, w = 0, wx = 0, wy = 0, wz = 0;
@@ -170,19 +21,17 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
 #endif
   realv at_node[3], d[3], gx, gy, gz;
   mcor_points_relative(grid, query, points, at_node);
-  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
+  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
   {
-    for (int i = 0; i < tile->count; ++i)
+    for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
     {
-      mcor_points_from(at_node, points, tile, i, d);
-      const realv k = mcor_weight_gradient(d[0], d[1], d[2], tile->inv_h[i], &gx, &gy, &gz);
-      const real m = tile->weight[i];
-#if MCOR_FIELD == 0
-      const real c = m * (tile->value[i] - iso);
-#elif MCOR_FIELD == 1
-      const real c = m * tile->value[i];
-#endif
+      mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+        MCOR_REACH(reach, z, i), d);
+      const realv k =
+        mcor_weight_gradient(d[0], d[1], d[2], MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
+      const realv m = MCOR_REACH(reach, weight, i);
 #if MCOR_FIELD != 2
+      const realv c = MCOR_REACH_TERM(reach, i, iso);
       s += c * k;
       sx += c * gx;
       sy += c * gy;
@@ -193,7 +42,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
       wy += m * gy;
       wz += m * gz;
 #if MCOR_SOLIDS
-      const real mt = tile->trim_weight[i];
+      const realv mt = MCOR_REACH_TRIM(reach, i);
       t += mt * k;
       tx += mt * gx;
       ty += mt * gy;
@@ -285,38 +134,51 @@ typedef struct
   realv v0, v1, ax, ay, az;
 } mcor_edges;
 
-/* Loads the ends of a group's edges, and extends the query from their lower nodes to all of them. */
-void mcor_edges_load(__global const real* vertex_ends, int begin, int end, const int* axis_of,
-  int fix_bits, mcor_edges* edges, mcor_query* query)
+/* Most vertices are this close to where linear interpolation puts them, in cubes. */
+#define MCOR_EDGE_SLACK ((real)0.15f)
+
+/* Loads group number `group` of edges: their lower nodes, and ends. */
+void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int group,
+  __global const int4* vertex_edge, __global const real* vertex_ends, mcor_edges* edges,
+  mcor_points* points)
 {
-  int axes = 0;
+  int from[MCOR_LANES];
+  mcor_points_place(vertex_edge, groups[group], groups[group + 1], points, from);
+  mcor_points_load(vertex_edge, from, grid->fix_bits, points);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const int v = min(begin + lane, end - 1), axis = axis_of[lane] & 3;
+    const int v = from[lane], axis = vertex_edge[v].w & 3;
     MCOR_SET(edges->v0, lane) = vertex_ends[2 * v];
     MCOR_SET(edges->v1, lane) = vertex_ends[2 * v + 1];
     MCOR_SET(edges->ax, lane) = axis == 0;
     MCOR_SET(edges->ay, lane) = axis == 1;
     MCOR_SET(edges->az, lane) = axis == 2;
-    axes |= 1 << axis;
   }
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_points_extend(query, a, 0, (real)(axes >> a & 1), fix_bits);
-  }
+}
+
+/* Fits the query to the edges from t = low to high. */
+void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, realv high,
+  mcor_points* points, mcor_query* query)
+{
+  const realv from[3] = { low * e->ax, low * e->ay, low * e->az };
+  const realv to[3] = { high * e->ax, high * e->ay, high * e->az };
+  mcor_points_bound(grid, from, to, points, query);
 }
 
 /* Moves all vertices of a group along their edges, from t0, until each is on the surface or `limit`
  * steps were made. `evaluations` counts how many each needed. */
-void mcor_correct_group(const mcor_grid* grid, mcor_query* query, const mcor_edges* e, realv t0,
-  real iso, real tolerance, int limit, mcor_points* points, mcor_field_at* at, realv* t,
-  fixv* evaluations)
+void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
+  real tolerance, int limit, mcor_points* points, mcor_field_at* at, realv* t, fixv* evaluations)
 {
   realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
   const fixv rising = e->v0 < 0;
   fixv active = low < high;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
+  realv reached_low = fmax(t0 - MCOR_EDGE_SLACK, (realv)0);
+  realv reached_high = fmin(t0 + MCOR_EDGE_SLACK, (realv)1);
+  mcor_query query;
+  mcor_reach reach;
+  mcor_tile_init(&reach.tile);
+  mcor_edges_bound(grid, e, reached_low, reached_high, points, &query);
   *t = t0;
   *evaluations = 0;
   for (int i = 0;; ++i)
@@ -324,7 +186,7 @@ void mcor_correct_group(const mcor_grid* grid, mcor_query* query, const mcor_edg
     points->ox = *t * e->ax;
     points->oy = *t * e->ay;
     points->oz = *t * e->az;
-    mcor_evaluate(grid, query, &tile, points, iso, at);
+    mcor_evaluate(grid, &query, &reach, points, iso, at);
     *evaluations += active ? (fixv)1 : (fixv)0;
     const realv slope = at->gx * e->ax + at->gy * e->ay + at->gz * e->az;
     const realv error = fabs(at->value);
@@ -345,6 +207,13 @@ void mcor_correct_group(const mcor_grid* grid, mcor_query* query, const mcor_edg
     next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
     active = active && next != *t;
     *t = active ? next : *t;
+    if (MCOR_ANY(*t < reached_low || *t > reached_high))
+    {
+      reached_low = 0;
+      reached_high = 1;
+      mcor_edges_bound(grid, e, reached_low, reached_high, points, &query);
+      mcor_tile_init(&reach.tile);
+    }
   }
 }
 
@@ -362,26 +231,25 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   {
     return;
   }
-  const int begin = groups[group], end = groups[group + 1];
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
-  mcor_query query;
   mcor_edges edges;
   mcor_field_at at;
-  int axis_of[MCOR_LANES];
-  mcor_points_load(vertex_edge, begin, end, fix_bits, &points, &query, axis_of);
-  mcor_edges_load(vertex_ends, begin, end, axis_of, fix_bits, &edges, &query);
+  mcor_edges_load(&grid, groups, group, vertex_edge, vertex_ends, &edges, &points);
   const realv t0 = clamp(
     edges.v0 / (edges.v0 - edges.v1), (realv)MCOR_EDGE_MARGIN, (realv)(1 - MCOR_EDGE_MARGIN));
   realv t;
   fixv count;
   mcor_correct_group(
-    &grid, &query, &edges, t0, iso, tolerance, limit, &points, &at, &t, &count);
-  for (int lane = 0; begin + lane < end; ++lane)
+    &grid, &edges, t0, iso, tolerance, limit, &points, &at, &t, &count);
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const int v = begin + lane;
-    mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
-    linear[v] = MCOR_GET(t0, lane) - MCOR_GET(t, lane);
-    evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
+    const int v = points.index[lane];
+    if (v >= 0)
+    {
+      mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
+      linear[v] = MCOR_GET(t0, lane) - MCOR_GET(t, lane);
+      evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
+    }
   }
 }

@@ -75,6 +75,24 @@ typedef ushort mcor_mask;
   (*(mcor_loose_fixv*)(to) = __builtin_ia32_compresssi512_mask(                                    \
      (first) + mcor_lane_index(), (int16)0, (mask)))
 #define MCOR_MASK_COUNT(mask) ((int)popcount(mask))
+#define MCOR_PARTS 4
+
+/* Writes a0 b0 c0 d0 a1 b1 ... */
+void mcor_interleave4(realv a, realv b, realv c, realv d, real* to)
+{
+#define MCOR_LOW_HALVES 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
+#define MCOR_HIGH_HALVES 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
+#define MCOR_LOW_PAIRS 0, 1, 16, 17, 2, 3, 18, 19, 4, 5, 20, 21, 6, 7, 22, 23
+#define MCOR_HIGH_PAIRS 8, 9, 24, 25, 10, 11, 26, 27, 12, 13, 28, 29, 14, 15, 30, 31
+  const realv ab = __builtin_shufflevector(a, b, MCOR_LOW_HALVES);
+  const realv cd = __builtin_shufflevector(c, d, MCOR_LOW_HALVES);
+  const realv ef = __builtin_shufflevector(a, b, MCOR_HIGH_HALVES);
+  const realv gh = __builtin_shufflevector(c, d, MCOR_HIGH_HALVES);
+  vstore16(__builtin_shufflevector(ab, cd, MCOR_LOW_PAIRS), 0, to);
+  vstore16(__builtin_shufflevector(ab, cd, MCOR_HIGH_PAIRS), 1, to);
+  vstore16(__builtin_shufflevector(ef, gh, MCOR_LOW_PAIRS), 2, to);
+  vstore16(__builtin_shufflevector(ef, gh, MCOR_HIGH_PAIRS), 3, to);
+}
 #else
 typedef struct
 {
@@ -122,6 +140,22 @@ int mcor_mask_count(const mcor_mask* mask)
 #define MCOR_PACK_INDEX(mask, first, to) mcor_pack_index(&(mask), first, to)
 #define MCOR_MASK_COUNT(mask) mcor_mask_count(&(mask))
 #endif
+
+#ifndef MCOR_PARTS
+#define MCOR_PARTS 1
+#endif
+
+/* Whether particles at this distance from a box, per axis, may reach it. The margin covers rounding: a
+ * particle kept in vain adds exactly 0. */
+fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h)
+{
+#if MCOR_TENSOR
+  return fmax(dx, fmax(dy, dz)) * inv_h < MCOR_SUPPORT * (real)1.0001;
+#else
+  return (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
+    MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001;
+#endif
+}
 
 /* Tests MCOR_LANES particles from j on, of which `lanes` are meant, and puts those that reach the
  * query's box behind the tile's first `count`. Returns the new count. */

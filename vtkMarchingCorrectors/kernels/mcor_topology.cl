@@ -132,18 +132,19 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   mcor_points points;
   mcor_query query;
   mcor_field_at at;
-  mcor_tile tile;
-  int begin;
-  const int count = mcor_group_load(
-    groups, group, sample_node, sample_offset, 0, fix_bits, &begin, &points, &query);
-  mcor_tile_init(&tile);
-  mcor_evaluate(&grid, &query, &tile, &points, iso, &at);
-  for (int lane = 0; lane < count; ++lane)
+  mcor_reach reach;
+  mcor_group_load(&grid, groups, group, sample_node, sample_offset, 0, &points, &query);
+  mcor_tile_init(&reach.tile);
+  mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const real value = MCOR_GET(at.value, lane);
-    side[begin + lane] = (uchar)(value == (real)1e30f
-        ? MCOR_SAMPLE_NONE
-        : value >= 0 ? MCOR_SAMPLE_ABOVE : MCOR_SAMPLE_BELOW);
+    if (points.index[lane] >= 0)
+    {
+      side[points.index[lane]] = (uchar)(value == (real)1e30f
+          ? MCOR_SAMPLE_NONE
+          : value >= 0 ? MCOR_SAMPLE_ABOVE : MCOR_SAMPLE_BELOW);
+    }
   }
 }
 

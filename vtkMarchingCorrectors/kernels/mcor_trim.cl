@@ -130,12 +130,12 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
 /* What is trimmed by, at all points where the field was evaluated. */
-void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, bool by_eigenvalue, mcor_boundary_at* bound)
 {
   if (by_eigenvalue)
   {
-    mcor_evaluate_boundary(grid, query, tile, points, true, bound);
+    mcor_evaluate_boundary(grid, query, &reach->tile, points, true, bound);
     return;
   }
   bound->value = at->weight;
@@ -175,14 +175,14 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   real threshold, bool by_eigenvalue, int limit, mcor_points* points, mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
-  mcor_tile tile;
+  mcor_reach reach;
   mcor_boundary_at bound;
-  mcor_tile_init(&tile);
+  mcor_tile_init(&reach.tile);
   fixv done = 0, failed = 0;
   for (int i = 0;; ++i)
   {
-    mcor_evaluate(grid, query, &tile, points, iso, at);
-    mcor_trim_bound(grid, query, &tile, points, at, by_eigenvalue, &bound);
+    mcor_evaluate(grid, query, &reach, points, iso, at);
+    mcor_trim_bound(grid, query, &reach, points, at, by_eigenvalue, &bound);
     done = done ||
       (fabs(at->value) <= tolerance && fabs(bound.value - threshold) <= MCOR_TRIM_TOLERANCE);
     if (i == limit || !MCOR_ANY(!(done || failed)))
@@ -205,7 +205,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     points->ox = back ? x0 : points->ox;
     points->oy = back ? y0 : points->oy;
     points->oz = back ? z0 : points->oz;
-    mcor_evaluate(grid, query, &tile, points, iso, at);
+    mcor_evaluate(grid, query, &reach, points, iso, at);
   }
   return back;
 }
@@ -229,15 +229,17 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   mcor_points points;
   mcor_query query;
   mcor_field_at at;
-  int begin;
-  const int count = mcor_group_load(
-    groups, group, node, offset, MCOR_TRIM_REACH, grid->fix_bits, &begin, &points, &query);
+  mcor_group_load(grid, groups, group, node, offset, MCOR_TRIM_REACH, &points, &query);
   const fixv linear = mcor_trim_group(
     grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &at);
-  for (int lane = 0; lane < count; ++lane)
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    mcor_points_store(&points, &at, lane, begin + lane, offset, value, gradient, weight);
-    flag[begin + lane] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
+    const int v = points.index[lane];
+    if (v >= 0)
+    {
+      mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
+      flag[v] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
+    }
   }
 }
 

@@ -29,7 +29,7 @@ static mcor_status mcor_ask_complete(mcor_context* context, double iso)
   MCOR_TRY(mcor_find_states(context, iso, 64, &bricks->block_states, of_regions));
   MCOR_TRY(mcor_find_states(context, iso, MCOR_BLOCK_BRICKS, of_regions, &bricks->states));
   return MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
-    bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_BLOCK_ARGS(context),
+    bricks->block_count * (MCOR_BLOCK_BRICKS / 8), MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
 }
 

@@ -341,31 +341,52 @@ int mcor_seed_neighbour(
   return *other < 0 ? MCOR_VOID : states[*other];
 }
 
-/* One work-item = one brick (of all in blocks). Reads the states. Asks for the brick where it is to be
- * examined, or its neighbour is certain to be on the other side. */
+/* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below (from
+ * bit 16 on). m: mark of brick x = 0, whose position is `brick`, or -1 where it has no block. */
+uint mcor_seed_row(MCOR_BLOCK_PARAMS, int m, int4 brick, __global const uchar* states)
+{
+  uint sides = 0;
+  for (int x = -1; x <= 8; ++x)
+  {
+    const int other = (x & 7) == x ? m < 0 ? -1 : m + x
+                                   : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + x, brick.y, brick.z);
+    const int state = other < 0 ? MCOR_VOID : states[other];
+    sides |= (uint)(state == MCOR_ABOVE) << (x + 1) | (uint)(state == MCOR_BELOW) << (x + 17);
+  }
+  return sides;
+}
+
+/* One work-item = one row of 8 bricks of a block. Reads the states. Asks for each brick that is to be
+ * examined, or certain to be on another side than one next to it. */
 __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   __global const uchar* states, __global uint* brick_bits)
 {
-  const int m = get_global_id(0);
+  const int m = get_global_id(0) * 8;
   if (m >= block_count * MCOR_BLOCK_BRICKS || quiet[m / MCOR_BLOCK_BRICKS])
   {
     return;
   }
-  const int state = states[m];
-  bool needed = state == MCOR_EXAMINE;
-  if (state == MCOR_ABOVE || state == MCOR_BELOW)
+  int seen = 0;
+  for (int x = 0; x < 8; ++x)
   {
-    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
-    for (int d = 0; d < 27 && !needed; ++d)
-    {
-      int other;
-      needed = mcor_seed_neighbour(MCOR_BLOCK_ARGS, m, brick, d, states, &other) ==
-        MCOR_ABOVE + MCOR_BELOW - state;
-    }
+    seen |= 1 << states[m + x];
   }
-  if (needed)
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+  uint beside = 0;
+  for (int d = 0; d < 9 && seen & (1 << MCOR_ABOVE | 1 << MCOR_BELOW); ++d)
   {
-    mcor_ask_brick(brick_bits, m);
+    const int4 row = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
+    beside |= mcor_seed_row(MCOR_BLOCK_ARGS,
+      mcor_find_mark(MCOR_BLOCK_ARGS, row.x, row.y, row.z), row, states);
+  }
+  for (int x = 0; x < 8; ++x)
+  {
+    const int state = states[m + x];
+    if (state == MCOR_EXAMINE || (state == MCOR_ABOVE && beside >> (x + 16) & 7) ||
+      (state == MCOR_BELOW && beside >> x & 7))
+    {
+      mcor_ask_brick(brick_bits, m + x);
+    }
   }
 }
 

@@ -33,6 +33,8 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
   MCOR_TRY(mcor_reserve(context, &mesh->gradient, n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_weight, n * real));
   MCOR_TRY(mcor_reserve(context, &mesh->flag, n));
+  MCOR_TRY(
+    mcor_reserve(context, &mesh->means, n * (size_t)context->attributes.count * real));
   return mcor_reserve(context, &mesh->evaluations, n);
 }
 
@@ -72,6 +74,7 @@ mcor_status mcor_correct(mcor_context* context, double iso)
     MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
     MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations)));
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   return options->preview ? MCOR_OK : mcor_count_iterations(context);
 }

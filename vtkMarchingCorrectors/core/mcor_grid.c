@@ -121,8 +121,7 @@ static mcor_status mcor_compute_volumes(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, mass, bytes));
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(size), MCOR_BUFFER(mass),
-    MCOR_INT(0)));
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(size), MCOR_BUFFER(mass), MCOR_INT(0)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(mass), MCOR_BUFFER(density)));

@@ -110,12 +110,30 @@ typedef struct mcor_mesh
   int vertex_count; /* the same and those of the trim boundary */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
+  mcor_buffer means; /* real [vertex_count][attributes.count] */
   mcor_buffer boundary; /* real [march_count], MCOR_BOUNDARY_EIGENVALUE only: what w is otherwise */
   mcor_buffer triangles, trimmed, remaining, cuts, cut_keys, cut_distinct, cut_index;
   mcor_buffer scanned;
   /* Of MCOR_TOPOLOGY_FIELD. decisions: see MCOR_DECISION_MASKS. */
   mcor_buffer decisions, sample_base, sample_node, sample_offset, sample_side;
 } mcor_mesh;
+
+/* One component of an attribute. */
+typedef struct mcor_component
+{
+  int attribute, component;
+  double scale; /* of the values on the device */
+} mcor_component;
+
+#define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_attribute.cl */
+
+/* The components on the device. */
+typedef struct mcor_attributes
+{
+  int count;
+  mcor_component component[MCOR_ATTRIBUTE_LIMIT];
+  mcor_buffer sorted; /* real [count][grid.count] */
+} mcor_attributes;
 
 struct mcor_context
 {
@@ -129,9 +147,9 @@ struct mcor_context
   mcor_buffer topology_cases, topology_rows; /* empty until MCOR_TOPOLOGY_FIELD is first used */
   mcor_buffer scratch[6];     /* within one function */
   mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
-  mcor_buffer out[8], attributes;
+  mcor_buffer out[8];
+  mcor_attributes attributes;
   mcor_buffer groups; /* see mcor_make_groups */
-  int group_count;
   int32_t* source; /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift; /* A0 */
   bool nodes_valid;   /* bricks hold node values of the current scalar */
@@ -152,6 +170,13 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 #endif
   ;
 double mcor_seconds(void);
+
+/* Element i of an array of the device's real type. */
+static inline double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
+{
+  return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
+                                                : ((const double*)array)[i];
+}
 
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
 static inline bool mcor_uses_pairs(const mcor_context* context)
@@ -204,6 +229,9 @@ mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
   const mcor_buffer* offset, int count, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
+mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
+mcor_status mcor_add_attributes(
+  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
@@ -256,6 +284,11 @@ extern const char mcor_source_mcor_output_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 
 /* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
+/* Arguments of MCOR_ATTRIBUTE_PARAMS. */
+#define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \
+  MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
+    MCOR_BUFFER(&(c)->attributes.sorted), MCOR_BUFFER(means)
+
 #define MCOR_GRID_ARGS(c)                                                                          \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
     MCOR_INT((c)->lattice.fix_bits), MCOR_BUFFER(&(c)->grid.level_buffer),                         \

@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_attribute.cl */
-
 /* Views of what the device hands over for the vertices of one iso value. */
 typedef struct mcor_download
 {
@@ -21,12 +19,6 @@ typedef struct mcor_download
   const cl_float* normal;
   const void *offset, *gradient, *numbers;
 } mcor_download;
-
-static double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
-{
-  return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
-                                                : ((const double*)array)[i];
-}
 
 /* Keeps the vertices that a triangle uses, in order; renumbers the triangles. */
 static mcor_status mcor_compact(mcor_context* context, int* count)
@@ -46,12 +38,14 @@ static mcor_status mcor_compact(mcor_context* context, int* count)
   MCOR_TRY(mcor_reserve(context, &out[2], n * 4 * sizeof(cl_float)));
   MCOR_TRY(mcor_reserve(context, &out[3], n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &out[4], n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &out[5], n * (size_t)context->attributes.count * real));
   return MCOR_LAUNCH(context, "mcor_output_vertices", MCOR_LIGHT, vertices, MCOR_INT(vertices),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->node),
     MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value),
     MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
     MCOR_BUFFER(&out[0]), MCOR_BUFFER(&out[1]),
-    MCOR_BUFFER(&out[2]), MCOR_BUFFER(&out[3]), MCOR_BUFFER(&out[4]));
+    MCOR_BUFFER(&out[2]), MCOR_BUFFER(&out[3]), MCOR_BUFFER(&out[4]),
+    MCOR_INT(context->attributes.count), MCOR_BUFFER(&mesh->means), MCOR_BUFFER(&out[5]));
 }
 
 static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
@@ -284,130 +278,6 @@ static mcor_status mcor_deliver_triangles(
   return mcor_unmap(context, buffer, &view);
 }
 
-/* One component of one attribute. */
-typedef struct mcor_component
-{
-  int attribute, component;
-} mcor_component;
-
-static mcor_status mcor_add_nearest(mcor_context* context, int points, mcor_surface* surface)
-{
-  mcor_buffer* indices = &context->out[6];
-  const size_t bytes = (size_t)points * sizeof(cl_int);
-  MCOR_TRY(mcor_reserve(context, indices, bytes));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, context->group_count,
-    MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
-    MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]),
-    MCOR_INT(context->measure.support_min == context->measure.support_max),
-    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
-  void* view;
-  MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
-  const cl_int* index = view;
-  int64_t* to = surface->nearest_particle + surface->point_count;
-  for (int i = 0; i < points; ++i)
-  {
-    to[i] = index[i] < 0 ? -1 : context->source[index[i]];
-  }
-  return mcor_unmap(context, indices, &view);
-}
-
-/* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
- * overflows whatever the device's precision. */
-static double mcor_component_scale(const mcor_array* array, int64_t count, int component)
-{
-  int exponent = 0;
-  frexp(mcor_largest(array, count, component), &exponent);
-  return ldexp(1, exponent > -1000 ? -exponent : 1000);
-}
-
-/* Component c of the `count` that were evaluated, to every `width`-th element. */
-typedef struct mcor_means
-{
-  const mcor_context* context;
-  const void* values;
-  int count, c, width;
-  double scale;
-  double* to;
-} mcor_means;
-
-static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_means* m = data;
-  const double scale = m->scale;
-  double* to = m->to;
-  for (int64_t i = first; i < last; ++i)
-  {
-    to[i * m->width] = mcor_get_real(m->context, m->values, i * m->count + m->c) / scale;
-  }
-  (void)slice;
-}
-
-/* Evaluates up to MCOR_ATTRIBUTE_LIMIT components at the points just put out. */
-static mcor_status mcor_evaluate_attributes(mcor_context* context, const mcor_input* input,
-  const mcor_component* components, int count, int points, mcor_surface* surface)
-{
-  const size_t real = context->cl.real_size, bytes = (size_t)points * (size_t)count * real;
-  const int stride = context->grid.count;
-  double scale[MCOR_ATTRIBUTE_LIMIT];
-  mcor_buffer* values = &context->out[5];
-  MCOR_TRY(mcor_reserve(context, &context->attributes, (size_t)count * (size_t)stride * real));
-  MCOR_TRY(mcor_reserve(context, values, bytes));
-  for (int c = 0; c < count; ++c)
-  {
-    const mcor_array* array = &input->attributes[components[c].attribute];
-    scale[c] = mcor_component_scale(array, input->count, components[c].component);
-    MCOR_TRY(mcor_sort_values(context, input, array, components[c].component, 0, scale[c],
-      &context->attributes, c * stride));
-  }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, context->group_count,
-    MCOR_GRID_ARGS(context), MCOR_INT(context->group_count), MCOR_BUFFER(&context->groups),
-    MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]), MCOR_INT(count),
-    MCOR_INT(stride), MCOR_BUFFER(&context->attributes), MCOR_BUFFER(values)));
-  void* view;
-  MCOR_TRY(mcor_map(context, values, bytes, false, &view));
-  for (int c = 0; c < count; ++c)
-  {
-    const int a = components[c].attribute;
-    const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
-    double* to =
-      surface->attributes[a] + surface->point_count * width + components[c].component;
-    mcor_means means = { context, view, count, c, width, scale[c], to };
-    mcor_parallel_for(points, MCOR_LIGHT_GRAIN, mcor_put_means, &means);
-  }
-  return mcor_unmap(context, values, &view);
-}
-
-static mcor_status mcor_add_attributes(
-  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface)
-{
-  mcor_component batch[MCOR_ATTRIBUTE_LIMIT];
-  int count = 0;
-  if (points == 0 || (input->attribute_count == 0 && !context->options->nearest_particle))
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_make_groups(context, &context->out[0], 0, points, &context->group_count));
-  if (context->options->nearest_particle)
-  {
-    MCOR_TRY(mcor_add_nearest(context, points, surface));
-  }
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const int width = input->attributes[a].components > 0 ? input->attributes[a].components : 1;
-    for (int c = 0; c < width; ++c)
-    {
-      batch[count++] = (mcor_component){ a, c };
-      if (count == MCOR_ATTRIBUTE_LIMIT)
-      {
-        MCOR_TRY(mcor_evaluate_attributes(context, input, batch, count, points, surface));
-        count = 0;
-      }
-    }
-  }
-  return count > 0 ? mcor_evaluate_attributes(context, input, batch, count, points, surface)
-                   : MCOR_OK;
-}
-
 /* Evaluated for the array alone, as only trimming needs it, and there at other vertices. */
 static mcor_status mcor_add_boundary_eigenvalue(
   mcor_context* context, int points, mcor_surface* surface)
@@ -470,6 +340,5 @@ mcor_status mcor_append_output(
   {
     mcor_release(context, &context->out[i]);
   }
-  mcor_release(context, &context->attributes);
   return status != MCOR_OK ? status : unmapped;
 }

@@ -55,6 +55,8 @@ static mcor_status mcor_extend_vertices(mcor_context* context, int old, int coun
   MCOR_TRY(mcor_extend(context, &mesh->field_value, reals, new_reals));
   MCOR_TRY(mcor_extend(context, &mesh->gradient, 4 * reals, 4 * new_reals));
   MCOR_TRY(mcor_extend(context, &mesh->vertex_weight, reals, new_reals));
+  const size_t attributes = (size_t)context->attributes.count;
+  MCOR_TRY(mcor_extend(context, &mesh->means, attributes * reals, attributes * new_reals));
   return mcor_extend(context, &mesh->flag, o, n);
 }
 
@@ -81,7 +83,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
     MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag));
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
 /* iso: relative to A0. */

@@ -8,11 +8,108 @@
 /* A lower sum of weights has no digits that could be divided by. */
 #define MCOR_LEAST_SUM ((real)1e-30f)
 
-/* One work-item = one group of points. Reads `attribute_count` (at most MCOR_ATTRIBUTE_LIMIT) sorted
- * arrays, one after the other. Writes their Shepard means. */
+/* Sorted arrays, `stride` elements long, one after the other, at most MCOR_ATTRIBUTE_LIMIT. Their means
+ * at a point lie one after the other, too. */
+#define MCOR_ATTRIBUTE_PARAMS                                                                      \
+  const int attribute_count, const int stride, __global const real *attributes,                    \
+    __global real *means
+
+#define MCOR_ATTRIBUTE_ARGS attribute_count, stride, attributes, means
+
+/* Values of an attribute at the particles of a reach, to be read by MCOR_VALUE. */
+#if MCOR_PARTS == 1
+#define MCOR_VALUE(values, i) (values)[i]
+void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
+{
+  for (int i = 0; i < reach->tile.count; ++i)
+  {
+    values[i] = attribute[reach->tile.list[i]];
+  }
+}
+#else
+#define MCOR_VALUE(values, i) mcor_each_lane(vload4(i, values))
+void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
+{
+  real of_tile[MCOR_TILE + 16];
+  for (int i = 0; i < reach->tile.count; ++i)
+  {
+    of_tile[i] = attribute[reach->tile.list[i]];
+  }
+  mcor_reach_pack(&reach->masks, of_tile, values);
+}
+#endif
+
+/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes: together, as
+ * a sum alone would wait for its last addition. weight: w_i in each lane. */
+#define MCOR_ATTRIBUTE_STEP 4
+void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes, const int stride,
+  int count, const realv* weight, realv sums[MCOR_ATTRIBUTE_STEP])
+{
+  real values[MCOR_ATTRIBUTE_STEP][MCOR_PARTS * (MCOR_TILE + 16)];
+  for (int c = 0; c < count; ++c)
+  {
+    mcor_attribute_load(reach, attributes + c * (long)stride, values[c]);
+  }
+  const real *v1 = values[count > 1], *v2 = values[count > 2 ? 2 : 0],
+             *v3 = values[count > 3 ? 3 : 0];
+  realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  {
+    s0 += weight[i] * MCOR_VALUE(values[0], i);
+    s1 += weight[i] * MCOR_VALUE(v1, i);
+    s2 += weight[i] * MCOR_VALUE(v2, i);
+    s3 += weight[i] * MCOR_VALUE(v3, i);
+  }
+  sums[0] = s0;
+  sums[1] = s1;
+  sums[2] = s2;
+  sums[3] = s3;
+}
+
+/* Writes the Shepard means of the attributes at a group of points; iso as for mcor_evaluate. */
+void mcor_attribute_group(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
+  real iso, mcor_reach* reach, MCOR_ATTRIBUTE_PARAMS)
+{
+  realv at[3], d[3], sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
+  mcor_points_relative(grid, query, points, at);
+  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c)
+  {
+    sums[c] = 0;
+  }
+  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
+  {
+    realv weight[MCOR_TILE];
+    for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+    {
+      const realv inv_h = MCOR_REACH(reach, inv_h, i);
+      mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+        MCOR_REACH(reach, z, i), d);
+      weight[i] = MCOR_REACH(reach, weight, i) *
+        mcor_weight(mcor_planar(d[0], d[1], inv_h), mcor_height(d[2], inv_h), inv_h);
+      w += weight[i];
+    }
+    for (int c = 0; c < attribute_count; c += MCOR_ATTRIBUTE_STEP)
+    {
+      mcor_attribute_add(reach, attributes + c * (long)stride, stride,
+        min(attribute_count - c, MCOR_ATTRIBUTE_STEP), weight, sums + c);
+    }
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const real weight = MCOR_GET(w, lane);
+    const long v = points->index[lane];
+    for (int c = 0; c < attribute_count && v >= 0; ++c)
+    {
+      means[v * attribute_count + c] =
+        fabs(weight) > MCOR_LEAST_SUM ? MCOR_GET(sums[c], lane) / weight : (real)0;
+    }
+  }
+}
+
+/* One work-item = one group of points. Writes the means there. */
 __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
-  const int attribute_count, const int stride, __global const real* attributes, __global real* out)
+  MCOR_ATTRIBUTE_PARAMS)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -22,46 +119,10 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  mcor_group_load(&grid, groups, group, node, offset, 0, &points, &query);
-  realv at[3], d[3], sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
-  mcor_points_relative(&grid, &query, &points, at);
-  for (int c = 0; c < attribute_count; ++c)
-  {
-    sums[c] = 0;
-  }
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
-  {
-    realv weight[MCOR_TILE];
-    for (int i = 0; i < tile.count; ++i)
-    {
-      mcor_points_from(at, &points, tile.x[i], tile.y[i], tile.z[i], d);
-      const realv planar = mcor_planar(d[0], d[1], tile.inv_h[i]);
-      const realv height = mcor_height(d[2], (realv)tile.inv_h[i]);
-      weight[i] = tile.weight[i] * mcor_weight(planar, height, tile.inv_h[i]);
-      w += weight[i];
-    }
-    for (int c = 0; c < attribute_count; ++c)
-    {
-      realv sum = sums[c];
-      for (int i = 0; i < tile.count; ++i)
-      {
-        sum += weight[i] * attributes[c * (long)stride + tile.list[i]];
-      }
-      sums[c] = sum;
-    }
-  }
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const real weight = MCOR_GET(w, lane);
-    const long v = points.index[lane];
-    for (int c = 0; c < attribute_count && v >= 0; ++c)
-    {
-      out[v * attribute_count + c] =
-        fabs(weight) > MCOR_LEAST_SUM ? MCOR_GET(sums[c], lane) / weight : (real)0;
-    }
-  }
+  mcor_reach reach;
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
+  mcor_tile_init(&reach.tile);
+  mcor_attribute_group(&grid, &query, &points, 0, &reach, MCOR_ATTRIBUTE_ARGS);
 }
 
 /* Updates each point's nearest fluid particle from those that reach the query's box. */
@@ -103,7 +164,7 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
-  mcor_group_load(&grid, groups, group, node, offset, 0, &points, &query);
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   realv least = MAXFLOAT;
   fixv index = -1;
   mcor_attribute_nearer(&grid, &query, &points, &least, &index);

@@ -175,7 +175,7 @@ __kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
   mcor_query query;
   mcor_tile tile;
   mcor_boundary_at boundary;
-  mcor_group_load(&grid, groups, group, node, offset, 0, &points, &query);
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_tile_init(&tile);
   mcor_evaluate_boundary(&grid, &query, &tile, &points, false, &boundary);
   for (int lane = 0; lane < MCOR_LANES; ++lane)

@@ -168,17 +168,16 @@ void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, rea
 /* Moves all vertices of a group along their edges, from t0, until each is on the surface or `limit`
  * steps were made. `evaluations` counts how many each needed. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
-  real tolerance, int limit, mcor_points* points, mcor_field_at* at, realv* t, fixv* evaluations)
+  real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
+  mcor_field_at* at, realv* t, fixv* evaluations)
 {
   realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
   const fixv rising = e->v0 < 0;
   fixv active = low < high;
   realv reached_low = fmax(t0 - MCOR_EDGE_SLACK, (realv)0);
   realv reached_high = fmin(t0 + MCOR_EDGE_SLACK, (realv)1);
-  mcor_query query;
-  mcor_reach reach;
-  mcor_tile_init(&reach.tile);
-  mcor_edges_bound(grid, e, reached_low, reached_high, points, &query);
+  mcor_tile_init(&reach->tile);
+  mcor_edges_bound(grid, e, reached_low, reached_high, points, query);
   *t = t0;
   *evaluations = 0;
   for (int i = 0;; ++i)
@@ -186,7 +185,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     points->ox = *t * e->ax;
     points->oy = *t * e->ay;
     points->oz = *t * e->az;
-    mcor_evaluate(grid, &query, &reach, points, iso, at);
+    mcor_evaluate(grid, query, reach, points, iso, at);
     *evaluations += active ? (fixv)1 : (fixv)0;
     const realv slope = at->gx * e->ax + at->gy * e->ay + at->gz * e->az;
     const realv error = fabs(at->value);
@@ -211,20 +210,20 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       reached_low = 0;
       reached_high = 1;
-      mcor_edges_bound(grid, e, reached_low, reached_high, points, &query);
-      mcor_tile_init(&reach.tile);
+      mcor_edges_bound(grid, e, reached_low, reached_high, points, query);
+      mcor_tile_init(&reach->tile);
     }
   }
 }
 
 /* One work-item = one group of vertices. Reads edges and end values (against iso). Writes position
  * (node, offset), linear less final position along the edge, value, gradient and trimming weight,
- * and how many evaluations were made. limit 0: no correction (preview). */
+ * how many evaluations were made, and attributes. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge,
   __global const real* vertex_ends, const real iso, const real tolerance, const int limit,
   __global real4* offset, __global real* linear, __global real* value, __global real4* gradient,
-  __global real* weight, __global uchar* evaluations)
+  __global real* weight, __global uchar* evaluations, MCOR_ATTRIBUTE_PARAMS)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -233,6 +232,8 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   }
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
+  mcor_query query;
+  mcor_reach reach;
   mcor_edges edges;
   mcor_field_at at;
   mcor_edges_load(&grid, groups, group, vertex_edge, vertex_ends, &edges, &points);
@@ -241,7 +242,11 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   realv t;
   fixv count;
   mcor_correct_group(
-    &grid, &edges, t0, iso, tolerance, limit, &points, &at, &t, &count);
+    &grid, &edges, t0, iso, tolerance, limit, &points, &query, &reach, &at, &t, &count);
+  if (attribute_count > 0)
+  {
+    mcor_attribute_group(&grid, &query, &points, iso, &reach, MCOR_ATTRIBUTE_ARGS);
+  }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];

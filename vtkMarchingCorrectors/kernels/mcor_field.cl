@@ -47,7 +47,7 @@ realv mcor_sqrt(realv x)
 
 /* W / norm * h^3 at offset (dx, dy, dz), from what (dx, dy) give, which serves a column of points,
  * and what dz gives, which serves a plane. */
-realv mcor_planar(realv dx, realv dy, real inv_h)
+realv mcor_planar(realv dx, realv dy, realv inv_h)
 {
 #if MCOR_TENSOR
   return MCOR_W(fabs(dx) * inv_h) * MCOR_W(fabs(dy) * inv_h);
@@ -65,7 +65,7 @@ realv mcor_height(realv dz, realv inv_h)
 #endif
 }
 
-realv mcor_weight(realv planar, realv height, real inv_h)
+realv mcor_weight(realv planar, realv height, realv inv_h)
 {
 #if MCOR_TENSOR
   return planar * height;

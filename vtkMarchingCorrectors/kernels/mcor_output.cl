@@ -5,13 +5,14 @@
 
 /* One work-item = one vertex. Reads the vertex and the scanned uses. Writes it to its final place:
  * node with flag, offset, normal (zero where the gradient vanishes), gradient, and the three numbers
- * correction (cubes), value against iso, weight. */
+ * correction (cubes), value against iso, weight; and its attributes. */
 __kernel void mcor_output_vertices(const int vertex_count, const int march_count,
   __global const int* scanned, __global const int4* node, __global const real4* offset,
   __global const real* linear, __global const real* value, __global const real4* gradient,
   __global const real* weight, __global const uchar* flag, __global int4* out_node,
   __global real4* out_offset, __global float4* out_normal, __global real4* out_gradient,
-  __global real4* out_numbers)
+  __global real4* out_numbers, const int attribute_count, __global const real* means,
+  __global real* out_means)
 {
   const int v = get_global_id(0);
   if (v >= vertex_count || scanned[v] == scanned[v + 1])
@@ -32,4 +33,8 @@ __kernel void mcor_output_vertices(const int vertex_count, const int march_count
   out_normal[to] = (float4)((float)(s.x * scale), (float)(s.y * scale), (float)(s.z * scale), 0);
   out_gradient[to] = g;
   out_numbers[to] = (real4)(march ? linear[v] : (real)0, value[v], weight[v], 0);
+  for (int c = 0; c < attribute_count; ++c)
+  {
+    out_means[to * (long)attribute_count + c] = means[v * (long)attribute_count + c];
+  }
 }

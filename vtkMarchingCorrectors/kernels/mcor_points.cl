@@ -179,14 +179,13 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   }
 }
 
-/* Loads group number `group` of points and their offsets, and fits the query to them, `margin`
- * added. */
-void mcor_group_load(const mcor_grid* grid, __global const int* groups, int group,
-  __global const int4* node, __global const real4* offset, real margin, mcor_points* points,
-  mcor_query* query)
+/* Loads the group of points from begin to before end and their offsets, and fits the query to them,
+ * `margin` added. */
+void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const int4* node,
+  __global const real4* offset, real margin, mcor_points* points, mcor_query* query)
 {
   int from[MCOR_LANES];
-  mcor_points_place(node, groups[group], groups[group + 1], points, from);
+  mcor_points_place(node, begin, end, points, from);
   mcor_points_load(node, from, grid->fix_bits, points);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
@@ -251,10 +250,17 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 #else
 #define MCOR_REACH_SIZE (MCOR_PARTS * (MCOR_TILE + 16))
 
+/* Which particles of a tile reach each part: one mask for MCOR_LANES of them. */
+typedef struct
+{
+  mcor_mask mask[MCOR_PARTS][MCOR_TILE / MCOR_LANES + 1];
+  int chunks, longest; /* masks of a part; particles of the part with most */
+} mcor_reach_masks;
+
 typedef struct
 {
   mcor_tile tile;
-  int count;
+  mcor_reach_masks masks;
   real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE], inv_h[MCOR_REACH_SIZE];
   real weight[MCOR_REACH_SIZE], term[MCOR_REACH_SIZE]; /* term: weight * MCOR_FIELD_TERM */
 #if MCOR_SOLIDS
@@ -267,7 +273,7 @@ realv mcor_each_lane(float4 parts)
   return (realv)(parts, parts, parts, parts);
 }
 
-#define MCOR_REACH_COUNT(reach) ((reach)->count)
+#define MCOR_REACH_COUNT(reach) ((reach)->masks.longest)
 #define MCOR_REACH(reach, name, i) mcor_each_lane(vload4(i, (reach)->name))
 #define MCOR_REACH_TERM(reach, i, iso) MCOR_REACH(reach, term, i)
 #if MCOR_SOLIDS
@@ -275,13 +281,6 @@ realv mcor_each_lane(float4 parts)
 #else
 #define MCOR_REACH_TRIM(reach, i) MCOR_REACH(reach, weight, i)
 #endif
-
-/* Which particles of a tile reach each part: one mask for MCOR_LANES of them. */
-typedef struct
-{
-  mcor_mask mask[MCOR_PARTS][MCOR_TILE / MCOR_LANES + 1];
-  int chunks, longest; /* masks of a part; particles of the part with most */
-} mcor_reach_masks;
 
 void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reach_masks* masks)
 {
@@ -347,14 +346,12 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
   {
     return true;
   }
-  mcor_reach_masks masks;
-  mcor_reach_test(tile, points, &masks);
-  reach->count = masks.longest;
-  mcor_reach_pack(&masks, tile->x, reach->x);
-  mcor_reach_pack(&masks, tile->y, reach->y);
-  mcor_reach_pack(&masks, tile->z, reach->z);
-  mcor_reach_pack(&masks, tile->inv_h, reach->inv_h);
-  mcor_reach_pack(&masks, tile->weight, reach->weight);
+  mcor_reach_test(tile, points, &reach->masks);
+  mcor_reach_pack(&reach->masks, tile->x, reach->x);
+  mcor_reach_pack(&reach->masks, tile->y, reach->y);
+  mcor_reach_pack(&reach->masks, tile->z, reach->z);
+  mcor_reach_pack(&reach->masks, tile->inv_h, reach->inv_h);
+  mcor_reach_pack(&reach->masks, tile->weight, reach->weight);
 #if MCOR_FIELD != 2
   real term[MCOR_TILE + MCOR_LANES];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
@@ -362,10 +359,10 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
     MCOR_CAT(vstore, MCOR_LANES)(
       MCOR_LOAD(i, tile->weight) * MCOR_FIELD_TERM(MCOR_LOAD(i, tile->value), iso), 0, term + i);
   }
-  mcor_reach_pack(&masks, term, reach->term);
+  mcor_reach_pack(&reach->masks, term, reach->term);
 #endif
 #if MCOR_SOLIDS
-  mcor_reach_pack(&masks, tile->trim_weight, reach->trim_weight);
+  mcor_reach_pack(&reach->masks, tile->trim_weight, reach->trim_weight);
 #endif
   return true;
 }

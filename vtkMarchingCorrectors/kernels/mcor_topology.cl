@@ -133,7 +133,8 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   mcor_query query;
   mcor_field_at at;
   mcor_reach reach;
-  mcor_group_load(&grid, groups, group, sample_node, sample_offset, 0, &points, &query);
+  mcor_group_load(
+    &grid, groups[group], groups[group + 1], sample_node, sample_offset, 0, &points, &query);
   mcor_tile_init(&reach.tile);
   mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
   for (int lane = 0; lane < MCOR_LANES; ++lane)

@@ -172,17 +172,17 @@ fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real
 /* Moves a group of points to where field = iso and weight = threshold; points for which that does not
  * succeed nearby stay where they were. Returns the latter. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  real threshold, bool by_eigenvalue, int limit, mcor_points* points, mcor_field_at* at)
+  real threshold, bool by_eigenvalue, int limit, mcor_points* points, mcor_reach* reach,
+  mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
-  mcor_reach reach;
   mcor_boundary_at bound;
-  mcor_tile_init(&reach.tile);
+  mcor_tile_init(&reach->tile);
   fixv done = 0, failed = 0;
   for (int i = 0;; ++i)
   {
-    mcor_evaluate(grid, query, &reach, points, iso, at);
-    mcor_trim_bound(grid, query, &reach, points, at, by_eigenvalue, &bound);
+    mcor_evaluate(grid, query, reach, points, iso, at);
+    mcor_trim_bound(grid, query, reach, points, at, by_eigenvalue, &bound);
     done = done ||
       (fabs(at->value) <= tolerance && fabs(bound.value - threshold) <= MCOR_TRIM_TOLERANCE);
     if (i == limit || !MCOR_ANY(!(done || failed)))
@@ -205,7 +205,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     points->ox = back ? x0 : points->ox;
     points->oy = back ? y0 : points->oy;
     points->oz = back ? z0 : points->oz;
-    mcor_evaluate(grid, query, &reach, points, iso, at);
+    mcor_evaluate(grid, query, reach, points, iso, at);
   }
   return back;
 }
@@ -213,10 +213,12 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
 #define MCOR_TRIM_SOLVE_PARAMS                                                                     \
   const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
     const real tolerance, const real threshold, const int limit, __global real4 *offset,           \
-    __global real *value, __global real4 *gradient, __global real *weight, __global uchar *flag
+    __global real *value, __global real4 *gradient, __global real *weight,                         \
+    __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
 
 #define MCOR_TRIM_SOLVE_ARGS                                                                       \
-  group_count, groups, node, iso, tolerance, threshold, limit, offset, value, gradient, weight, flag
+  group_count, groups, node, iso, tolerance, threshold, limit, offset, value, gradient, weight,    \
+    flag, MCOR_ATTRIBUTE_ARGS
 
 /* What the next two kernels do. */
 void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
@@ -228,10 +230,16 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   }
   mcor_points points;
   mcor_query query;
+  mcor_reach reach;
   mcor_field_at at;
-  mcor_group_load(grid, groups, group, node, offset, MCOR_TRIM_REACH, &points, &query);
+  mcor_group_load(grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points,
+    &query);
   const fixv linear = mcor_trim_group(
-    grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &at);
+    grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &reach, &at);
+  if (attribute_count > 0)
+  {
+    mcor_attribute_group(grid, &query, &points, iso, &reach, MCOR_ATTRIBUTE_ARGS);
+  }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];
@@ -244,7 +252,7 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
 }
 
 /* One work-item = one group of cut vertices at their linear cuts. Moves them to where both equations
- * hold. Writes position, value, gradient and weight; the flag 2 instead of 1 where the linear cut
+ * hold. Writes position, value, gradient, weight and attributes; the flag 2 instead of 1 where the linear cut
  * stays, the two surfaces being tangent or too far away. */
 __kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
 {

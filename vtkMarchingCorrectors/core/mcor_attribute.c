@@ -1,0 +1,164 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT components are
+ * evaluated along with the correction, where each point's particles are at hand; the rest, as many at
+ * a time, at the points put out. */
+
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+
+#include <math.h>
+
+static int mcor_width(const mcor_array* attribute)
+{
+  return attribute->components > 0 ? attribute->components : 1;
+}
+
+/* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
+ * overflows whatever the device's precision. */
+static double mcor_component_scale(const mcor_array* array, int64_t count, int component)
+{
+  int exponent = 0;
+  frexp(mcor_largest(array, count, component), &exponent);
+  return ldexp(1, exponent > -1000 ? -exponent : 1000);
+}
+
+/* Takes up to MCOR_ATTRIBUTE_LIMIT components to the device, from number `first` of all on. */
+mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
+{
+  mcor_attributes* attributes = &context->attributes;
+  int number = 0;
+  attributes->count = 0;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    for (int c = 0; c < mcor_width(&input->attributes[a]); ++c, ++number)
+    {
+      if (number >= first && attributes->count < MCOR_ATTRIBUTE_LIMIT)
+      {
+        attributes->component[attributes->count++] = (mcor_component){ a, c,
+          mcor_component_scale(&input->attributes[a], input->count, c) };
+      }
+    }
+  }
+  const int stride = context->grid.count;
+  MCOR_TRY(mcor_reserve(context, &attributes->sorted,
+    (size_t)attributes->count * (size_t)stride * context->cl.real_size));
+  for (int i = 0; i < attributes->count; ++i)
+  {
+    const mcor_component* c = &attributes->component[i];
+    MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component, 0,
+      c->scale, &attributes->sorted, i * stride));
+  }
+  return MCOR_OK;
+}
+
+/* Component c of those on the device, to every `width`-th element. */
+typedef struct mcor_means
+{
+  const mcor_context* context;
+  const void* values;
+  int c, width;
+  double* to;
+} mcor_means;
+
+static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_means* m = data;
+  const int count = m->context->attributes.count;
+  const double scale = m->context->attributes.component[m->c].scale;
+  double* to = m->to;
+  for (int64_t i = first; i < last; ++i)
+  {
+    to[i * m->width] = mcor_get_real(m->context, m->values, i * count + m->c) / scale;
+  }
+  (void)slice;
+}
+
+/* Hands over the means that are in out[5]. */
+static mcor_status mcor_put_attributes(
+  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface)
+{
+  const mcor_attributes* attributes = &context->attributes;
+  mcor_buffer* values = &context->out[5];
+  void* view;
+  MCOR_TRY(mcor_map(context, values,
+    (size_t)points * (size_t)attributes->count * context->cl.real_size, false, &view));
+  for (int c = 0; c < attributes->count; ++c)
+  {
+    const mcor_component* component = &attributes->component[c];
+    const int width = mcor_width(&input->attributes[component->attribute]);
+    double* to = surface->attributes[component->attribute] + surface->point_count * width +
+      component->component;
+    mcor_means means = { context, view, c, width, to };
+    mcor_parallel_for(points, MCOR_LIGHT_GRAIN, mcor_put_means, &means);
+  }
+  return mcor_unmap(context, values, &view);
+}
+
+/* Evaluates the components on the device at the points put out. */
+static mcor_status mcor_evaluate_attributes(mcor_context* context, int points, int groups)
+{
+  mcor_buffer* values = &context->out[5];
+  MCOR_TRY(mcor_reserve(
+    context, values, (size_t)points * (size_t)context->attributes.count * context->cl.real_size));
+  return MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&context->out[0]),
+    MCOR_BUFFER(&context->out[1]), MCOR_ATTRIBUTE_ARGS(context, values));
+}
+
+static mcor_status mcor_add_nearest(
+  mcor_context* context, int points, int groups, mcor_surface* surface)
+{
+  mcor_buffer* indices = &context->out[6];
+  const size_t bytes = (size_t)points * sizeof(cl_int);
+  MCOR_TRY(mcor_reserve(context, indices, bytes));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, groups,
+    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->groups),
+    MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]),
+    MCOR_INT(context->measure.support_min == context->measure.support_max),
+    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
+  void* view;
+  MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
+  const cl_int* index = view;
+  int64_t* to = surface->nearest_particle + surface->point_count;
+  for (int i = 0; i < points; ++i)
+  {
+    to[i] = index[i] < 0 ? -1 : context->source[index[i]];
+  }
+  return mcor_unmap(context, indices, &view);
+}
+
+/* Of the points just put out; the first components' means are in out[5]. */
+mcor_status mcor_add_attributes(
+  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface)
+{
+  int components = 0, groups;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    components += mcor_width(&input->attributes[a]);
+  }
+  if (points == 0)
+  {
+    return MCOR_OK;
+  }
+  if (components > 0)
+  {
+    MCOR_TRY(mcor_put_attributes(context, input, points, surface));
+  }
+  if (components > MCOR_ATTRIBUTE_LIMIT || context->options->nearest_particle)
+  {
+    MCOR_TRY(mcor_make_groups(context, &context->out[0], 0, points, &groups));
+  }
+  if (context->options->nearest_particle)
+  {
+    MCOR_TRY(mcor_add_nearest(context, points, groups, surface));
+  }
+  for (int first = MCOR_ATTRIBUTE_LIMIT; first < components; first += MCOR_ATTRIBUTE_LIMIT)
+  {
+    MCOR_TRY(mcor_load_attributes(context, input, first));
+    MCOR_TRY(mcor_evaluate_attributes(context, points, groups));
+    MCOR_TRY(mcor_put_attributes(context, input, points, surface));
+  }
+  return MCOR_OK;
+}

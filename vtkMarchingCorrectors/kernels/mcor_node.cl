@@ -55,12 +55,9 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list, rea
 void mcor_node_add(
   const mcor_tile* tile, int g, real x, real y, real z, mcor_node_sums* sums)
 {
-  realv node_x = x, node_y = y;
-  for (int lane = 1; lane < MCOR_LANES; ++lane)
-  {
-    MCOR_SET(node_x, lane) = x + (lane & 3);
-    MCOR_SET(node_y, lane) = y + (lane >> 2);
-  }
+  const fixv lane = mcor_lane_index();
+  const realv node_x = x + MCOR_CONVERT_REALV(lane & 3);
+  const realv node_y = y + MCOR_CONVERT_REALV(lane >> 2);
   int list[MCOR_TILE + 16];
   real height[MCOR_TILE + 16];
   const int count = mcor_node_list(tile, x, y, z, list, height);

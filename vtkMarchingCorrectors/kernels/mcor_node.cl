@@ -27,7 +27,8 @@ typedef struct
 
 /* Places in the tile of the particles that reach a group, and what their distance in z gives;
  * (x, y, z) is the group's first node. */
-int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list, real* height)
+int mcor_node_list(
+  const mcor_tile* tile, real x, real y, real z, real share, int* list, real* height)
 {
   const real ex = (real)0.5 * (MCOR_GROUP_X - 1), ey = (real)0.5 * (MCOR_GROUP_Y - 1);
   int count = 0;
@@ -38,10 +39,10 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list, rea
     const realv dz = MCOR_LOAD(i, tile->z) - z;
     const realv inv_h = MCOR_LOAD(i, tile->inv_h);
 #if MCOR_TENSOR
-    const fixv near = fmax(dx, fmax(dy, fabs(dz))) * inv_h < MCOR_SUPPORT * (real)1.0001;
+    const fixv near = fmax(dx, fmax(dy, fabs(dz))) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
 #else
     const fixv near = (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
-      MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001;
+      share * share * (MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001);
 #endif
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
@@ -53,14 +54,14 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, int* list, rea
 
 /* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's low corner. */
 void mcor_node_add(
-  const mcor_tile* tile, int g, real x, real y, real z, mcor_node_sums* sums)
+  const mcor_tile* tile, int g, real x, real y, real z, real share, mcor_node_sums* sums)
 {
   const fixv lane = mcor_lane_index();
   const realv node_x = x + MCOR_CONVERT_REALV(lane & 3);
   const realv node_y = y + MCOR_CONVERT_REALV(lane >> 2);
   int list[MCOR_TILE + 16];
   real height[MCOR_TILE + 16];
-  const int count = mcor_node_list(tile, x, y, z, list, height);
+  const int count = mcor_node_list(tile, x, y, z, share, list, height);
   realv s = sums->s[g], w = sums->w[g];
 #if MCOR_SOLIDS
   realv t = sums->t[g];
@@ -120,7 +121,7 @@ void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, f
       if (wanted >> n & 1)
       {
         mcor_node_add(&tile, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
-          (real)((first + n) / 16 - low), sums);
+          (real)((first + n) / 16 - low), share, sums);
       }
     }
   }

@@ -66,12 +66,28 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
   sums[3] = s3;
 }
 
-/* Writes the Shepard means of the attributes at a group of points; iso as for mcor_evaluate. */
-void mcor_attribute_group(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
-  real iso, mcor_reach* reach, MCOR_ATTRIBUTE_PARAMS)
+/* Sets reach->w at the points. */
+void mcor_reach_evaluate(
+  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, mcor_reach* reach)
 {
-  realv at[3], d[3], sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
+  realv at[3], d[3];
   mcor_points_relative(grid, query, points, at);
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  {
+    const realv inv_h = MCOR_REACH(reach, inv_h, i);
+    mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+      MCOR_REACH(reach, z, i), d);
+    reach->w[i] = mcor_weight(mcor_planar(d[0], d[1], inv_h), mcor_height(d[2], inv_h), inv_h);
+  }
+}
+
+/* Writes the Shepard means of the attributes at a group of points; iso as for mcor_evaluate.
+ * evaluated: that was last called for these points. */
+void mcor_attribute_group(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
+  real iso, mcor_reach* reach, bool evaluated, MCOR_ATTRIBUTE_PARAMS)
+{
+  realv sums[MCOR_ATTRIBUTE_LIMIT], w = 0;
+  const bool known = evaluated && reach->tile.complete;
   for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c)
   {
     sums[c] = 0;
@@ -79,13 +95,13 @@ void mcor_attribute_group(const mcor_grid* grid, mcor_query* query, const mcor_p
   for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
   {
     realv weight[MCOR_TILE];
+    if (!known)
+    {
+      mcor_reach_evaluate(grid, query, points, reach);
+    }
     for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
     {
-      const realv inv_h = MCOR_REACH(reach, inv_h, i);
-      mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
-        MCOR_REACH(reach, z, i), d);
-      weight[i] = MCOR_REACH(reach, weight, i) *
-        mcor_weight(mcor_planar(d[0], d[1], inv_h), mcor_height(d[2], inv_h), inv_h);
+      weight[i] = MCOR_REACH(reach, weight, i) * reach->w[i];
       w += weight[i];
     }
     for (int c = 0; c < attribute_count; c += MCOR_ATTRIBUTE_STEP)
@@ -122,7 +138,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   mcor_reach reach;
   mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_tile_init(&reach.tile);
-  mcor_attribute_group(&grid, &query, &points, 0, &reach, MCOR_ATTRIBUTE_ARGS);
+  mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
 
 /* Updates each point's nearest fluid particle from those that reach the query's box. */

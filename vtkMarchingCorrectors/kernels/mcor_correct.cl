@@ -30,6 +30,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
       const realv k =
         mcor_weight_gradient(d[0], d[1], d[2], MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
       const realv m = MCOR_REACH(reach, weight, i);
+      reach->w[i] = k;
 #if MCOR_FIELD != 2
       const realv c = MCOR_REACH_TERM(reach, i, iso);
       s += c * k;
@@ -245,7 +246,7 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     &grid, &edges, t0, iso, tolerance, limit, &points, &query, &reach, &at, &t, &count);
   if (attribute_count > 0)
   {
-    mcor_attribute_group(&grid, &query, &points, iso, &reach, MCOR_ATTRIBUTE_ARGS);
+    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
   }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {

@@ -234,6 +234,7 @@ void mcor_points_from(
 typedef struct
 {
   mcor_tile tile;
+  realv w[MCOR_TILE]; /* of each particle in each lane, as last evaluated */
 } mcor_reach;
 
 #define MCOR_REACH_COUNT(reach) ((reach)->tile.count)
@@ -260,6 +261,7 @@ typedef struct
 typedef struct
 {
   mcor_tile tile;
+  realv w[MCOR_TILE]; /* as above */
   mcor_reach_masks masks;
   real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE], inv_h[MCOR_REACH_SIZE];
   real weight[MCOR_REACH_SIZE], term[MCOR_REACH_SIZE]; /* term: weight * MCOR_FIELD_TERM */

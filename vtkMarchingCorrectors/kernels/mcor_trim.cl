@@ -238,7 +238,7 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
     grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &reach, &at);
   if (attribute_count > 0)
   {
-    mcor_attribute_group(grid, &query, &points, iso, &reach, MCOR_ATTRIBUTE_ARGS);
+    mcor_attribute_group(grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
   }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {

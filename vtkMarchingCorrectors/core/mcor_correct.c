@@ -5,7 +5,7 @@
 
 #include "mcor_internal.h"
 
-#define MCOR_GROUP_CHUNK 256 /* as in mcor_points.cl */
+#define MCOR_GROUP_CHUNK 512 /* as in mcor_points.cl */
 
 /* Cuts points [first, first + count) into groups that are evaluated together. */
 mcor_status mcor_make_groups(

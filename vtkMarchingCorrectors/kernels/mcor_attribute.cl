@@ -66,18 +66,18 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
   sums[3] = s3;
 }
 
-/* Sets reach->w at the points. */
+/* Sets reach->w at the points, as mcor_evaluate does. */
 void mcor_reach_evaluate(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, mcor_reach* reach)
 {
-  realv at[3], d[3];
+  realv at[3], d[3], gx, gy, gz;
   mcor_points_relative(grid, query, points, at);
   for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
-    const realv inv_h = MCOR_REACH(reach, inv_h, i);
     mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
       MCOR_REACH(reach, z, i), d);
-    reach->w[i] = mcor_weight(mcor_planar(d[0], d[1], inv_h), mcor_height(d[2], inv_h), inv_h);
+    reach->w[i] =
+      mcor_weight_gradient(d[0], d[1], d[2], MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
   }
 }
 

@@ -9,11 +9,12 @@
  * the lists are gone through at the same time, lane l of a vector being of part l % MCOR_PARTS. Every
  * sum goes through its particles in the order of the search grid, whatever the groups are. */
 
-/* How far apart the nodes of a group may be: the sum of its box's edges, in cubes. */
-#define MCOR_GROUP_EXTENT 9
+/* How far apart the nodes of a group may be, in cubes: an edge of its box, and the sum of three. */
+#define MCOR_GROUP_EDGE 7
+#define MCOR_GROUP_EDGES 12
 
 /* Points that one work-item cuts into groups. */
-#define MCOR_GROUP_CHUNK 256
+#define MCOR_GROUP_CHUNK 512
 
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
@@ -46,7 +47,8 @@ bool mcor_group_add(mcor_group_walk* walk, int4 before, int4 node)
 {
   const int4 low = min(walk->low, node), high = max(walk->high, node), extent = high - low;
   const bool new_part = walk->size == MCOR_PART || !mcor_same_brick(before, node);
-  if (walk->part + new_part >= MCOR_PARTS || extent.x + extent.y + extent.z > MCOR_GROUP_EXTENT)
+  if (walk->part + new_part >= MCOR_PARTS || extent.x + extent.y + extent.z > MCOR_GROUP_EDGES ||
+    max(extent.x, max(extent.y, extent.z)) > MCOR_GROUP_EDGE)
   {
     return false;
   }

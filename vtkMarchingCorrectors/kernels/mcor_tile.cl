@@ -29,7 +29,7 @@ typedef struct
   bool delivered; /* nothing is left for this loop */
   int list[MCOR_TILE + 16];
   /* Position from the query's low corner, in cubes: exact in single precision while the support is
-   * below 16 cubes, so that results do not depend on the box. */
+   * below 8 cubes, so that results do not depend on the box. */
   real x[MCOR_TILE + 16], y[MCOR_TILE + 16], z[MCOR_TILE + 16];
   real inv_h[MCOR_TILE + 16], weight[MCOR_TILE + 16], value[MCOR_TILE + 16];
 #if MCOR_SOLIDS

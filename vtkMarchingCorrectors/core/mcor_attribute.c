@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT components are
- * evaluated along with the correction, where each point's particles are at hand; the rest, as many at
- * a time, at the points put out. */
+ * evaluated along with the correction, where each vertex's particles are at hand; the rest, as many at
+ * a time, at the finished mesh's vertices. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -53,10 +53,11 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* Component c of those on the device, to every `width`-th element. */
+/* Component c of those on the device, from the vertices that are used to every `width`-th element. */
 typedef struct mcor_means
 {
   const mcor_context* context;
+  const cl_int* scanned;
   const void* values;
   int c, width;
   double* to;
@@ -67,98 +68,103 @@ static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
   const mcor_means* m = data;
   const int count = m->context->attributes.count;
   const double scale = m->context->attributes.component[m->c].scale;
-  double* to = m->to;
-  for (int64_t i = first; i < last; ++i)
+  for (int64_t v = first; v < last; ++v)
   {
-    to[i * m->width] = mcor_get_real(m->context, m->values, i * count + m->c) / scale;
+    if (m->scanned[v] != m->scanned[v + 1])
+    {
+      m->to[m->scanned[v] * (int64_t)m->width] =
+        mcor_get_real(m->context, m->values, v * count + m->c) / scale;
+    }
   }
   (void)slice;
 }
 
-/* Hands over the means that are in out[5]. */
-static mcor_status mcor_put_attributes(
-  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface)
+/* Hands over the means of the components on the device. */
+static mcor_status mcor_put_attributes(mcor_context* context, const mcor_input* input,
+  const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_attributes* attributes = &context->attributes;
-  mcor_buffer* values = &context->out[5];
+  const mcor_buffer* means = &context->mesh.means;
+  const int vertices = context->mesh.vertex_count;
   void* view;
-  MCOR_TRY(mcor_map(context, values,
-    (size_t)points * (size_t)attributes->count * context->cl.real_size, false, &view));
+  MCOR_TRY(mcor_map(context, means,
+    (size_t)vertices * (size_t)attributes->count * context->cl.real_size, false, &view));
   for (int c = 0; c < attributes->count; ++c)
   {
     const mcor_component* component = &attributes->component[c];
     const int width = mcor_width(&input->attributes[component->attribute]);
     double* to = surface->attributes[component->attribute] + surface->point_count * width +
       component->component;
-    mcor_means means = { context, view, c, width, to };
-    mcor_parallel_for(points, MCOR_LIGHT_GRAIN, mcor_put_means, &means);
+    mcor_means job = { context, scanned, view, c, width, to };
+    mcor_parallel_for(vertices, MCOR_LIGHT_GRAIN, mcor_put_means, &job);
   }
-  return mcor_unmap(context, values, &view);
+  return mcor_unmap(context, means, &view);
 }
 
-/* Evaluates the components on the device at the points put out. */
-static mcor_status mcor_evaluate_attributes(mcor_context* context, int points, int groups)
+/* Evaluates the components on the device at all vertices. */
+static mcor_status mcor_evaluate_attributes(mcor_context* context, int groups)
 {
-  mcor_buffer* values = &context->out[5];
-  MCOR_TRY(mcor_reserve(
-    context, values, (size_t)points * (size_t)context->attributes.count * context->cl.real_size));
+  mcor_mesh* mesh = &context->mesh;
+  MCOR_TRY(mcor_reserve(context, &mesh->means,
+    (size_t)mesh->vertex_count * (size_t)context->attributes.count * context->cl.real_size));
   return MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&context->out[0]),
-    MCOR_BUFFER(&context->out[1]), MCOR_ATTRIBUTE_ARGS(context, values));
+    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
 static mcor_status mcor_add_nearest(
-  mcor_context* context, int points, int groups, mcor_surface* surface)
+  mcor_context* context, const cl_int* scanned, int groups, mcor_surface* surface)
 {
-  mcor_buffer* indices = &context->out[6];
-  const size_t bytes = (size_t)points * sizeof(cl_int);
+  const mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* indices = &context->scratch[1];
+  const size_t bytes = (size_t)mesh->vertex_count * sizeof(cl_int);
   MCOR_TRY(mcor_reserve(context, indices, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, groups,
     MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->groups),
-    MCOR_BUFFER(&context->out[0]), MCOR_BUFFER(&context->out[1]),
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
     MCOR_INT(context->measure.support_min == context->measure.support_max),
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
   void* view;
   MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
   const cl_int* index = view;
   int64_t* to = surface->nearest_particle + surface->point_count;
-  for (int i = 0; i < points; ++i)
+  for (int v = 0; v < mesh->vertex_count; ++v)
   {
-    to[i] = index[i] < 0 ? -1 : context->source[index[i]];
+    if (scanned[v] != scanned[v + 1])
+    {
+      to[scanned[v]] = index[v] < 0 ? -1 : context->source[index[v]];
+    }
   }
   return mcor_unmap(context, indices, &view);
 }
 
-/* Of the points just put out; the first components' means are in out[5]. */
+/* Of the vertices that are used, see mcor_compact. */
 mcor_status mcor_add_attributes(
-  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface)
+  mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
+  const mcor_mesh* mesh = &context->mesh;
   int components = 0, groups;
   for (int a = 0; a < input->attribute_count; ++a)
   {
     components += mcor_width(&input->attributes[a]);
   }
-  if (points == 0)
-  {
-    return MCOR_OK;
-  }
   if (components > 0)
   {
-    MCOR_TRY(mcor_put_attributes(context, input, points, surface));
+    MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));
   }
   if (components > MCOR_ATTRIBUTE_LIMIT || context->options->nearest_particle)
   {
-    MCOR_TRY(mcor_make_groups(context, &context->out[0], 0, points, &groups));
+    MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, mesh->vertex_count, &groups));
   }
   if (context->options->nearest_particle)
   {
-    MCOR_TRY(mcor_add_nearest(context, points, groups, surface));
+    MCOR_TRY(mcor_add_nearest(context, scanned, groups, surface));
   }
   for (int first = MCOR_ATTRIBUTE_LIMIT; first < components; first += MCOR_ATTRIBUTE_LIMIT)
   {
     MCOR_TRY(mcor_load_attributes(context, input, first));
-    MCOR_TRY(mcor_evaluate_attributes(context, points, groups));
-    MCOR_TRY(mcor_put_attributes(context, input, points, surface));
+    MCOR_TRY(mcor_evaluate_attributes(context, groups));
+    MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));
   }
   return MCOR_OK;
 }

@@ -290,8 +290,7 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
     mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_block_cl,
     mcor_source_mcor_march_cl, mcor_source_mcor_pair_cl, mcor_source_mcor_points_cl,
     mcor_source_mcor_attribute_cl, mcor_source_mcor_correct_cl,
-    mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl,
-    mcor_source_mcor_output_cl };
+    mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl };
   char options[512];
   mcor_build_options(cl, build, options, sizeof options);
   cl_int error;

@@ -85,10 +85,6 @@ void mcor_release_memory(mcor_context* context)
   }
   mcor_release_scratch(context);
   mcor_release_bricks(context, &b->now);
-  for (size_t i = 0; i < sizeof context->out / sizeof context->out[0]; ++i)
-  {
-    mcor_release(context, &context->out[i]);
-  }
   free(context->source);
   context->source = NULL;
   context->grid_valid = context->value_valid = context->nodes_valid = false;
@@ -227,9 +223,8 @@ static mcor_status mcor_extract_iso(
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step));
   MCOR_TRY(mcor_trim(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step));
-  const mcor_status status = mcor_append_output(context, input, value, surface);
   mcor_release(context, &context->attributes.sorted);
-  return status;
+  return mcor_append_output(context, input, value, surface);
 }
 
 /* Numbers of SPEC's tables that are known at the end. */

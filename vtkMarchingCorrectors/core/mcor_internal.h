@@ -147,7 +147,6 @@ struct mcor_context
   mcor_buffer topology_cases, topology_rows; /* empty until MCOR_TOPOLOGY_FIELD is first used */
   mcor_buffer scratch[6];     /* within one function */
   mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
-  mcor_buffer out[8];
   mcor_attributes attributes;
   mcor_buffer groups; /* see mcor_make_groups */
   int32_t* source; /* [grid.count] input index of each device particle; NULL: the same */
@@ -230,8 +229,8 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* nod
   const mcor_buffer* offset, int count, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
-mcor_status mcor_add_attributes(
-  mcor_context* context, const mcor_input* input, int points, mcor_surface* surface);
+mcor_status mcor_add_attributes(mcor_context* context, const mcor_input* input,
+  const cl_int* scanned, mcor_surface* surface);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
@@ -280,7 +279,6 @@ extern const char mcor_source_mcor_correct_cl[];
 extern const char mcor_source_mcor_topology_cl[];
 extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
-extern const char mcor_source_mcor_output_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 
 /* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */

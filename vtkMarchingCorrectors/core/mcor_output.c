@@ -10,66 +10,88 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Views of what the device hands over for the vertices of one iso value. */
+/* Views of the mesh's vertices, of which those with scanned[v] != scanned[v + 1] are used. */
+enum
+{
+  MCOR_VIEW_SCANNED,
+  MCOR_VIEW_NODE,
+  MCOR_VIEW_OFFSET,
+  MCOR_VIEW_LINEAR,
+  MCOR_VIEW_VALUE,
+  MCOR_VIEW_GRADIENT,
+  MCOR_VIEW_WEIGHT,
+  MCOR_VIEW_FLAG,
+  MCOR_VIEW_COUNT
+};
+
+/* The vertices of one iso value on their way to the surface. */
 typedef struct mcor_download
 {
-  int count;
-  void* views[5]; /* node, offset, normal, gradient, numbers: see mcor_output_vertices */
-  const cl_int* node;
-  const cl_float* normal;
-  const void *offset, *gradient, *numbers;
+  void* views[MCOR_VIEW_COUNT];
+  const cl_int *scanned, *node;
+  const void *offset, *linear, *value, *gradient, *weight;
+  const uint8_t* flag;
 } mcor_download;
 
-/* Keeps the vertices that a triangle uses, in order; renumbers the triangles. */
+/* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v, and
+ * renumbers the triangles. */
 static mcor_status mcor_compact(mcor_context* context, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
-  mcor_buffer* out = context->out;
   const int vertices = mesh->vertex_count, corners = 3 * mesh->triangle_count;
   MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, ((size_t)vertices + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, corners,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
   MCOR_TRY(mcor_scan(context, &mesh->scanned, vertices, count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_renumber", MCOR_LIGHT, corners,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->triangles)));
-  const size_t n = (size_t)*count, real = context->cl.real_size;
-  MCOR_TRY(mcor_reserve(context, &out[0], n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &out[1], n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &out[2], n * 4 * sizeof(cl_float)));
-  MCOR_TRY(mcor_reserve(context, &out[3], n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &out[4], n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &out[5], n * (size_t)context->attributes.count * real));
-  return MCOR_LAUNCH(context, "mcor_output_vertices", MCOR_LIGHT, vertices, MCOR_INT(vertices),
-    MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->node),
-    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value),
-    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-    MCOR_BUFFER(&out[0]), MCOR_BUFFER(&out[1]),
-    MCOR_BUFFER(&out[2]), MCOR_BUFFER(&out[3]), MCOR_BUFFER(&out[4]),
-    MCOR_INT(context->attributes.count), MCOR_BUFFER(&mesh->means), MCOR_BUFFER(&out[5]));
+  return MCOR_LAUNCH(context, "mcor_trim_renumber", MCOR_LIGHT, corners,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->triangles));
+}
+
+/* The buffers of the views. */
+static void mcor_list_buffers(mcor_context* context, const mcor_buffer* buffers[MCOR_VIEW_COUNT])
+{
+  const mcor_mesh* mesh = &context->mesh;
+  buffers[MCOR_VIEW_SCANNED] = &mesh->scanned;
+  buffers[MCOR_VIEW_NODE] = &mesh->node;
+  buffers[MCOR_VIEW_OFFSET] = &mesh->offset;
+  buffers[MCOR_VIEW_LINEAR] = &mesh->linear;
+  buffers[MCOR_VIEW_VALUE] = &mesh->field_value;
+  buffers[MCOR_VIEW_GRADIENT] = &mesh->gradient;
+  buffers[MCOR_VIEW_WEIGHT] = &mesh->vertex_weight;
+  buffers[MCOR_VIEW_FLAG] = &mesh->flag;
 }
 
 static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
 {
-  const size_t n = (size_t)d->count, reals = n * 4 * context->cl.real_size;
-  const size_t bytes[5] = { n * 4 * sizeof(cl_int), reals, n * 4 * sizeof(cl_float), reals, reals };
-  for (int i = 0; i < 5; ++i)
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
+  const size_t bytes[MCOR_VIEW_COUNT] = { (n + 1) * sizeof(cl_int), n * 4 * sizeof(cl_int),
+    n * 4 * real, (size_t)mesh->march_count * real, n * real, n * 4 * real, n * real, n };
+  const mcor_buffer* buffers[MCOR_VIEW_COUNT];
+  mcor_list_buffers(context, buffers);
+  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
   {
-    MCOR_TRY(mcor_map(context, &context->out[i], bytes[i], false, &d->views[i]));
+    MCOR_TRY(mcor_map(context, buffers[i], bytes[i], false, &d->views[i]));
   }
-  d->node = d->views[0];
-  d->offset = d->views[1];
-  d->normal = d->views[2];
-  d->gradient = d->views[3];
-  d->numbers = d->views[4];
+  d->scanned = d->views[MCOR_VIEW_SCANNED];
+  d->node = d->views[MCOR_VIEW_NODE];
+  d->offset = d->views[MCOR_VIEW_OFFSET];
+  d->linear = d->views[MCOR_VIEW_LINEAR];
+  d->value = d->views[MCOR_VIEW_VALUE];
+  d->gradient = d->views[MCOR_VIEW_GRADIENT];
+  d->weight = d->views[MCOR_VIEW_WEIGHT];
+  d->flag = d->views[MCOR_VIEW_FLAG];
   return MCOR_OK;
 }
 
 static mcor_status mcor_unmap_vertices(mcor_context* context, mcor_download* d)
 {
+  const mcor_buffer* buffers[MCOR_VIEW_COUNT];
+  mcor_list_buffers(context, buffers);
   mcor_status status = MCOR_OK;
-  for (int i = 0; i < 5; ++i)
+  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
   {
-    const mcor_status unmapped = mcor_unmap(context, &context->out[i], &d->views[i]);
+    const mcor_status unmapped = mcor_unmap(context, buffers[i], &d->views[i]);
     status = status == MCOR_OK ? unmapped : status;
   }
   return status;
@@ -142,20 +164,35 @@ typedef struct mcor_delivery
   mcor_tally tallies[MCOR_SLICES];
 } mcor_delivery;
 
+/* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it lies on
+ * the border that the node threshold leaves. */
+static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int v)
+{
+  return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
+}
+
+/* How far the correction moved vertex v, unit L. */
+static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int v)
+{
+  return v < context->mesh.march_count
+    ? fabs(mcor_get_real(context, d->linear, v)) * context->lattice.cube
+    : 0;
+}
+
 static void mcor_count_correction(
-  const mcor_context* context, const mcor_download* d, int i, mcor_tally* tally)
+  const mcor_context* context, const mcor_download* d, int v, mcor_tally* tally)
 {
   const double tolerance =
     context->options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
-  const int flag = d->node[4 * i + 3];
+  const int flag = mcor_flag_of(context, d, v);
   if (flag == 1 || flag == 2)
   {
     ++tally->trim_vertices;
     tally->linear += flag == 2;
     return;
   }
-  const double length = fabs(mcor_get_real(context, d->numbers, 4 * i)) * context->lattice.cube;
-  const double residual = fabs(mcor_get_real(context, d->numbers, 4 * i + 1));
+  const double length = mcor_correction_of(context, d, v);
+  const double residual = fabs(mcor_get_real(context, d->value, v));
   tally->count += 1;
   tally->sum += length;
   tally->squares += length * length;
@@ -177,39 +214,60 @@ static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
   s->residual_max = fmax(s->residual_max, tally->residual_max);
 }
 
-/* Vertex i of the download becomes point `to` of the surface. */
-static void mcor_put_point(const mcor_context* context, const mcor_download* d, int i, double iso,
+/* The normal against the gradient; zero where that vanishes. Scaled first, as the square of a small
+ * gradient may vanish, and that of a large one overflow. */
+static void mcor_put_normal(const double gradient[3], float normal[3])
+{
+  double most = 0, square = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    most = fabs(gradient[a]) > most ? fabs(gradient[a]) : most;
+  }
+  for (int a = 0; a < 3 && most > 0; ++a)
+  {
+    square += gradient[a] / most * (gradient[a] / most);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    normal[a] = most > 0 ? (float)(-gradient[a] / most / sqrt(square)) : 0;
+  }
+}
+
+/* Vertex v becomes point `to` of the surface. */
+static void mcor_put_point(const mcor_context* context, const mcor_download* d, int v, double iso,
   mcor_surface* s, int64_t to)
 {
   const double cube = context->lattice.cube;
+  double gradient[3];
   for (int a = 0; a < 3; ++a)
   {
-    const double node = (double)(context->lattice.origin[a] + d->node[4 * i + a]);
-    s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * i + a)) * cube;
-    if (s->normals)
-    {
-      s->normals[3 * to + a] = d->normal[4 * i + a];
-    }
+    const double node = (double)(context->lattice.origin[a] + d->node[4 * v + a]);
+    s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) * cube;
+    gradient[a] = mcor_get_real(context, d->gradient, 4 * v + a);
     if (s->gradients)
     {
-      s->gradients[3 * to + a] = mcor_get_real(context, d->gradient, 4 * i + a) / cube;
+      s->gradients[3 * to + a] = gradient[a] / cube;
     }
+  }
+  if (s->normals)
+  {
+    mcor_put_normal(gradient, s->normals + 3 * to);
   }
   if (s->weight_sum)
   {
-    s->weight_sum[to] = (float)mcor_get_real(context, d->numbers, 4 * i + 2);
+    s->weight_sum[to] = (float)mcor_get_real(context, d->weight, v);
   }
   if (s->correction_length)
   {
-    s->correction_length[to] = (float)(fabs(mcor_get_real(context, d->numbers, 4 * i)) * cube);
+    s->correction_length[to] = (float)mcor_correction_of(context, d, v);
   }
   if (s->residual)
   {
-    s->residual[to] = (float)mcor_get_real(context, d->numbers, 4 * i + 1);
+    s->residual[to] = (float)mcor_get_real(context, d->value, v);
   }
   if (s->boundary_flag)
   {
-    s->boundary_flag[to] = (uint8_t)d->node[4 * i + 3];
+    s->boundary_flag[to] = (uint8_t)mcor_flag_of(context, d, v);
   }
   if (s->iso_value)
   {
@@ -220,13 +278,17 @@ static void mcor_put_point(const mcor_context* context, const mcor_download* d, 
 static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_delivery* delivery = data;
+  const mcor_download* d = delivery->download;
   mcor_surface* surface = delivery->surface;
   mcor_tally tally = { 0 };
-  for (int64_t i = first; i < last; ++i)
+  for (int v = (int)first; v < (int)last; ++v)
   {
-    mcor_put_point(delivery->context, delivery->download, (int)i, delivery->iso, surface,
-      surface->point_count + i);
-    mcor_count_correction(delivery->context, delivery->download, (int)i, &tally);
+    if (d->scanned[v] != d->scanned[v + 1])
+    {
+      mcor_put_point(
+        delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
+      mcor_count_correction(delivery->context, d, v, &tally);
+    }
   }
   delivery->tallies[slice] = tally;
 }
@@ -238,7 +300,7 @@ static void mcor_deliver_vertices(
     .context = context, .download = download, .iso = iso, .surface = surface
   };
   const int slices =
-    mcor_parallel_for(download->count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery);
+    mcor_parallel_for(context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery);
   for (int s = 0; s < slices; ++s)
   {
     mcor_add_tally(context, &delivery.tallies[s]);
@@ -280,19 +342,25 @@ static mcor_status mcor_deliver_triangles(
 
 /* Evaluated for the array alone, as only trimming needs it, and there at other vertices. */
 static mcor_status mcor_add_boundary_eigenvalue(
-  mcor_context* context, int points, mcor_surface* surface)
+  mcor_context* context, const cl_int* scanned, mcor_surface* surface)
 {
-  if (points == 0 || !context->options->boundary_eigenvalue)
+  const mcor_mesh* mesh = &context->mesh;
+  const int vertices = mesh->vertex_count;
+  if (vertices == 0 || !context->options->boundary_eigenvalue)
   {
     return MCOR_OK;
   }
-  mcor_buffer* values = &context->out[5];
-  MCOR_TRY(mcor_evaluate_boundary(context, &context->out[0], &context->out[1], points, values));
+  mcor_buffer* values = &context->scratch[1];
+  MCOR_TRY(mcor_evaluate_boundary(context, &mesh->node, &mesh->offset, vertices, values));
   void* view;
-  MCOR_TRY(mcor_map(context, values, (size_t)points * context->cl.real_size, false, &view));
-  for (int64_t i = 0; i < points; ++i)
+  MCOR_TRY(mcor_map(context, values, (size_t)vertices * context->cl.real_size, false, &view));
+  float* to = surface->boundary_eigenvalue + surface->point_count;
+  for (int v = 0; v < vertices; ++v)
   {
-    surface->boundary_eigenvalue[surface->point_count + i] = (float)mcor_get_real(context, view, i);
+    if (scanned[v] != scanned[v + 1])
+    {
+      to[scanned[v]] = (float)mcor_get_real(context, view, v);
+    }
   }
   return mcor_unmap(context, values, &view);
 }
@@ -301,17 +369,20 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   mcor_download* download, mcor_surface* surface)
 {
   const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
-  MCOR_TRY(mcor_compact(context, &download->count));
-  MCOR_RETURN_IF(base + download->count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; 2147483647 is the limit.",
-    (long long)(base + download->count));
-  MCOR_TRY(mcor_grow_surface(context, input, surface, download->count, triangles));
-  MCOR_TRY(mcor_add_attributes(context, input, download->count, surface));
-  MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->count, surface));
+  int count;
+  MCOR_TRY(mcor_compact(context, &count));
+  MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
+    "The surface would have %lld points; 2147483647 is the limit.", (long long)(base + count));
+  MCOR_TRY(mcor_grow_surface(context, input, surface, count, triangles));
   MCOR_TRY(mcor_deliver_triangles(context, triangles, surface));
-  MCOR_TRY(mcor_map_vertices(context, download));
-  mcor_deliver_vertices(context, download, iso, surface);
-  surface->point_count += download->count;
+  if (count > 0)
+  {
+    MCOR_TRY(mcor_map_vertices(context, download));
+    mcor_deliver_vertices(context, download, iso, surface);
+    MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->scanned, surface));
+    MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));
+  }
+  surface->point_count += count;
   surface->triangle_count += triangles;
   return MCOR_OK;
 }
@@ -336,9 +407,5 @@ mcor_status mcor_append_output(
   mcor_release_construction(context);
   const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
   const mcor_status unmapped = mcor_unmap_vertices(context, &download);
-  for (size_t i = 0; i < sizeof context->out / sizeof context->out[0]; ++i)
-  {
-    mcor_release(context, &context->out[i]);
-  }
   return status != MCOR_OK ? status : unmapped;
 }

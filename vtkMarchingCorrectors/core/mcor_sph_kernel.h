@@ -24,13 +24,15 @@
 
 realv mcor_w_cubic(realv q)
 {
-  const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
+  const realv d = (real)2 - q;
+  const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0);
   return (real)0.25 * (a * a * a) - b * b * b;
 }
 
 realv mcor_dw_cubic(realv q)
 {
-  const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
+  const realv d = (real)2 - q;
+  const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0);
   return (real)3 * (b * b) - (real)0.75 * (a * a);
 }
 

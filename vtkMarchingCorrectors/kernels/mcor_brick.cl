@@ -51,16 +51,31 @@ int mcor_find_mark(MCOR_BLOCK_PARAMS, int x, int y, int z)
                    : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
 }
 
-/* Slot of a brick, or -1. */
-int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
+/* The same for a brick beside another one, with mark `own`: mostly in the same block. x, y, z: -1 to
+ * 1. */
+int mcor_mark_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
 {
-  const int mark = mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z);
+  const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
+  return (bx | by | bz) >> 3 == 0
+    ? own + x + 8 * y + 64 * z
+    : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + x, brick.y + y, brick.z + z);
+}
+
+/* Slot of the brick with a mark, or -1. */
+int mcor_slot_of_mark(__global const uint* brick_bits, __global const int* brick_base, int mark)
+{
   if (mark < 0)
   {
     return -1;
   }
   const uint bits = brick_bits[mark >> 5], bit = 1u << (mark & 31);
   return bits & bit ? brick_base[mark >> 5] + (int)popcount(bits & (bit - 1)) : -1;
+}
+
+/* Slot of a brick, or -1. */
+int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
+{
+  return mcor_slot_of_mark(brick_bits, brick_base, mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z));
 }
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
@@ -128,13 +143,14 @@ __kernel void mcor_brick_neighbours(
     return;
   }
   const int4 brick = bricks[slot];
+  const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 1; d < 8; ++d)
   {
     const int x = d & 1, y = d >> 1 & 1, z = d >> 2;
-    neighbours[slot * 14 + d - 1] =
-      mcor_find_brick(MCOR_BRICK_ARGS, brick.x + x, brick.y + y, brick.z + z);
-    neighbours[slot * 14 + d + 6] =
-      mcor_find_brick(MCOR_BRICK_ARGS, brick.x - x, brick.y - y, brick.z - z);
+    neighbours[slot * 14 + d - 1] = mcor_slot_of_mark(
+      brick_bits, brick_base, mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, x, y, z));
+    neighbours[slot * 14 + d + 6] = mcor_slot_of_mark(
+      brick_bits, brick_base, mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, -x, -y, -z));
   }
 }
 

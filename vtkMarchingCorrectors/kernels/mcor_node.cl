@@ -52,9 +52,10 @@ int mcor_node_list(
   return count;
 }
 
-/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's low corner. */
-void mcor_node_add(
-  const mcor_tile* tile, int g, real x, real y, real z, real share, mcor_node_sums* sums)
+/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's low corner.
+ * term: their weights times values. */
+void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real y, real z,
+  real share, mcor_node_sums* sums)
 {
   const fixv lane = mcor_lane_index();
   const realv node_x = x + MCOR_CONVERT_REALV(lane & 3);
@@ -73,7 +74,7 @@ void mcor_node_add(
     const realv planar = mcor_planar(tile->x[i] - node_x, tile->y[i] - node_y, inv_h);
     const realv v = mcor_weight(planar, height[k], inv_h);
 #if MCOR_FIELD != 2
-    s += weight * tile->value[i] * v;
+    s += term[i] * v;
 #endif
     w += weight * v;
 #if MCOR_SOLIDS
@@ -115,12 +116,19 @@ void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, f
   mcor_tile_init(&tile);
   for (bool begin = true; mcor_tile_next(grid, &query, &tile, begin); begin = false)
   {
+    real term[MCOR_TILE + 16];
+#if MCOR_FIELD != 2
+    for (int i = 0; i < tile.count; ++i)
+    {
+      term[i] = tile.weight[i] * tile.value[i];
+    }
+#endif
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
       const int n = g * MCOR_LANES;
       if (wanted >> n & 1)
       {
-        mcor_node_add(&tile, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
+        mcor_node_add(&tile, term, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
           (real)((first + n) / 16 - low), share, sums);
       }
     }

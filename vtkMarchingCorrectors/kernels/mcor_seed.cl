@@ -329,18 +329,6 @@ __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const in
   states[i] = (uchar)mcor_seed_state(&grid, &query, false, sides, iso, node_threshold);
 }
 
-/* State of neighbour d (0..26) of the brick with mark m; void where it has no block. */
-int mcor_seed_neighbour(
-  MCOR_BLOCK_PARAMS, int m, int4 brick, int d, __global const uchar* states, int* other)
-{
-  const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
-  const bool same_block = (uint)((brick.x & 7) + x) < 8 && (uint)((brick.y & 7) + y) < 8 &&
-    (uint)((brick.z & 7) + z) < 8;
-  *other = same_block ? m + x + 8 * y + 64 * z
-                      : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + x, brick.y + y, brick.z + z);
-  return *other < 0 ? MCOR_VOID : states[*other];
-}
-
 /* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below (from
  * bit 16 on). m: mark of brick x = 0, whose position is `brick`, or -1 where it has no block. */
 uint mcor_seed_row(MCOR_BLOCK_PARAMS, int m, int4 brick, __global const uchar* states)
@@ -405,13 +393,13 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 0; d < 27; ++d)
   {
-    int m;
-    const int state = mcor_seed_neighbour(MCOR_BLOCK_ARGS, own, brick, d, states, &m);
+    const int x = d % 3, y = d / 3 % 3, z = d / 9;
+    const int m = mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, x - 1, y - 1, z - 1);
+    const int state = m < 0 ? MCOR_VOID : states[m];
     if (state != MCOR_ABOVE && state != MCOR_BELOW)
     {
       continue;
     }
-    const int x = d % 3, y = d / 3 % 3, z = d / 9;
     const ulong beside = (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
       (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
       (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));

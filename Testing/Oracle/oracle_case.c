@@ -331,6 +331,21 @@ static int case_check_row(
   return good;
 }
 
+/* Vertices that rounding may keep or cut away. */
+static int64_t case_count_near(const case_run* run)
+{
+  const mcor_surface* surface = &run->surface;
+  const float* quantity = run->at->options.boundary_detection == MCOR_BOUNDARY_EIGENVALUE
+    ? surface->boundary_eigenvalue
+    : surface->weight_sum;
+  int64_t near = 0;
+  for (int64_t v = 0; quantity && v < surface->point_count; ++v)
+  {
+    near += fabs((double)quantity[v] - run->at->options.vertex_threshold) <= 1e-5;
+  }
+  return near;
+}
+
 static int case_run_modes(oracle_suite* suite, const oracle_case* at, case_run* run)
 {
   results_row row;
@@ -339,7 +354,7 @@ static int case_run_modes(oracle_suite* suite, const oracle_case* at, case_run* 
   run->mode = "complete";
   int good = case_extract(suite, run, 0, 0);
   const int64_t slack = 20 * run->comparison.unsettled;
-  const int64_t trim_slack = slack + 8 * run->comparison.near_threshold;
+  const int64_t trim_slack = slack + 8 * case_count_near(run);
   row.counts[0] = run->comparison.edges;
   row.counts[1] = run->comparison.components;
   row.counts[2] = run->surface.point_count;

@@ -71,7 +71,6 @@ extern "C"
     /* Of exact trim vertices; here and below, weight is the eigenvalue where that is trimmed by. */
     double trim_weight_error, trim_residual;
     int64_t below_threshold; /* vertices kept although their weight is too low */
-    int64_t near_threshold;  /* vertices that rounding may keep or cut away */
     int64_t unsettled;       /* nodes and cells at the surface whose state depends on rounding */
     double weight_error, eigenvalue_error, gradient_error; /* of the optional arrays, relative */
     char first[240]; /* the first fault of a vertex or edge, in words */

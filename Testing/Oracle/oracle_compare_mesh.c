@@ -235,7 +235,6 @@ static int compare_edge_vertex(
   const double threshold = state->options->vertex_threshold;
   const double quantity = compare_trim_quantity(state, point, sample);
   result->below_threshold += state->trimmed && quantity < threshold - 1e-5;
-  result->near_threshold += fabs(quantity - threshold) <= 1e-5;
   if (compare_jump(state, point, axis, residual))
   {
     ++result->jumps;

@@ -161,7 +161,8 @@ struct Run
 
 /// One run, from scratch but for the program on the device. Throws std::runtime_error with the
 /// filter's sentence.
-Run Extract(vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages)
+Run Extract(
+  vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages)
 {
   messages->Clear();
   filter->ReleaseDeviceMemory();

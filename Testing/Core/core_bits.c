@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prints a hash of all bits of a few surfaces, for same_bits.cmake to compare between settings of the
- * environment. With an argument: small cases only, for tools that slow everything down. */
+/* Prints a hash of all bits of a few surfaces, for same_bits.cmake to compare between settings of
+ * the environment. With an argument: small cases only, for tools that slow everything down. */
 
 #include "core_fixture.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The boundary eigenvalue: its value and gradient against sums in double precision on the host, known
- * values, the eigenvalue solver alone, and surfaces that are trimmed by it. */
+/* The boundary eigenvalue: its value and gradient against sums in double precision on the host,
+ * known values, the eigenvalue solver alone, and surfaces that are trimmed by it. */
 
 #include "core_fixture.h"
 
@@ -80,7 +80,8 @@ static void read_reals(mcor_context* context, mcor_buffer* buffer, int count, do
   mcor_release(context, buffer);
 }
 
-/* Eigenvalue and gradient (per unit length) at points, over the particles of the last extraction. */
+/* Eigenvalue and gradient (per unit length) at points, over the particles of the last
+ * extraction. */
 static void evaluate(mcor_context* context, const double (*points)[3], int count, double* out)
 {
   mcor_buffer node = { 0 }, offset = { 0 }, result = { 0 };
@@ -229,8 +230,8 @@ static void test_lattice(void** state)
   }
 }
 
-/* Below the surface of a half space, at depth d, M along the normal is 1 less the integral of -W'(r)/r
- * z^2 over all points higher than d: -W' 2 pi / 3 r^3 (1 - (d/r)^3) over all r > d. */
+/* Below the surface of a half space, at depth d, M along the normal is 1 less the integral of
+ * -W'(r)/r z^2 over all points higher than d: -W' 2 pi / 3 r^3 (1 - (d/r)^3) over all r > d. */
 static double half_space(double h, double d)
 {
   enum
@@ -284,8 +285,8 @@ static const double matrices[][6] = { { 0, 0, 0, 0, 0, 0 }, { 1, 1, 1, 0, 0, 0 }
   { 0, 0, 0, 1e-25, 1e-30, 1e-25 }, { 0, 0, 0, 1, 0, 0 }, { 1e6, 1, 1e-6, 1, 1, 1 },
   { -1, 0.5, 2, 0.3, -0.7, 0.1 }, { 0.9, 1.1, 0.5, 0.01, 0.02, -0.03 }, { 4, 9, 1, 6, 3, 2 } };
 
-/* m e = value e with |e| = 1, and m - value without a negative eigenvalue. Entries so small that their
- * squares vanish in single precision are as good as 0. */
+/* m e = value e with |e| = 1, and m - value without a negative eigenvalue. Entries so small that
+ * their squares vanish in single precision are as good as 0. */
 static void check_eigen(const double m[6], const double found[4], double tolerance)
 {
   const double full[3][3] = { { m[0], m[3], m[5] }, { m[3], m[1], m[4] }, { m[5], m[4], m[2] } };
@@ -365,7 +366,8 @@ typedef struct trim_count
   int64_t exact, linear;
 } trim_count;
 
-/* One point: what it carries is right, it is inside or on the boundary, and there both equations hold. */
+/* One point: what it carries is right, it is inside or on the boundary, and there both equations
+ * hold. */
 static void check_point(const oracle_field* field, const trim_case* at, const mcor_surface* surface,
   int64_t i, double range, trim_count* count)
 {

@@ -270,12 +270,13 @@ static void test_cancel_in_every_phase(void** state)
   core_free_set(&set);
 }
 
-/* A limit below the peak fails with a sentence; one at the peak suffices, also where a context still
- * keeps what it had for other particles. */
+/* A limit below the peak fails with a sentence; one at the peak suffices, also where a context
+ * still keeps what it had for other particles. */
 static void test_memory_limit(void** state)
 {
   mcor_context* context = *state;
-  core_set big = core_make_block(16, 0.2, 3, core_slope), set = core_make_block(8, 0.2, 3, core_slope);
+  core_set big = core_make_block(16, 0.2, 3, core_slope);
+  core_set set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_input input = core_input(&set), big_input = core_input(&big);
   mcor_options options = core_options(&iso);

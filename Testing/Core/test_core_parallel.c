@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Loops in several threads: every element once, and results that do not depend on how many threads. */
+/* Loops in several threads: every element once, and results that do not depend on how many
+ * threads. */
 
 #if defined(__linux__) && !defined(_GNU_SOURCE)
 #define _GNU_SOURCE /* for sched_setaffinity */

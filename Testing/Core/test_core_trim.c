@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming: the five cases of Fig. 3 with hand-made weights, shared cut vertices, exact boundaries. */
+/* Trimming: the five cases of Fig. 3 with hand-made weights, shared cut vertices, exact
+ * boundaries. */
 
 #include "core_fixture.h"
 

@@ -102,8 +102,9 @@ extern "C"
   void oracle_evaluate(
     const oracle_field* field, const double* scalar, const double point[3], oracle_sample* sample);
 
-  /* The eigenvalues, ascending, of the symmetric part of sum V (x_j - x) (outer product) grad W, over
-   * the particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et al. */
+  /* The eigenvalues, ascending, of the symmetric part of sum V (x_j - x) (outer product) grad W,
+   * over the particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et
+   * al. */
   void oracle_boundary_eigenvalues(
     const oracle_field* field, const double point[3], double eigenvalues[3]);
 

@@ -215,8 +215,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
   }
 }
 
-/* Area and volume of the oracle's own polygons, which keep nodes above apart on ambiguous faces. Loops
- * of more than three sides may be cut in other ways, hence the tolerance. */
+/* Area and volume of the oracle's own polygons, which keep nodes above apart on ambiguous faces.
+ * Loops of more than three sides may be cut in other ways, hence the tolerance. */
 static void case_check_measure(case_run* run)
 {
   const oracle_reference* r = run->reference;

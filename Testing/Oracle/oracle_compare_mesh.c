@@ -149,8 +149,8 @@ static double compare_trim_gradient(const compare_state* state, const double poi
   return compare_trim_quantity(state, point, sample);
 }
 
-/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold (or the
- * eigenvalue is), within one cube. */
+/* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold (or
+ * the eigenvalue is), within one cube. */
 static int compare_exact_cut_near(const compare_state* state, const double start[3])
 {
   const oracle_reference* reference = state->reference;

@@ -379,8 +379,8 @@ static void test_attributes(const char* name, const char* device)
   free_bench(&b);
 }
 
-/* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: a lattice of 10^12 cells, too
- * large for a reference. The surface is a closed manifold, and each vertex on it. */
+/* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: a lattice of 10^12 cells,
+ * too large for a reference. The surface is a closed manifold, and each vertex on it. */
 static void test_wide_range(const char* device)
 {
   bench b;

@@ -168,8 +168,8 @@ static void check_gradient(const oracle_reference* reference, const double point
   }
 }
 
-/* The boundary eigenvalues l by a plain loop for the matrix m: det(m - l) = 0, and their sum and the
- * sum of their squares are the trace of m and of m m. */
+/* The boundary eigenvalues l by a plain loop for the matrix m: det(m - l) = 0, and their sum and
+ * the sum of their squares are the trace of m and of m m. */
 static void check_boundary(const oracle_reference* reference, const double point[3])
 {
   const oracle_particles* p = &reference->particles;

@@ -38,7 +38,7 @@ extern "C"
   typedef enum mcor_status
   {
     MCOR_OK = 0,
-    MCOR_INVALID_ARGUMENT, /* a parameter is outside its legal range, or a needed array is missing */
+    MCOR_INVALID_ARGUMENT, /* a parameter outside its legal range, or a needed array missing */
     MCOR_INVALID_DATA,     /* an array holds NaN, an infinite value, or an illegal value */
     MCOR_OUT_OF_CAPACITY,  /* lattice, device memory or host memory would not suffice */
     MCOR_DEVICE_ERROR,     /* no OpenCL platform or device, build failure, a device that vanished */
@@ -81,7 +81,8 @@ extern "C"
   } mcor_seed_mode;
 
   /* How the nodes of an ambiguous face (two above the iso value and two below, diagonally) and the
-   * interior of a cell are connected. Vertices are the same; the surface is a manifold with both. */
+   * interior of a cell are connected. Vertices are the same; the surface is a manifold with
+   * both. */
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
@@ -272,8 +273,8 @@ extern "C"
    * text means that there is no OpenCL device. */
   mcor_status mcor_list_devices(char** text);
 
-  /* The sentence that belongs to the last failure of this context, "" if there was none. Valid until
-   * the next call on the context. */
+  /* The sentence that belongs to the last failure of this context, "" if there was none. Valid
+   * until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */

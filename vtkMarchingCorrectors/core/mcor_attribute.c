@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT components are
- * evaluated along with the correction, where each vertex's particles are at hand; the rest, as many at
- * a time, at the finished mesh's vertices. */
+/* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT
+ * components are evaluated along with the correction, where each vertex's particles are at hand;
+ * the rest, as many at a time, at the finished mesh's vertices. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -53,7 +53,8 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* Component c of those on the device, from the vertices that are used to every `width`-th element. */
+/* Component c of those on the device, from the vertices that are used to every `width`-th
+ * element. */
 typedef struct mcor_means
 {
   const mcor_context* context;

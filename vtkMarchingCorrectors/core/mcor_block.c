@@ -68,8 +68,8 @@ static mcor_status mcor_divide_cubes(
   MCOR_TRY(mcor_scan(context, counts, count, &children));
   MCOR_RETURN_IF((int64_t)children + added > INT32_MAX / MCOR_BLOCK_BRICKS, context,
     MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large: there may be surface in %lld cubes of %d cells along each axis, and "
-    "%d is the limit. Use a larger cube size.",
+    "The virtual grid is too large: there may be surface in %lld cubes of %d cells along each "
+    "axis, and %d is the limit. Use a larger cube size.",
     (long long)children + added, MCOR_BLOCK_CUBES << finer.level, INT32_MAX / MCOR_BLOCK_BRICKS);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)children + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, count, MCOR_INT(count),

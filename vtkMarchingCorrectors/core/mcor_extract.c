@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* mcor_extract: the phases in order. Section numbers in brackets, here and in the phases' files, are
- * those of the paper named in mcor.h. */
+/* mcor_extract: the phases in order. Section numbers in brackets, here and in the phases' files,
+ * are those of the paper named in mcor.h. */
 
 #include "mcor_internal.h"
 
@@ -147,8 +147,8 @@ static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
     (a->data || a->constant == b->constant);
 }
 
-/* What of the last call still holds. The caller's version numbers stand for the arrays' content; all
- * else that the search grid, the scalar and the node values depend on is compared. */
+/* What of the last call still holds. The caller's version numbers stand for the arrays' content;
+ * all else that the search grid, the scalar and the node values depend on is compared. */
 static void mcor_check_reuse(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

@@ -37,7 +37,8 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
     }
     number[l] = (uint8_t)grid->level_count;
     mcor_level* level = &grid->levels[grid->level_count++];
-    /* A little more than the support: rounding, here and on the device, must not lose a particle. */
+    /* A little more than the support: rounding, here and on the device, must not lose a
+     * particle. */
     const double support = context->measure.support_max / lattice->cube * ldexp(1.0001, -l);
     level->base = base;
     level->support = (cl_float)support;

@@ -49,8 +49,8 @@ void mcor_read_array(
   }
 }
 
-/* The bits of absolute values are in the order of the values; compilers vectorise their maximum where
- * they know the stride. */
+/* The bits of absolute values are in the order of the values; compilers vectorise their maximum
+ * where they know the stride. */
 static inline double mcor_largest_float(const float* data, int64_t count, int64_t stride)
 {
   int32_t most = 0;

@@ -252,8 +252,9 @@ typedef struct mcor_cell_row
 #define MCOR_TOPOLOGY_ROWS 1200
 typedef struct mcor_topology_table
 {
-  /* First row << 6 | ambiguous faces, bit axis * 2 + side. Bit i of a row's number from there: whether
-   * the corners above are joined on the i-th ambiguous face. Rows with tunnels come last. */
+  /* First row << 6 | ambiguous faces, bit axis * 2 + side. Bit i of a row's number from there:
+   * whether the corners above are joined on the i-th ambiguous face. Rows with tunnels come
+   * last. */
   cl_int cases[256];
   int row_count;
   mcor_cell_row rows[MCOR_TOPOLOGY_ROWS];

@@ -76,8 +76,8 @@ static mcor_bin* mcor_make_bins(mcor_bin_job* job)
 }
 
 /* Of the bin that holds the median, while many are in that bin. A bin ends where its values do, so
- * that a huge outlier does not move the median away from them. Counts, and least and greatest values,
- * do not depend on the order of the particles. */
+ * that a huge outlier does not move the median away from them. Counts, and least and greatest
+ * values, do not depend on the order of the particles. */
 static double mcor_narrow_median(mcor_bin_job* job, int64_t fluid_count)
 {
   int64_t below = 0;

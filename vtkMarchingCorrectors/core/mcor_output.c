@@ -164,8 +164,8 @@ typedef struct mcor_delivery
   mcor_tally tallies[MCOR_SLICES];
 } mcor_delivery;
 
-/* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it lies on
- * the border that the node threshold leaves. */
+/* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it
+ * lies on the border that the node threshold leaves. */
 static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int v)
 {
   return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];

@@ -18,10 +18,10 @@
 /* Elements [first, last) of a loop. */
 typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t last);
 
-/* Runs the body once for every slice of [0, count), in any order, in several threads; waits for all.
- * Where the slices are depends on `count` and `grain`, their least size, alone: what a loop adds up
- * for each and then in order is the same whatever the number of threads. Returns the number of
- * slices. */
+/* Runs the body once for every slice of [0, count), in any order, in several threads; waits for
+ * all. Where the slices are depends on `count` and `grain`, their least size, alone: what a loop
+ * adds up for each and then in order is the same whatever the number of threads. Returns the number
+ * of slices. */
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
 #endif

@@ -90,8 +90,8 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Index into sorted keys: bucket b begins at the first key >= b << shift. About 4 buckets per key at
- * most, so that memory stays linear however sparse the keys are. */
+/* Index into sorted keys: bucket b begins at the first key >= b << shift. About 4 buckets per key
+ * at most, so that memory stays linear however sparse the keys are. */
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift)
 {

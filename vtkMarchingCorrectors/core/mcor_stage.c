@@ -153,8 +153,8 @@ static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input*
   }
 }
 
-/* Weight of particle i of a chunk on the device. One that is huge against the smoothing length would
- * be infinite there. */
+/* Weight of particle i of a chunk on the device. One that is huge against the smoothing length
+ * would be infinite there. */
 static double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
 {
   const double inv_h = context->lattice.cube / context->options->h_scale / chunk->h[i];
@@ -337,8 +337,8 @@ static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t l
   (void)slice;
 }
 
-/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from the
- * caller's order to the sorted one, to element to_offset. */
+/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from
+ * the caller's order to the sorted one, to element to_offset. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
   int to_offset)

@@ -5,8 +5,8 @@
 
 #include "mcor_internal.h"
 
-/* The input in the device's form, in input order; solids that are not used left out. Arrays are views
- * of the scratch buffers named like them. */
+/* The input in the device's form, in input order; solids that are not used left out. Arrays are
+ * views of the scratch buffers named like them. */
 typedef struct mcor_staging
 {
   int count;

@@ -8,8 +8,8 @@
 /* A lower sum of weights has no digits that could be divided by. */
 #define MCOR_LEAST_SUM ((real)1e-30f)
 
-/* Sorted arrays, `stride` elements long, one after the other, at most MCOR_ATTRIBUTE_LIMIT. Their means
- * at a point lie one after the other, too. */
+/* Sorted arrays, `stride` elements long, one after the other, at most MCOR_ATTRIBUTE_LIMIT. Their
+ * means at a point lie one after the other, too. */
 #define MCOR_ATTRIBUTE_PARAMS                                                                      \
   const int attribute_count, const int stride, __global const real *attributes,                    \
     __global real *means
@@ -39,8 +39,8 @@ void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute
 }
 #endif
 
-/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes: together, as
- * a sum alone would wait for its last addition. weight: w_i in each lane. */
+/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes:
+ * together, as a sum alone would wait for its last addition. weight: w_i in each lane. */
 #define MCOR_ATTRIBUTE_STEP 4
 void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes, const int stride,
   int count, const realv* weight, realv sums[MCOR_ATTRIBUTE_STEP])
@@ -165,9 +165,10 @@ void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_
   }
 }
 
-/* One work-item = one group of points. Writes the nearest fluid particle, among those that reach the
- * points first; where smoothing lengths differ, others may be nearer that do not. The weight's iso
- * value may be so low that none reaches a point: one then reaches an end of its lattice edge. */
+/* One work-item = one group of points. Writes the nearest fluid particle, among those that reach
+ * the points first; where smoothing lengths differ, others may be nearer that do not. The weight's
+ * iso value may be so low that none reaches a point: one then reaches an end of its lattice
+ * edge. */
 __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Blocks: cubes of nodes are divided, from few that cover the whole lattice down to blocks, where they
- * are not quiet. A quiet cube is certain of one side of the iso value, or void, and so are all around
- * it: no crossed edge is in it, or leads out of it. Empty space, and space that coarse particles fill
- * with values far from the iso value, cost next to nothing.
+/* Blocks: cubes of nodes are divided, from few that cover the whole lattice down to blocks, where
+ * they are not quiet. A quiet cube is certain of one side of the iso value, or void, and so are all
+ * around it: no crossed edge is in it, or leads out of it. Empty space, and space that coarse
+ * particles fill with values far from the iso value, cost next to nothing.
  *
  * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
 
@@ -18,7 +18,8 @@ __kernel void mcor_block_all(const int count, __global ulong* keys)
   }
 }
 
-/* One work-item = one cube, `size` nodes long. Reads the particles that reach it. Writes its state. */
+/* One work-item = one cube, `size` nodes long. Reads the particles that reach it. Writes its
+ * state. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cubes_x,
   const int cubes_y, __global const ulong* keys, const int size, __global const uchar* sides,
   const real iso, const real node_threshold, __global uchar* states)

@@ -10,7 +10,8 @@
  *
  *   M(x) = sum V (x_j - x) (outer product) grad W(x - x_j)
  *
- * in its symmetric part: about the identity where particles surround x, singular where they do not. */
+ * in its symmetric part: about the identity where particles surround x, singular where they do
+ * not. */
 
 /* The eigenvalue and, if asked for, its gradient; per cube. */
 typedef struct
@@ -24,7 +25,8 @@ typedef struct
   realv xx, yy, zz, xy, yz, zx;
 } mcor_symmetric;
 
-/* Gradient g of W / norm * h^3, and its derivative d along the unit vector e: the Hessian times e. */
+/* Gradient g of W / norm * h^3, and its derivative d along the unit vector e: the Hessian times
+ * e. */
 void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[3], realv d[3])
 {
 #if MCOR_TENSOR

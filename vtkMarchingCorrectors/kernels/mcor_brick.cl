@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where there may be surface; a brick
- * has a slot (values, masks) where it is needed. Blocks are sorted by key, bricks by block, then
- * z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
+/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where there may be surface; a
+ * brick has a slot (values, masks) where it is needed. Blocks are sorted by key, bricks by block,
+ * then z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
 
 #define MCOR_BLOCK_BRICKS 512
 #define MCOR_BLOCK_WORDS 16 /* words of 32 bricks: x 0..7, y 0..3 or 4..7, one z */
@@ -51,8 +51,8 @@ int mcor_find_mark(MCOR_BLOCK_PARAMS, int x, int y, int z)
                    : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
 }
 
-/* The same for a brick beside another one, with mark `own`: mostly in the same block. x, y, z: -1 to
- * 1. */
+/* The same for a brick beside another one, with mark `own`: mostly in the same block. x, y, z: -1
+ * to 1. */
 int mcor_mark_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
 {
   const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
@@ -96,8 +96,8 @@ int4 mcor_brick_of_mark(
     (int4)(local_brick & 7, local_brick >> 3 & 7, local_brick >> 6, 0);
 }
 
-/* Asks for the brick with mark number m; true if nothing had asked for it before. It has no slot until
- * the host has placed it. */
+/* Asks for the brick with mark number m; true if nothing had asked for it before. It has no slot
+ * until the host has placed it. */
 bool mcor_ask_brick(__global uint* brick_bits, int m)
 {
   const uint bit = 1u << (m & 31);
@@ -154,7 +154,8 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set. */
+/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new
+ * set. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
   __global const real* old_value, __global const real* old_weight, __global ulong* known,

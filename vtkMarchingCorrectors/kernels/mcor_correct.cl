@@ -91,7 +91,8 @@ realv mcor_correct_ratio(realv x, realv y)
   return y != 0 ? x / (y != 0 ? y : (realv)1) : (realv)-1;
 }
 
-/* Root of the cubic through the values at 0, 1 and t and the slope at t: near t, by Newton steps. */
+/* Root of the cubic through the values at 0, 1 and t and the slope at t: near t, by Newton
+ * steps. */
 realv mcor_correct_cubic(realv v0, realv v1, realv t, realv v, realv slope)
 {
   const realv a = ((v0 - v) / t + slope) / t;                      /* (p(0) - tangent) / t^2 */
@@ -122,8 +123,8 @@ void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int l
  * node at the iso value stay apart and no triangle loses its area. */
 #define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
 
-/* Where the gradient is small, a small residual alone may be far from the surface: along the edge, a
- * vertex is also to come this close. */
+/* Where the gradient is small, a small residual alone may be far from the surface: along the edge,
+ * a vertex is also to come this close. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
 /* A bracket of this length is not halved any more. */

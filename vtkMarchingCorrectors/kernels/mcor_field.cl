@@ -8,7 +8,8 @@
  *
  *   1 / sqrt(x) = y / sqrt(1 - e) = y (1 + e p(e))
  *
- * with p a minimax polynomial (2.4e-8), come results that are the same on every CPU, to 1 ulp or so. */
+ * with p a minimax polynomial (2.4e-8), come results that are the same on every CPU, to 1 ulp or
+ * so. */
 #if MCOR_CPU && !MCOR_DOUBLE
 realv mcor_rsqrt_guess(realv x)
 {
@@ -18,7 +19,8 @@ realv mcor_rsqrt_guess(realv x)
 /* p(e) */
 realv mcor_rsqrt_series(realv e)
 {
-  return (real)0.49999833f + e * ((real)0.37500035f + e * ((real)0.31393823f + e * (real)0.2740815f));
+  const realv p = (real)0.31393823f + e * (real)0.2740815f;
+  return (real)0.49999833f + e * ((real)0.37500035f + e * p);
 }
 
 /* 1 / sqrt(x), finite at 0. */

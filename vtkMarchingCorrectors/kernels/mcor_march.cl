@@ -1,11 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices numbered
- * by lattice edge. */
+/* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices
+ * numbered by lattice edge. */
 
-/* A Shepard mean needs this fluid weight. Where solids make up the rest, cells would otherwise reach
- * over voids without any fluid, and rounding noise of a kernel's rim would count as a value. */
+/* A Shepard mean needs this fluid weight. Where solids make up the rest, cells would otherwise
+ * reach over voids without any fluid, and rounding noise of a kernel's rim would count as a
+ * value. */
 #define MCOR_LEAST_WEIGHT ((real)1e-3)
 
 /* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
@@ -169,8 +170,8 @@ int mcor_march_case(const ulong* m, int cell)
   return result;
 }
 
-/* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below in
- * the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
+/* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below
+ * in the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
  * neighbours. */
 void mcor_march_around(const ulong* m, int axis, ulong* q)
 {
@@ -188,9 +189,10 @@ void mcor_march_around(const ulong* m, int axis, ulong* q)
                    : mcor_from_last_y(q[1], mcor_from_last_x(m[2], m[3]));
 }
 
-/* Masks per brick and axis: crossed edges; of these, those next to a cell that is not used; of these,
- * pinched ones: only two cells are used, opposite to each other. Their triangles form two fans, so
- * that such an edge has two vertices, the second one for the cell below in the first other axis. */
+/* Masks per brick and axis: crossed edges; of these, those next to a cell that is not used; of
+ * these, pinched ones: only two cells are used, opposite to each other. Their triangles form two
+ * fans, so that such an edge has two vertices, the second one for the cell below in the first other
+ * axis. */
 #define MCOR_EDGE_MASKS 9
 
 /* One work-item = one brick. Reads used cells and node masks. Writes the edge masks for edges that
@@ -246,7 +248,8 @@ int mcor_march_rank(__global const ulong* e, int n, int axis)
 }
 
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
- * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against the iso value. */
+ * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against
+ * the iso value. */
 __kernel void mcor_march_vertices(const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global const ulong* edges, __global const real* node_value,
   __global const int* vertex_base, const real iso, __global int4* vertex_edge,
@@ -285,7 +288,8 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
   }
 }
 
-/* Writes the triangles of a cell, given by a row of the case table; returns where the next ones go. */
+/* Writes the triangles of a cell, given by a row of the case table; returns where the next ones
+ * go. */
 __global int* mcor_march_emit(__global const uchar* row, int count, __global const int* neighbours,
   __global const ulong* edges, __global const int* vertex_base, int slot, int cell,
   __global int* to)

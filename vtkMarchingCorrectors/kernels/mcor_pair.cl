@@ -35,8 +35,9 @@ void mcor_pair_mark_cell(MCOR_BRICK_PARAMS, int x, int y, int z, __global uint* 
   }
 }
 
-/* All cells on the line from p to q (cubes, relative to cell c), beginning in cell c. Where the line passes an edge or a
- * corner of a cell to within rounding, the cells on both sides are marked. */
+/* All cells on the line from p to q (cubes, relative to cell c), beginning in cell c. Where the
+ * line passes an edge or a corner of a cell to within rounding, the cells on both sides are
+ * marked. */
 void mcor_pair_mark_line(
   MCOR_BRICK_PARAMS, const real* p, const real* q, int* c, const int* end, __global uint* cells)
 {
@@ -69,12 +70,13 @@ void mcor_pair_mark_line(
   }
 }
 
-/* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that rounding
- * does not decide where particles lie on a lattice of that spacing. */
+/* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that
+ * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* Places in the tile of particles on the other side of the iso value and closer to particle j than its
- * smoothing length. A pair in which each is closer than the other's is left to the particle above. */
+/* Places in the tile of particles on the other side of the iso value and closer to particle j than
+ * its smoothing length. A pair in which each is closer than the other's is left to the particle
+ * above. */
 int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int j,
   real iso, real h_scale, int* list)
 {
@@ -100,8 +102,8 @@ int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_ti
   return count;
 }
 
-/* Marks for particle j and the particles of the tile that pair with it: the cells on the lines, or the
- * bricks of the box around these. Returns whether there are any. */
+/* Marks for particle j and the particles of the tile that pair with it: the cells on the lines, or
+ * the bricks of the box around these. Returns whether there are any. */
 bool mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
   const mcor_tile* tile, int j, real iso, real h_scale, int mark_cells,
   __global uint* asked, __global uint* cells)
@@ -143,8 +145,8 @@ bool mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mco
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
- * each. mark_cells 0: asks for bricks for pairs that straddle the iso value, and writes whether there
- * are any; 1: marks cells. */
+ * each. mark_cells 0: asks for bricks for pairs that straddle the iso value, and writes whether
+ * there are any; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
   const real iso, const real h_scale, const int mark_cells, __global uchar* has_pairs,
   __global uint* asked, __global uint* cells)
@@ -201,8 +203,8 @@ ulong mcor_pair_faces(const ulong* m, int first, int axis)
     : (some[0] | mcor_from_next_z(some[0], some[1])) & ~(all[0] & mcor_from_next_z(all[0], all[1]));
 }
 
-/* Hands cells to a brick. flags: 1 a cell is new, 2 a brick must be placed. Where no particle reaches
- * there is no brick, and no node is valid. */
+/* Hands cells to a brick. flags: 1 a cell is new, 2 a brick must be placed. Where no particle
+ * reaches there is no brick, and no node is valid. */
 void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* asked,
   __global uint* cells, __global int* flags)
 {

@@ -4,10 +4,11 @@
 /* Points that are evaluated together, in groups of up to MCOR_LANES, and the particles that reach
  * them.
  *
- * Many more particles reach some point of a group than reach a given one. So where packing is cheap a
- * group consists of MCOR_PARTS parts of points close together, each with its own list of particles;
- * the lists are gone through at the same time, lane l of a vector being of part l % MCOR_PARTS. Every
- * sum goes through its particles in the order of the search grid, whatever the groups are. */
+ * Many more particles reach some point of a group than reach a given one. So where packing is cheap
+ * a group consists of MCOR_PARTS parts of points close together, each with its own list of
+ * particles; the lists are gone through at the same time, lane l of a vector being of part l %
+ * MCOR_PARTS. Every sum goes through its particles in the order of the search grid, whatever the
+ * groups are. */
 
 /* How far apart the nodes of a group may be, in cubes: an edge of its box, and the sum of three. */
 #define MCOR_GROUP_EDGE 7
@@ -40,9 +41,9 @@ typedef struct
   int4 low, high; /* of the group's nodes */
 } mcor_group_walk;
 
-/* Takes the next point, at `node`; `before` is the one before it. Returns false where it does not fit
- * the group, which the caller then starts anew. The parts of a group share one gather of particles, so
- * it is to stay small. */
+/* Takes the next point, at `node`; `before` is the one before it. Returns false where it does not
+ * fit the group, which the caller then starts anew. The parts of a group share one gather of
+ * particles, so it is to stay small. */
 bool mcor_group_add(mcor_group_walk* walk, int4 before, int4 node)
 {
   const int4 low = min(walk->low, node), high = max(walk->high, node), extent = high - low;
@@ -65,7 +66,8 @@ mcor_group_walk mcor_group_start(int4 node)
   return walk;
 }
 
-/* One work-item = MCOR_GROUP_CHUNK points, of `count` from `first`. Writes 1 where a group starts. */
+/* One work-item = MCOR_GROUP_CHUNK points, of `count` from `first`. Writes 1 where a group
+ * starts. */
 __kernel void mcor_group_count(
   const int first, const int count, __global const int4* all_nodes, __global int* flags)
 {
@@ -83,8 +85,8 @@ __kernel void mcor_group_count(
   }
 }
 
-/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last entry
- * is the end. */
+/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last
+ * entry is the end. */
 __kernel void mcor_group_fill(
   const int first, const int count, __global const int* scanned, __global int* groups)
 {
@@ -311,8 +313,8 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
   }
 }
 
-/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. Ends of the
- * shorter lists become 0, which is no weight. */
+/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. Ends of
+ * the shorter lists become 0, which is no weight. */
 void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
 {
   real packed[MCOR_PARTS][MCOR_TILE + 2 * MCOR_LANES];

@@ -86,8 +86,8 @@ typedef struct
   int begin, end; /* particles left of the current row */
 } mcor_query;
 
-/* A level whose rows in reach outnumber its particles is taken as one run, so that a coarse particle
- * does not walk through the empty rows of fine levels. */
+/* A level whose rows in reach outnumber its particles is taken as one run, so that a coarse
+ * particle does not walk through the empty rows of fine levels. */
 void mcor_query_sparse_level(const mcor_grid* grid, mcor_query* query, const mcor_level* level)
 {
   const long rows =
@@ -157,8 +157,8 @@ void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
   mcor_query_next_level(grid, query, 0);
 }
 
-/* Square of the distance between the box and a cell along an axis, less what rounding may have moved
- * a particle across the cell's face. */
+/* Square of the distance between the box and a cell along an axis, less what rounding may have
+ * moved a particle across the cell's face. */
 float mcor_query_distance2(const mcor_query* query, int axis, int cell)
 {
   const float low = (float)query->low[axis], high = (float)query->high[axis];
@@ -212,7 +212,8 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
   return false;
 }
 
-/* Fits the query's box to sorted particles [begin, begin + count); returns the least of their inv_h. */
+/* Fits the query's box to sorted particles [begin, begin + count); returns the least of their
+ * inv_h. */
 real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, int count)
 {
   real coarsest = grid->inv_h[begin];

@@ -29,7 +29,8 @@ __kernel void mcor_scan_sum(
   sums[chunk] = sum;
 }
 
-/* One work-item in all. Reads the chunk sums. Writes their exclusive prefix sums, the total last. */
+/* One work-item in all. Reads the chunk sums. Writes their exclusive prefix sums, the total
+ * last. */
 __kernel void mcor_scan_top(const int chunks, __global long* sums)
 {
   if (get_global_id(0) != 0)

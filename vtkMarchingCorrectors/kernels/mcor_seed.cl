@@ -2,12 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Complete seeds [III-C]: which bricks of nodes are to be evaluated, so that no crossed edge is
- * missed. Nodes are left out where the side of the iso value that they are on is certain without, or
- * where their weight is certain to be too low: whole blocks (32^3 nodes) or more of them, regions (8^3)
- * and bricks (4^3). A crossed edge has nodes on both sides. If both were left out, two neighbouring
- * bricks would be certain of different sides: those are evaluated after all (mcor_seed_ask). If one
- * was, an evaluated brick would have a node on the other side than its neighbour: that is evaluated
- * then (mcor_seed_grow). */
+ * missed. Nodes are left out where the side of the iso value that they are on is certain without,
+ * or where their weight is certain to be too low: whole blocks (32^3 nodes) or more of them,
+ * regions (8^3) and bricks (4^3). A crossed edge has nodes on both sides. If both were left out,
+ * two neighbouring bricks would be certain of different sides: those are evaluated after all
+ * (mcor_seed_ask). If one was, an evaluated brick would have a node on the other side than its
+ * neighbour: that is evaluated then (mcor_seed_grow). */
 
 /* What is known of a region's nodes. */
 #define MCOR_VOID 0    /* below the node threshold: no cell there is valid */
@@ -41,8 +41,8 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv i
                   : fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz): w falls with
- * the distance, so that of the nearest or farthest point. */
+/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz): w falls
+ * with the distance, so that of the nearest or farthest point. */
 realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
 {
   const realv x = fmax(fabs(dx) + side * e, (realv)0);
@@ -105,15 +105,16 @@ void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bit
   }
 }
 
-/* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
- * field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso, and
+/* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum),
+ * the field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or
+ * iso, and
  *
  *   F >= sum of c_j * (least w_j in the box where c_j > 0, greatest where c_j < 0) - level,
  *
  * as each w_j lies in its interval wherever in the box the point is, whatever the sign of w_j;
- * likewise from above. Only one of the two is computed: from below where F is positive in the middle,
- * else from above. The margin is 1e-5 of the sum of the absolute terms, above the rounding of this
- * sum and of the node values. */
+ * likewise from above. Only one of the two is computed: from below where F is positive in the
+ * middle, else from above. The margin is 1e-5 of the sum of the absolute terms, above the rounding
+ * of this sum and of the node values. */
 
 /* c_j of MCOR_LANES particles of the tile. */
 realv mcor_seed_coefficients(const mcor_tile* tile, int i, real iso)
@@ -279,9 +280,10 @@ int4 mcor_seed_cube(__global const ulong* block_keys, const int blocks_x, const 
     (int4)(r & 3, r >> 2 & 3, r >> 4, 0) * (MCOR_REGION_CUBES / MCOR_BRICK);
 }
 
-/* Whether the particles within half their support of a brick's nodes, an eighth of all, which make up
- * most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0 the rest
- * can only add. The margin is above rounding. Far inside the fluid, no more is ever evaluated. */
+/* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
+ * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
+ * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
+ * evaluated. */
 bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, real iso)
 {
   bool inside = true;
@@ -297,8 +299,8 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, real iso)
   return inside;
 }
 
-/* One work-item = one cube of nodes: one of a block's 64 regions or 512 bricks (per_block). Reads the
- * particles that reach it, and the states of the level before. Writes its state. */
+/* One work-item = one cube of nodes: one of a block's 64 regions or 512 bricks (per_block). Reads
+ * the particles that reach it, and the states of the level before. Writes its state. */
 __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, const int per_block,
   __global const uchar* before, __global const uchar* sides, const real iso,
@@ -329,8 +331,9 @@ __kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const in
   states[i] = (uchar)mcor_seed_state(&grid, &query, false, sides, iso, node_threshold);
 }
 
-/* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below (from
- * bit 16 on). m: mark of brick x = 0, whose position is `brick`, or -1 where it has no block. */
+/* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below
+ * (from bit 16 on). m: mark of brick x = 0, whose position is `brick`, or -1 where it has no
+ * block. */
 uint mcor_seed_row(MCOR_BLOCK_PARAMS, int m, int4 brick, __global const uchar* states)
 {
   uint sides = 0;
@@ -344,8 +347,8 @@ uint mcor_seed_row(MCOR_BLOCK_PARAMS, int m, int4 brick, __global const uchar* s
   return sides;
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads the states. Asks for each brick that is to be
- * examined, or certain to be on another side than one next to it. */
+/* One work-item = one row of 8 bricks of a block. Reads the states. Asks for each brick that is to
+ * be examined, or certain to be on another side than one next to it. */
 __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   __global const uchar* states, __global uint* brick_bits)
 {
@@ -378,8 +381,8 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   }
 }
 
-/* One work-item = one evaluated brick. Reads its nodes' sides, and the states of bricks around it that
- * are not evaluated. Asks for those certain of another side than a valid node next to them. */
+/* One work-item = one evaluated brick. Reads its nodes' sides, and the states of bricks around it
+ * that are not evaluated. Asks for those certain of another side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* above, __global const ulong* valid, __global const uchar* states,
   __global uint* brick_bits, __global int* grown)

@@ -145,8 +145,8 @@ int mcor_mask_count(const mcor_mask* mask)
 #define MCOR_PARTS 1
 #endif
 
-/* Whether particles at this distance from a box, per axis, may reach it. The margin covers rounding: a
- * particle kept in vain adds exactly 0. */
+/* Whether particles at this distance from a box, per axis, may reach it. The margin covers
+ * rounding: a particle kept in vain adds exactly 0. */
 fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h)
 {
 #if MCOR_TENSOR

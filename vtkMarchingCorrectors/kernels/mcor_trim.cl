@@ -2,8 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight (or the boundary
- * eigenvalue, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to a
- * mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles there. */
+ * eigenvalue, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to
+ * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
+ * there. */
 
 /* Bits 0..2: corner at or above the threshold. A triangle with no corner strictly above is outside,
  * so that one which merely touches the threshold leaves no sliver [Fig. 3 b]. */
@@ -144,9 +145,9 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
   bound->gz = at->wz;
 }
 
-/* Newton's step of least norm towards field = iso and weight = threshold at once,
- * -J^T (J J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there
- * is none, the gradients being parallel. */
+/* Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J J^T)^-1
+ * (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there is none, the
+ * gradients being parallel. */
 fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real threshold,
   realv* dx, realv* dy, realv* dz)
 {
@@ -169,8 +170,8 @@ fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real
   return tangent;
 }
 
-/* Moves a group of points to where field = iso and weight = threshold; points for which that does not
- * succeed nearby stay where they were. Returns the latter. */
+/* Moves a group of points to where field = iso and weight = threshold; points for which that does
+ * not succeed nearby stay where they were. Returns the latter. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
   real threshold, bool by_eigenvalue, int limit, mcor_points* points, mcor_reach* reach,
   mcor_field_at* at)
@@ -251,9 +252,9 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   }
 }
 
-/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both equations
- * hold. Writes position, value, gradient, weight and attributes; the flag 2 instead of 1 where the linear cut
- * stays, the two surfaces being tangent or too far away. */
+/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
+ * equations hold. Writes position, value, gradient, weight and attributes; the flag 2 instead of 1
+ * where the linear cut stays, the two surfaces being tangent or too far away. */
 __kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;

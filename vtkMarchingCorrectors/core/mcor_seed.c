@@ -34,7 +34,7 @@ static mcor_status mcor_ask_complete(mcor_context* context, double iso)
 }
 
 /* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
-mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
+mcor_status mcor_grow_bricks(mcor_context* context, bool first, bool* grown)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
@@ -43,7 +43,7 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   MCOR_TRY(mcor_fill(context, flag, 0, sizeof value));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states),
+    MCOR_INT(first), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(flag)));
   MCOR_TRY(mcor_read(context, flag, 0, &value, sizeof value));
   *grown = value != 0;

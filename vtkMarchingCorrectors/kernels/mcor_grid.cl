@@ -40,6 +40,33 @@ bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
   return volume[i] != volume[j] ? volume[i] < volume[j] : solid[i] < solid[j];
 }
 
+/* Insertion sort; its limit. z, which mostly decides, is at hand. */
+#define MCOR_INSERTION_LIMIT 64
+void mcor_grid_insert(__global const fix* xyz, __global const real* inv_h,
+  __global const real* volume, __global const uchar* solid, __global int* order, int count)
+{
+  fix z[MCOR_INSERTION_LIMIT];
+  int sorted[MCOR_INSERTION_LIMIT];
+  for (int i = 0; i < count; ++i)
+  {
+    const int item = order[i];
+    const fix item_z = xyz[3 * item + 2];
+    int to = i;
+    for (; to > 0 && (item_z < z[to - 1] || (item_z == z[to - 1] &&
+      mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1]))); --to)
+    {
+      z[to] = z[to - 1];
+      sorted[to] = sorted[to - 1];
+    }
+    z[to] = item_z;
+    sorted[to] = item;
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    order[i] = sorted[i];
+  }
+}
+
 /* Heap sort's sift: the child `root` sinks in order[0..count). */
 void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
   __global const real* volume, __global const uchar* solid, __global int* order, int root,
@@ -81,18 +108,9 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   }
   __global int* cell = order + begin;
   const int size = end - begin;
-  if (size <= 64)
+  if (size <= MCOR_INSERTION_LIMIT)
   {
-    for (int i = 1; i < size; ++i)
-    {
-      const int item = cell[i];
-      int to = i;
-      for (; to > 0 && mcor_grid_before(xyz, inv_h, volume, solid, item, cell[to - 1]); --to)
-      {
-        cell[to] = cell[to - 1];
-      }
-      cell[to] = item;
-    }
+    mcor_grid_insert(xyz, inv_h, volume, solid, cell, size);
     return;
   }
   for (int i = size / 2 - 1; i >= 0; --i)

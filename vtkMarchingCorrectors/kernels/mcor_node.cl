@@ -38,12 +38,7 @@ int mcor_node_list(
     const realv dy = fmax(fabs(MCOR_LOAD(i, tile->y) - (y + ey)) - ey, (realv)0);
     const realv dz = MCOR_LOAD(i, tile->z) - z;
     const realv inv_h = MCOR_LOAD(i, tile->inv_h);
-#if MCOR_TENSOR
-    const fixv near = fmax(dx, fmax(dy, fabs(dz))) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
-#else
-    const fixv near = (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
-      share * share * (MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001);
-#endif
+    const fixv near = mcor_tile_near(dx, dy, fabs(dz), inv_h, share);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
     MCOR_PACK_REAL(mask, mcor_height(dz, inv_h), height + count);

@@ -305,7 +305,7 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
       const realv dz = fmax(fabs(MCOR_LOAD(i, tile->z) - points->center[2][part]) -
           points->half_size[2][part], (realv)0);
       const mcor_mask mask = MCOR_MASK(
-        mcor_tile_near(dx, dy, dz, MCOR_LOAD(i, tile->inv_h)), min(MCOR_LANES, tile->count - i));
+        mcor_tile_near(dx, dy, dz, MCOR_LOAD(i, tile->inv_h), 1), min(MCOR_LANES, tile->count - i));
       masks->mask[part][j] = mask;
       count += MCOR_MASK_COUNT(mask);
     }

@@ -145,52 +145,57 @@ int mcor_mask_count(const mcor_mask* mask)
 #define MCOR_PARTS 1
 #endif
 
-/* Whether particles at this distance from a box, per axis, may reach it. The margin covers
- * rounding: a particle kept in vain adds exactly 0. */
-fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h)
+/* Whether particles at this distance from a box, per axis, are within `share` of their support. The
+ * margin covers rounding: a particle kept in vain adds exactly 0. */
+fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h, realv share)
 {
 #if MCOR_TENSOR
-  return fmax(dx, fmax(dy, dz)) * inv_h < MCOR_SUPPORT * (real)1.0001;
+  return fmax(dx, fmax(dy, dz)) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
 #else
   return (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
-    MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001;
+    share * share * (MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001);
 #endif
 }
 
-/* Tests MCOR_LANES particles from j on, of which `lanes` are meant, and puts those that reach the
- * query's box behind the tile's first `count`. Returns the new count. */
-int mcor_tile_append(const mcor_grid* grid, const mcor_query* query, int j, int lanes, int count,
-  mcor_tile* tile)
+/* Tests the particles that are left of the query's row, and puts those that reach its box behind the
+ * tile's first `count`, while there is room. Returns the new count. */
+int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
 {
-  const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - query->low[0]) * grid->unit;
-  const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - query->low[1]) * grid->unit;
-  const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - query->low[2]) * grid->unit;
-  const realv inv_h = MCOR_LOAD(j, grid->inv_h);
-  /* Distance to the box, per axis. */
-  const realv dx = fmax(fabs(x - query->center[0]) - query->half_size[0], (realv)0);
-  const realv dy = fmax(fabs(y - query->center[1]) - query->half_size[1], (realv)0);
-  const realv dz = fmax(fabs(z - query->center[2]) - query->half_size[2], (realv)0);
+  const real unit = grid->unit;
+  const fix lx = query->low[0], ly = query->low[1], lz = query->low[2];
+  const realv cx = query->center[0], cy = query->center[1], cz = query->center[2];
+  const realv hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
+  /* Within their own support, or within the query's radius. */
   const bool own = query->radius < 0;
-  const realv scale = own ? inv_h : (realv)(MCOR_SUPPORT / query->radius);
-  const real reach = own ? -query->radius * MCOR_SUPPORT : MCOR_SUPPORT;
-  /* The margin covers rounding: a particle kept in vain adds exactly 0. */
-#if MCOR_TENSOR
-  const fixv reaches = fmax(dx, fmax(dy, dz)) * scale < reach * (real)1.0001;
-#else
-  const fixv reaches = (dx * dx + dy * dy + dz * dz) * scale * scale < reach * reach * (real)1.0001;
-#endif
-  const mcor_mask mask = MCOR_MASK(reaches, lanes);
-  MCOR_PACK_INDEX(mask, j, tile->list + count);
-  MCOR_PACK_REAL(mask, x, tile->x + count);
-  MCOR_PACK_REAL(mask, y, tile->y + count);
-  MCOR_PACK_REAL(mask, z, tile->z + count);
-  MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
-  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->weight), tile->weight + count);
-  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->value), tile->value + count);
+  const realv reach = own ? -query->radius : (real)1;
+  const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
+  int j = query->begin;
+  for (; j < query->end && count <= MCOR_TILE - MCOR_LANES; j += MCOR_LANES)
+  {
+    const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - lx) * unit;
+    const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - ly) * unit;
+    const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - lz) * unit;
+    const realv inv_h = MCOR_LOAD(j, grid->inv_h);
+    /* Distance to the box, per axis. */
+    const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
+    const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
+    const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
+    const mcor_mask mask = MCOR_MASK(
+      mcor_tile_near(dx, dy, dz, own ? inv_h : inv_radius, reach), min(MCOR_LANES, query->end - j));
+    MCOR_PACK_INDEX(mask, j, tile->list + count);
+    MCOR_PACK_REAL(mask, x, tile->x + count);
+    MCOR_PACK_REAL(mask, y, tile->y + count);
+    MCOR_PACK_REAL(mask, z, tile->z + count);
+    MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
+    MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->weight), tile->weight + count);
+    MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->value), tile->value + count);
 #if MCOR_SOLIDS
-  MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->trim_weight), tile->trim_weight + count);
+    MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->trim_weight), tile->trim_weight + count);
 #endif
-  return count + MCOR_MASK_COUNT(mask);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  query->begin = min(j, query->end);
+  return count;
 }
 
 /* Sets the lanes beyond the end, which loads of MCOR_LANES particles see, to particles without
@@ -218,9 +223,7 @@ void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
       tile->delivered = true;
       break;
     }
-    const int lanes = min(MCOR_LANES, query->end - query->begin);
-    count = mcor_tile_append(grid, query, query->begin, lanes, count, tile);
-    query->begin += lanes;
+    count = mcor_tile_append(grid, query, count, tile);
   }
   tile->count = count;
   mcor_tile_pad(tile);

@@ -42,7 +42,7 @@ KERNEL = 10                       # 1/4 max(2 - q, 0)^3 - max(1 - q, 0)^3
 SLOPE = 5                         # 3 max(1 - q, 0)^2 - 3/4 max(2 - q, 0)^2, squares as in KERNEL
 NODE_OPERATIONS = DISTANCE + KERNEL + 4
 GRADIENT_OPERATIONS = DISTANCE + KERNEL + SLOPE + 2 + 3 + 2 * 8  # slope / r, vector, two sums of 4
-ATTRIBUTE_OPERATIONS = DISTANCE + KERNEL + 2 + 2 * ATTRIBUTES
+ATTRIBUTE_OPERATIONS = 2 + 2 * ATTRIBUTES  # the last evaluation has the weights
 BOUND_OPERATIONS = 3 * 3 + DISTANCE + KERNEL + 4  # per axis |x|, -+ half size, max; two sums
 
 
@@ -81,12 +81,12 @@ def work(result, volume):
         "extraction": (near * PARTICLE + s["nodes_evaluated"] * NODE + marched * VERTEX +
                        marched_triangles * TRIANGLE,
                        s["nodes_evaluated"] * neighbours * NODE_OPERATIONS),
-        "correction": (near * PARTICLE + marched * (VERTEX + CORRECTED),
-                       s["newton_evaluations"] * neighbours * GRADIENT_OPERATIONS),
+        "correction": (near * PARTICLE + n * ATTRIBUTES * FLOAT +
+                       marched * (VERTEX + CORRECTED + ATTRIBUTES * FLOAT),
+                       s["newton_evaluations"] * neighbours * GRADIENT_OPERATIONS +
+                       marched * neighbours * ATTRIBUTE_OPERATIONS),
         "trimming": (marched * FLOAT + (marched_triangles + triangles) * TRIANGLE, 0),
-        "output": (n * ATTRIBUTES * FLOAT + near * PARTICLE + vertices * CORRECTED +
-                   triangles * TRIANGLE + surface,
-                   vertices * neighbours * ATTRIBUTE_OPERATIONS)}
+        "output": (vertices * (CORRECTED + ATTRIBUTES * FLOAT) + triangles * TRIANGLE + surface, 0)}
 
 
 def limits(benchmark):

@@ -76,6 +76,31 @@ static void test_reuse_changes_nothing(void** state)
   core_free_set(&other);
 }
 
+/* Supports of many cubes, with which positions of particles are rounded: values of nodes do not
+ * depend on the iso value for which they were first needed. */
+static void test_far_reach(void** state)
+{
+  core_set set = core_make_random(900, 6, 0.25, 6, 5);
+  double iso = 0, middle = 0;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = set.position[3 * i] + 0.5 * set.scalar[i];
+    middle += set.scalar[i] / (double)set.count;
+  }
+  mcor_input input = core_input(&set);
+  input.particles_version = input.scalar_version = 11;
+  mcor_options options = core_options(&iso);
+  ask_for_all(&options);
+  options.seeds = MCOR_PAIRS;
+  options.cube_size_factor = 0.7;
+  for (int step = 0; step < 4; ++step)
+  {
+    iso = middle + (step == 1 ? 0.1 : step == 2 ? -0.1 : 0);
+    CORE_CHECK(hash_of(*state, &input, &options) == fresh_hash(&input, &options), "step %d", step);
+  }
+  core_free_set(&set);
+}
+
 /* Several iso values at once are the surfaces of each. */
 static void test_several_iso_values(void** state)
 {
@@ -383,9 +408,9 @@ static void test_statistics(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_reuse_changes_nothing),
-    cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
-    cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_memory_limit),
-    cmocka_unit_test(test_devices),
+    cmocka_unit_test(test_far_reach), cmocka_unit_test(test_several_iso_values),
+    cmocka_unit_test(test_order_of_input), cmocka_unit_test(test_cancel_in_every_phase),
+    cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_devices),
     cmocka_unit_test(test_names), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

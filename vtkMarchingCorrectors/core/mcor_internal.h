@@ -87,6 +87,7 @@ typedef struct mcor_brick_data
   mcor_buffer bricks; /* int4: position in bricks */
   mcor_buffer known;  /* ulong: nodes evaluated */
   mcor_buffer cells;  /* ulong: cells to examine for this iso value */
+  mcor_buffer examined; /* ulong: those whose nodes have been asked for */
   mcor_buffer value, weight; /* real [64] */
 } mcor_brick_data;
 
@@ -99,7 +100,7 @@ typedef struct mcor_bricks
   mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now;
-  mcor_buffer neighbours, need;
+  mcor_buffer neighbours, need, fresh; /* fresh: see mcor_march_need */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */

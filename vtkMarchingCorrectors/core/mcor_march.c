@@ -11,9 +11,11 @@ static mcor_status mcor_evaluate_nodes(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &bricks->fresh, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need),
+    MCOR_BUFFER(&bricks->now.examined), MCOR_BUFFER(&bricks->fresh)));
   /* One item per brick where one gathers for many lanes, else one per node. */
   const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
   return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
@@ -46,6 +48,18 @@ mcor_status mcor_count_bits(
   return mcor_scan(context, counts, count, total);
 }
 
+/* The used cells, among those examined. */
+static mcor_status mcor_classify_cells(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  const int count = bricks->now.count;
+  MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_march_classify", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
+    MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&mesh->used));
+}
+
 /* Evaluates and grows until nothing is new. Ends with the used cells. */
 static mcor_status mcor_find_cells(mcor_context* context, double iso)
 {
@@ -60,19 +74,16 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   {
     MCOR_TRY(mcor_evaluate_nodes(context));
     MCOR_TRY(mcor_sign_nodes(context, iso));
-    MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)bricks->now.count * sizeof(cl_ulong)));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_LIGHT, bricks->now.count,
-      MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours),
-      MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
-      MCOR_BUFFER(&mesh->used)));
     if (first)
     {
+      MCOR_TRY(mcor_classify_cells(context));
       MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &hits));
       statistics->seed_cells_not_intersected += seeds - hits;
     }
     ++statistics->march_rounds;
     MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, first, &grown));
   }
+  MCOR_TRY(mcor_classify_cells(context));
   MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &used));
   statistics->cells_used += used;
   return MCOR_OK;

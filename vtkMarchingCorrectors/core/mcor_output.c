@@ -392,7 +392,8 @@ static void mcor_release_construction(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &m->edges, &m->ends, &m->evaluations, &m->remaining, &m->cuts,
-    &m->cut_keys, &m->cut_distinct, &m->cut_index, &context->bricks.need };
+    &m->cut_keys, &m->cut_distinct, &m->cut_index, &context->bricks.need,
+    &context->bricks.fresh };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);

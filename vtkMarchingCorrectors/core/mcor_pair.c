@@ -29,7 +29,9 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_fill(context, &bricks->now.cells, 0, (size_t)bricks->now.count * sizeof(cl_ulong)));
+  const size_t bytes = (size_t)bricks->now.count * sizeof(cl_ulong);
+  MCOR_TRY(mcor_fill(context, &bricks->now.cells, 0, bytes));
+  MCOR_TRY(mcor_fill(context, &bricks->now.examined, 0, bytes));
   return mcor_mark(context, iso, 1);
 }
 
@@ -43,7 +45,8 @@ mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
   MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.examined),
+    MCOR_BUFFER(&bricks->fresh), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
   *grown = flag != 0;

@@ -10,9 +10,11 @@
 #define MCOR_LEAST_WEIGHT ((real)1e-3)
 
 /* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
- * are not yet known, rounded up to whole planes of 16. */
+ * are not yet known, rounded up to whole planes of 16; and which cells are new since the last
+ * time, the cells then being kept in `examined`. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
-  __global const ulong* cells, __global const ulong* known, __global ulong* need)
+  __global const ulong* cells, __global const ulong* known, __global ulong* need,
+  __global ulong* examined, __global ulong* fresh)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -36,6 +38,8 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
     planes |= (m[0] >> (16 * z) & MCOR_LOW_Z) ? MCOR_LOW_Z << (16 * z) : 0;
   }
   need[slot] = planes & ~known[slot];
+  fresh[slot] = cells[slot] & ~examined[slot];
+  examined[slot] = cells[slot];
 }
 
 /* The field's value and the trimming weight (-1: no valid value) of node n of a brick. */

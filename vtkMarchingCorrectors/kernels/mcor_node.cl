@@ -88,8 +88,9 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, float share,
   mcor_node_sums* sums)
 {
-  /* The planes that are wanted. */
-  const int low = (first + mcor_ctz(wanted)) / 16, high = (first + 63 - (int)clz(wanted)) / 16;
+  /* From the lowest plane, wanted or not: positions count from there, and those of particles that
+   * reach far are rounded, which no value may depend on. */
+  const int low = first / 16, high = (first + 63 - (int)clz(wanted)) / 16;
   const int corner[3] = { brick.x * MCOR_BRICK + (MCOR_GROUP_X == 1 ? first & 3 : 0),
     brick.y * MCOR_BRICK + (MCOR_GROUP_Y == 1 ? first >> 2 & 3 : 0), brick.z * MCOR_BRICK + low };
   const int extent[3] = { MCOR_GROUP_X - 1, MCOR_GROUP_Y == 1 ? 0 : MCOR_BRICK - 1, high - low };

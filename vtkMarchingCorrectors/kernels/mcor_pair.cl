@@ -203,14 +203,14 @@ ulong mcor_pair_faces(const ulong* m, int first, int axis)
     : (some[0] | mcor_from_next_z(some[0], some[1])) & ~(all[0] & mcor_from_next_z(all[0], all[1]));
 }
 
-/* Hands cells to a brick. flags: 1 a cell is new, 2 a brick must be placed. Where no particle
- * reaches there is no brick, and no node is valid. */
-void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* asked,
+/* Hands cells to a brick; false where it has no slot yet. flags: 1 a cell is new, 2 a brick must be
+ * placed. Where no particle reaches there is no brick, and no node is valid. */
+bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* asked,
   __global uint* cells, __global int* flags)
 {
   if (pushed == 0)
   {
-    return;
+    return true;
   }
   if (slot >= 0)
   {
@@ -220,7 +220,7 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
     pushed = new_low | (ulong)new_high << 32;
     if (pushed == 0)
     {
-      return;
+      return true;
     }
     atomic_or(flags, 1);
   }
@@ -237,26 +237,23 @@ void mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
       atomic_or(flags, 2);
     }
   }
+  return slot >= 0;
 }
 
-/* One work-item = one brick. Reads node masks. Grows the cells to examine through crossed faces of
- * used cells, within the brick to the end, and one step into its neighbours. */
+/* One work-item = one brick with cells new to this round. Reads node masks. Grows the cells examined
+ * by now through crossed faces of used cells, within the brick to the end, and one step into its
+ * neighbours. */
 __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const int* neighbours, __global const ulong* above,
-  __global const ulong* valid, __global uint* asked, __global uint* cells, __global int* flags)
+  __global const int4* bricks, __global const int* neighbours, __global ulong* examined,
+  __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
+  __global uint* asked, __global uint* cells, __global int* flags)
 {
   const int slot = get_global_id(0);
-  if (slot >= brick_count)
+  if (slot >= brick_count || fresh[slot] == 0)
   {
     return;
   }
-  /* Atomic, as neighbours may add cells in the meantime; what is missed here comes next round. */
-  const ulong before =
-    atomic_or(cells + 2 * slot, 0) | (ulong)atomic_or(cells + 2 * slot + 1, 0) << 32;
-  if (before == 0)
-  {
-    return;
-  }
+  const ulong before = examined[slot];
   ulong m[8], faces[3], upper[3];
   mcor_brick_masks(above, neighbours, slot, 0, m);
   for (int a = 0; a < 3; ++a)
@@ -284,17 +281,22 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   const ulong used = now & crossed;
   const int4 brick = bricks[slot];
   __global const int* n = neighbours + slot * 14;
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],
+  bool all = mcor_pair_push(
+    MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
+  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],
     (used & faces[0] & MCOR_LOW_X) << 3, asked, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(1, 0, 0, 0), n[0],
+  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(1, 0, 0, 0), n[0],
     (used & upper[0]) >> 3 & MCOR_LOW_X, asked, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, -1, 0, 0), n[8],
+  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, -1, 0, 0), n[8],
     (used & faces[1] & MCOR_LOW_Y) << 12, asked, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 1, 0, 0), n[1],
+  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 1, 0, 0), n[1],
     (used & upper[1]) >> 12 & MCOR_LOW_Y, asked, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, -1, 0), n[10],
+  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, -1, 0), n[10],
     (used & faces[2] & MCOR_LOW_Z) << 48, asked, cells, flags);
-  mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, 1, 0), n[3], (used & upper[2]) >> 48, asked,
-    cells, flags);
+  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, 1, 0), n[3], (used & upper[2]) >> 48,
+    asked, cells, flags);
+  if (!all)
+  {
+    examined[slot] = 0; /* again in the next round, when those bricks exist */
+  }
 }

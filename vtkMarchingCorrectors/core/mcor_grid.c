@@ -7,8 +7,6 @@
 #include "mcor_stage.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The paper's cells are as large as the support. Smaller ones fit the round reach of a query better
  * and need more rows: 2 took as long, 3 longer. */

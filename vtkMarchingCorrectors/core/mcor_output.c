@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Views of the mesh's vertices, of which those with scanned[v] != scanned[v + 1] are used. */
 enum

@@ -99,6 +99,12 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(solid), MCOR_BUFFER(&grid->order)));
   MCOR_TRY(mcor_index_keys(
     context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
+  if (grid->bucket_shift == 0)
+  {
+    /* Each cell has a bucket: nobody looks for keys. */
+    mcor_release(context, &grid->cell_keys);
+    MCOR_TRY(mcor_reserve(context, &grid->cell_keys, sizeof(cl_ulong)));
+  }
   MCOR_TRY(mcor_reserve_particles(context, count));
   return MCOR_LAUNCH(context, "mcor_grid_gather", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size),

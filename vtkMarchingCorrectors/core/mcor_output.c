@@ -108,7 +108,7 @@ static mcor_status mcor_grow(
 }
 
 static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* input,
-  mcor_surface* s, int64_t points, int64_t triangles)
+  mcor_surface* s, int64_t points)
 {
   const mcor_options* o = context->options;
   const int64_t n = s->point_count;
@@ -142,8 +142,7 @@ static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* in
     MCOR_TRY(mcor_grow(
       context, (void**)&s->attributes[a], n, points, (size_t)components * sizeof(double)));
   }
-  return mcor_grow(
-    context, (void**)&s->triangles, s->triangle_count, triangles, 3 * sizeof(int32_t));
+  return MCOR_OK;
 }
 
 /* Statistics of some vertices. */
@@ -326,8 +325,10 @@ static void mcor_copy_corners(void* data, int slice, int64_t first, int64_t last
 static mcor_status mcor_deliver_triangles(
   mcor_context* context, int64_t triangles, mcor_surface* surface)
 {
-  const mcor_buffer* buffer = &context->mesh.triangles;
+  mcor_buffer* buffer = &context->mesh.triangles;
   void* view;
+  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, surface->triangle_count, triangles,
+    3 * sizeof(int32_t)));
   if (triangles == 0)
   {
     return MCOR_OK;
@@ -336,7 +337,9 @@ static mcor_status mcor_deliver_triangles(
   mcor_corners corners = { view, surface->triangles + 3 * surface->triangle_count,
     (int32_t)surface->point_count };
   mcor_parallel_for(3 * triangles, MCOR_LIGHT_GRAIN, mcor_copy_corners, &corners);
-  return mcor_unmap(context, buffer, &view);
+  MCOR_TRY(mcor_unmap(context, buffer, &view));
+  mcor_release(context, buffer);
+  return MCOR_OK;
 }
 
 /* Evaluated for the array alone, as only trimming needs it, and there at other vertices. */
@@ -372,8 +375,8 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_compact(context, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; 2147483647 is the limit.", (long long)(base + count));
-  MCOR_TRY(mcor_grow_surface(context, input, surface, count, triangles));
   MCOR_TRY(mcor_deliver_triangles(context, triangles, surface));
+  MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
   {
     MCOR_TRY(mcor_map_vertices(context, download));
@@ -399,6 +402,18 @@ static void mcor_release_construction(mcor_context* context)
   }
 }
 
+/* Gives back the vertices, so that the caller finds room for what it makes of the surface. */
+static void mcor_release_vertices(mcor_context* context)
+{
+  mcor_mesh* m = &context->mesh;
+  mcor_buffer* const buffers[] = { &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
+    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &m->boundary };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+}
+
 /* Appends the mesh of one iso value to the surface. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
@@ -407,5 +422,6 @@ mcor_status mcor_append_output(
   mcor_release_construction(context);
   const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
   const mcor_status unmapped = mcor_unmap_vertices(context, &download);
+  mcor_release_vertices(context);
   return status != MCOR_OK ? status : unmapped;
 }

@@ -129,9 +129,9 @@ def panel(reader, actors, caption, viewport):
     lights.AddLightsToRenderer(renderer)
     camera = renderer.GetActiveCamera()
     camera.SetPosition(-0.35, 2.5, 4.4)
-    camera.SetFocalPoint(1.62, 0.43, 0.0)
+    camera.SetFocalPoint(1.565, 0.45, 0.0)
     camera.SetViewUp(0, 1, 0)
-    camera.SetViewAngle(29)
+    camera.SetViewAngle(31)
     renderer.ResetCameraClippingRange()
     return renderer
 

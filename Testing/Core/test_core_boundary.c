@@ -44,12 +44,6 @@ static const char source[] =
   "    out[4 * i + 1 + a] = MCOR_GET(e[a], MCOR_LANES - 1);\n"
   "}\n";
 
-static double real_at(const mcor_context* context, const void* array, int i)
-{
-  return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
-                                                : ((const double*)array)[i];
-}
-
 static void write_reals(
   mcor_context* context, mcor_buffer* buffer, const double* values, size_t count)
 {
@@ -74,7 +68,7 @@ static void read_reals(mcor_context* context, mcor_buffer* buffer, int count, do
   CORE_OK(context, mcor_read(context, buffer, 0, host, bytes));
   for (int i = 0; i < 4 * count; ++i)
   {
-    values[i] = real_at(context, host, i);
+    values[i] = mcor_get_real(context, host, i);
   }
   free(host);
   mcor_release(context, buffer);

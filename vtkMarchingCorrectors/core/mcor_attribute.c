@@ -10,11 +10,6 @@
 
 #include <math.h>
 
-static int mcor_width(const mcor_array* attribute)
-{
-  return attribute->components > 0 ? attribute->components : 1;
-}
-
 /* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
  * overflows whatever the device's precision. */
 static double mcor_component_scale(const mcor_array* array, int64_t count, int component)
@@ -32,7 +27,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   attributes->count = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    for (int c = 0; c < mcor_width(&input->attributes[a]); ++c, ++number)
+    for (int c = 0; c < mcor_components(&input->attributes[a]); ++c, ++number)
     {
       if (number >= first && attributes->count < MCOR_ATTRIBUTE_LIMIT)
       {
@@ -53,7 +48,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* Component c of those on the device, from the vertices that are used to every `width`-th
+/* Component c of those on the device, from the vertices put out to every `width`-th
  * element. */
 typedef struct mcor_means
 {
@@ -71,7 +66,7 @@ static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
   const double scale = m->context->attributes.component[m->c].scale;
   for (int64_t v = first; v < last; ++v)
   {
-    if (m->scanned[v] != m->scanned[v + 1])
+    if (mcor_is_put(m->scanned, v))
     {
       m->to[m->scanned[v] * (int64_t)m->width] =
         mcor_get_real(m->context, m->values, v * count + m->c) / scale;
@@ -93,7 +88,7 @@ static mcor_status mcor_put_attributes(mcor_context* context, const mcor_input* 
   for (int c = 0; c < attributes->count; ++c)
   {
     const mcor_component* component = &attributes->component[c];
-    const int width = mcor_width(&input->attributes[component->attribute]);
+    const int width = mcor_components(&input->attributes[component->attribute]);
     double* to = surface->attributes[component->attribute] + surface->point_count * width +
       component->component;
     mcor_means job = { context, scanned, view, c, width, to };
@@ -131,7 +126,7 @@ static mcor_status mcor_add_nearest(
   int64_t* to = surface->nearest_particle + surface->point_count;
   for (int v = 0; v < mesh->vertex_count; ++v)
   {
-    if (scanned[v] != scanned[v + 1])
+    if (mcor_is_put(scanned, v))
     {
       to[scanned[v]] = index[v] < 0 ? -1 : context->source[index[v]];
     }
@@ -139,7 +134,7 @@ static mcor_status mcor_add_nearest(
   return mcor_unmap(context, indices, &view);
 }
 
-/* Of the vertices that are used, see mcor_compact. */
+/* Of the vertices that are put out, see mcor_is_put. */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
@@ -147,7 +142,7 @@ mcor_status mcor_add_attributes(
   int components = 0, groups;
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    components += mcor_width(&input->attributes[a]);
+    components += mcor_components(&input->attributes[a]);
   }
   if (components > 0)
   {

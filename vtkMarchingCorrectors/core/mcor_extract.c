@@ -76,10 +76,10 @@ void mcor_release_memory(mcor_context* context)
     &b->neighbours, &b->need, &b->fresh, &m->above, &m->valid, &m->used, &m->edges,
     &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
     &m->field_value, &m->gradient, &m->vertex_weight, &m->means, &m->flag, &m->evaluations,
-    &m->boundary, &m->triangles,
-    &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index,
-    &m->scanned, &m->decisions, &m->sample_base, &m->sample_node, &m->sample_offset,
-    &m->sample_side, &context->scan_sums, &context->attributes.sorted, &context->groups };
+    &m->boundary, &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys,
+    &m->cut_distinct, &m->cut_index, &m->scanned, &m->decisions, &m->sample_base, &m->sample_node,
+    &m->sample_offset, &m->sample_side, &context->scan_sums, &context->attributes.sorted,
+    &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
@@ -219,7 +219,10 @@ static mcor_status mcor_extract_iso(
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step));
   MCOR_TRY(mcor_march(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step));
-  MCOR_TRY(mcor_load_attributes(context, input, 0));
+  if (context->mesh.march_count > 0)
+  {
+    MCOR_TRY(mcor_load_attributes(context, input, 0));
+  }
   MCOR_TRY(mcor_correct(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step));
   MCOR_TRY(mcor_trim(context, iso));

@@ -15,11 +15,6 @@ static const char* mcor_array_name(const mcor_array* array, const char* role)
   return array->name ? array->name : role;
 }
 
-static int mcor_components(const mcor_array* array)
-{
-  return array->components > 0 ? array->components : 1;
-}
-
 void mcor_read_array(
   const mcor_array* array, int64_t first, int count, int component, double* out)
 {

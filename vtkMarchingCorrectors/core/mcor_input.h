@@ -8,9 +8,14 @@
 
 #include "mcor_internal.h"
 
+static inline int mcor_components(const mcor_array* array)
+{
+  return array->components > 0 ? array->components : 1;
+}
+
 static inline double mcor_array_at(const mcor_array* array, int64_t i, int component)
 {
-  const int64_t at = i * (array->components > 0 ? array->components : 1) + component;
+  const int64_t at = i * mcor_components(array) + component;
   return !array->data                    ? array->constant
     : array->type == MCOR_FLOAT64 ? ((const double*)array->data)[at]
                                          : (double)((const float*)array->data)[at];

@@ -178,6 +178,12 @@ static inline double mcor_get_real(const mcor_context* context, const void* arra
                                                 : ((const double*)array)[i];
 }
 
+/* Whether vertex v is put out, being used by a triangle: as point scanned[v] of its mesh. */
+static inline bool mcor_is_put(const cl_int* scanned, int64_t v)
+{
+  return scanned[v] != scanned[v + 1];
+}
+
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
 static inline bool mcor_uses_pairs(const mcor_context* context)
 {

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Views of the mesh's vertices, of which those with scanned[v] != scanned[v + 1] are used. */
+/* Views of the mesh's vertices; see mcor_is_put. */
 enum
 {
   MCOR_VIEW_SCANNED,
@@ -137,8 +137,7 @@ static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* in
   }
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    const int components =
-      input->attributes[a].components > 0 ? input->attributes[a].components : 1;
+    const int components = mcor_components(&input->attributes[a]);
     MCOR_TRY(mcor_grow(
       context, (void**)&s->attributes[a], n, points, (size_t)components * sizeof(double)));
   }
@@ -281,7 +280,7 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
   mcor_tally tally = { 0 };
   for (int v = (int)first; v < (int)last; ++v)
   {
-    if (d->scanned[v] != d->scanned[v + 1])
+    if (mcor_is_put(d->scanned, v))
     {
       mcor_put_point(
         delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
@@ -359,7 +358,7 @@ static mcor_status mcor_add_boundary_eigenvalue(
   float* to = surface->boundary_eigenvalue + surface->point_count;
   for (int v = 0; v < vertices; ++v)
   {
-    if (scanned[v] != scanned[v + 1])
+    if (mcor_is_put(scanned, v))
     {
       to[scanned[v]] = (float)mcor_get_real(context, view, v);
     }
@@ -402,12 +401,14 @@ static void mcor_release_construction(mcor_context* context)
   }
 }
 
-/* Gives back the vertices, so that the caller finds room for what it makes of the surface. */
+/* Gives back the vertices and attributes, so that the caller finds room for what it makes of the
+ * surface. */
 static void mcor_release_vertices(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &m->boundary };
+    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &m->boundary,
+    &context->attributes.sorted };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);

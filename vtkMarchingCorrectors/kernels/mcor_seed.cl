@@ -382,8 +382,8 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
 }
 
 /* One work-item = one evaluated brick; those without new nodes have been looked at before, unless
- * `all` are new to the iso value. Reads its nodes' sides, and the states of bricks around it that are
- * not evaluated. Asks for those certain of another side than a valid node next to them. */
+ * `all` are new to the iso value. Reads its nodes' sides, and the states of bricks around it that
+ * are not evaluated. Asks for those certain of another side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, const int all, __global const ulong* need,
   __global const ulong* above, __global const ulong* valid, __global const uchar* states,

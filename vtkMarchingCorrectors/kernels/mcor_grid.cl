@@ -26,7 +26,7 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
 bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
   __global const real* volume, __global const uchar* solid, int i, int j)
 {
-  for (int a = 2; a >= 0; --a)
+  for (int a = 0; a < 3; ++a)
   {
     if (xyz[3 * i + a] != xyz[3 * j + a])
     {
@@ -40,25 +40,25 @@ bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
   return volume[i] != volume[j] ? volume[i] < volume[j] : solid[i] < solid[j];
 }
 
-/* Insertion sort; its limit. z, which mostly decides, is at hand. */
+/* Insertion sort; its limit. x, which mostly decides, is at hand. */
 #define MCOR_INSERTION_LIMIT 64
 void mcor_grid_insert(__global const fix* xyz, __global const real* inv_h,
   __global const real* volume, __global const uchar* solid, __global int* order, int count)
 {
-  fix z[MCOR_INSERTION_LIMIT];
+  fix x[MCOR_INSERTION_LIMIT];
   int sorted[MCOR_INSERTION_LIMIT];
   for (int i = 0; i < count; ++i)
   {
     const int item = order[i];
-    const fix item_z = xyz[3 * item + 2];
+    const fix item_x = xyz[3 * item];
     int to = i;
-    for (; to > 0 && (item_z < z[to - 1] || (item_z == z[to - 1] &&
+    for (; to > 0 && (item_x < x[to - 1] || (item_x == x[to - 1] &&
       mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1]))); --to)
     {
-      z[to] = z[to - 1];
+      x[to] = x[to - 1];
       sorted[to] = sorted[to - 1];
     }
-    z[to] = item_z;
+    x[to] = item_x;
     sorted[to] = item;
   }
   for (int i = 0; i < count; ++i)

@@ -5,7 +5,8 @@
  *
  * The search grid has one level for each factor of 2 of support radius that occurs, so that a
  * particle costs work only where its own support reaches. Particles are sorted by (level, z, y, x)
- * cell and, in a cell, by position: the order of every sum is fixed by the particles alone. */
+ * cell and, in a cell, by position, x first, so that a row of cells is sorted by x: the order of
+ * every sum is fixed by the particles alone. */
 
 typedef struct
 {
@@ -167,22 +168,35 @@ float mcor_query_distance2(const mcor_query* query, int axis, int cell)
   return d > 0 ? d * d : 0;
 }
 
-/* Particles [begin, end) of the current row that may be in reach. */
+/* Particles [begin, end) of the current row that may be in reach. A row is sorted by x. */
 void mcor_query_row(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
   const ulong row = level->base + ((ulong)query->z * level->cells[1] + query->y) * level->cells[0];
-  int first = query->first[0], last = query->last[0];
-#if !MCOR_TENSOR
+#if MCOR_TENSOR
+  const float rest = query->reach2;
+#else
   const float rest = query->reach2 - query->z2 - mcor_query_distance2(query, 1, query->y);
+#endif
+  query->begin = query->end = 0;
   if (rest < 0)
   {
-    query->begin = query->end = 0;
     return;
   }
-#endif
-  query->begin = mcor_first_particle(grid, row + first);
-  query->end = mcor_first_particle(grid, row + last + 1);
+  int begin = mcor_first_particle(grid, row + query->first[0]);
+  int end = mcor_first_particle(grid, row + query->last[0] + 1);
+  const fix reach = (fix)(sqrt(rest) * 1.000001f) + 2;
+  const fix low = query->low[0] - reach, high = query->high[0] + reach;
+  while (end - begin >= MCOR_LANES && grid->px[begin + MCOR_LANES - 1] < low)
+  {
+    begin += MCOR_LANES;
+  }
+  while (end - begin >= MCOR_LANES && grid->px[end - MCOR_LANES] > high)
+  {
+    end -= MCOR_LANES;
+  }
+  query->begin = begin;
+  query->end = end;
 }
 
 /* Moves to the next row with particles; false at the end. */

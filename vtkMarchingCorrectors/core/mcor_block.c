@@ -82,15 +82,15 @@ static mcor_status mcor_divide_cubes(
     &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* Bits of bricks for the blocks; those that exist keep theirs. */
-static mcor_status mcor_keep_bricks(mcor_context* context)
+/* Bits of bricks for the blocks: those are kept of which nodes are known. */
+mcor_status mcor_keep_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   return MCOR_LAUNCH(context, "mcor_block_keep", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->bits));
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
 
 /* The blocks that are not quiet, and those of bricks that exist. iso: relative to A0. */

@@ -47,6 +47,20 @@ static mcor_status mcor_fill_bricks(
       MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(&bricks->now.examined),
       MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
   }
+  bricks->neighbours_valid = false;
+  return MCOR_OK;
+}
+
+/* Slots of the bricks beside each. */
+mcor_status mcor_find_neighbours(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int count = bricks->now.count;
+  if (bricks->neighbours_valid)
+  {
+    return MCOR_OK;
+  }
+  bricks->neighbours_valid = true;
   MCOR_TRY(mcor_reserve(
     context, &bricks->neighbours, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_LIGHT, count, MCOR_BRICK_ARGS(context),
@@ -63,10 +77,6 @@ mcor_status mcor_place_bricks(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_LIGHT, words, MCOR_INT(words),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->base)));
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
-  if (count == bricks->now.count)
-  {
-    return MCOR_OK; /* the set only ever grows */
-  }
   mcor_brick_data last = bricks->now;
   bricks->now = (mcor_brick_data){ 0 };
   const mcor_status status = mcor_fill_bricks(context, &last, count, words);

@@ -100,7 +100,9 @@ typedef struct mcor_bricks
   mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base; /* [block_count][16] */
   mcor_brick_data now;
-  mcor_buffer neighbours, need, fresh; /* fresh: see mcor_march_need */
+  mcor_buffer neighbours; /* see mcor_brick_neighbours */
+  bool neighbours_valid;
+  mcor_buffer need, fresh; /* fresh: see mcor_march_need */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */
@@ -216,11 +218,13 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   int to_offset);
 void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
+mcor_status mcor_keep_bricks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 mcor_status mcor_grow_bricks(mcor_context* context, bool first, bool* grown);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
+mcor_status mcor_find_neighbours(mcor_context* context);
 mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);

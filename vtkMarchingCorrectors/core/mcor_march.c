@@ -72,6 +72,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   statistics->seed_cells += seeds;
   for (bool first = true, grown = true; grown; first = false)
   {
+    MCOR_TRY(mcor_find_neighbours(context));
     MCOR_TRY(mcor_evaluate_nodes(context));
     MCOR_TRY(mcor_sign_nodes(context, iso));
     if (first)

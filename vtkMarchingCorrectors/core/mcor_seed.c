@@ -7,30 +7,28 @@
 
 #define MCOR_CHUNK_PARTICLES 16 /* MCOR_CHUNK of mcor_seed.cl */
 
-/* States of the blocks' regions (per_block 64) or bricks (512); see mcor_seed.cl. */
-static mcor_status mcor_find_states(mcor_context* context, double iso, int per_block,
-  const mcor_buffer* before, mcor_buffer* states)
+/* Places every brick whose nodes must be evaluated, and evaluates most of them. */
+static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int count = bricks->block_count * per_block;
-  MCOR_TRY(mcor_reserve(context, states, (size_t)count));
-  return MCOR_LAUNCH(context, "mcor_seed_states", MCOR_LIGHT, count, MCOR_GRID_ARGS(context),
-    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
-    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys), MCOR_INT(per_block),
-    MCOR_BUFFER(before), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(states));
-}
-
-/* Asks for every brick whose nodes must be evaluated. */
-static mcor_status mcor_ask_complete(mcor_context* context, double iso)
-{
-  mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* of_regions = &context->scratch[0];
-  MCOR_TRY(mcor_find_states(context, iso, 64, &bricks->block_states, of_regions));
-  MCOR_TRY(mcor_find_states(context, iso, MCOR_BLOCK_BRICKS, of_regions, &bricks->states));
-  return MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
-    bricks->block_count * (MCOR_BLOCK_BRICKS / 8), MCOR_BLOCK_ARGS(context),
-    MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
+  const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
+  const double node_threshold = context->options->node_threshold;
+  MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_LIGHT, count / 8,
+    MCOR_GRID_ARGS(context), MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_place_bricks(context));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, bricks->now.count,
+    MCOR_GRID_ARGS(context), MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
+    MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
+  MCOR_TRY(mcor_keep_bricks(context));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, count / 8, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
+  return mcor_place_bricks(context);
 }
 
 /* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
@@ -43,8 +41,9 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool first, bool* grown)
   MCOR_TRY(mcor_fill(context, flag, 0, sizeof value));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_INT(first), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states),
-    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(flag)));
+    MCOR_INT(first), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits),
+    MCOR_BUFFER(flag)));
   MCOR_TRY(mcor_read(context, flag, 0, &value, sizeof value));
   *grown = value != 0;
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
@@ -69,10 +68,13 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
   mcor_bricks* bricks = &context->bricks;
   MCOR_TRY(mcor_find_sides(context, iso));
   MCOR_TRY(mcor_make_blocks(context, iso));
-  const bool pairs = mcor_uses_pairs(context);
-  MCOR_TRY(pairs ? mcor_mark_pairs(context, iso) : mcor_ask_complete(context, iso));
-  MCOR_TRY(mcor_place_bricks(context));
-  return pairs ? mcor_mark_pair_cells(context, iso)
-               : mcor_fill(context, &bricks->now.cells, 0xff,
-                   (size_t)bricks->now.count * sizeof(cl_ulong));
+  if (mcor_uses_pairs(context))
+  {
+    MCOR_TRY(mcor_mark_pairs(context, iso));
+    MCOR_TRY(mcor_place_bricks(context));
+    return mcor_mark_pair_cells(context, iso);
+  }
+  MCOR_TRY(mcor_place_complete(context, iso));
+  return mcor_fill(
+    context, &bricks->now.cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
 }

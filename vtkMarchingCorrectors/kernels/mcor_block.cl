@@ -32,8 +32,9 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
   const mcor_grid grid = MCOR_GRID;
   const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y) * size;
   mcor_query query;
+  mcor_tile tile;
   mcor_seed_box(&query, cube.x, cube.y, cube.z, size - 1, fix_bits);
-  states[i] = (uchar)mcor_seed_state(&grid, &query, true, sides, iso, node_threshold);
+  states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, sides, iso, node_threshold);
 }
 
 /* One work-item = one cube. Reads the states of cubes. Writes whether it is quiet. A neighbour that
@@ -105,12 +106,12 @@ __kernel void mcor_block_fill(const int count, const int cubes_x, const int cube
   }
 }
 
-/* One work-item = one brick that exists. Asks for it again, where blocks have been added. */
+/* One work-item = one brick that has a slot. Asks for it again if any node's value is known. */
 __kernel void mcor_block_keep(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global uint* brick_bits)
+  __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {
   const int slot = get_global_id(0);
-  if (slot < brick_count)
+  if (slot < brick_count && known[slot])
   {
     const int4 brick = bricks[slot];
     mcor_ask_brick(brick_bits, mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));

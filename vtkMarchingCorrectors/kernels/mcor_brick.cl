@@ -154,8 +154,8 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new
- * set. */
+/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set, if
+ * it has one. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
   __global const ulong* old_examined, __global const real* old_value,
@@ -169,6 +169,10 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   }
   const int4 brick = old_bricks[old];
   const int slot = mcor_find_brick(MCOR_BRICK_ARGS, brick.x, brick.y, brick.z);
+  if (slot < 0)
+  {
+    return;
+  }
   known[slot] = old_known[old];
   cells[slot] = old_cells[old];
   examined[slot] = old_examined[old];

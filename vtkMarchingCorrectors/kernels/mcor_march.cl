@@ -4,11 +4,6 @@
 /* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices
  * numbered by lattice edge. */
 
-/* A Shepard mean needs this fluid weight. Where solids make up the rest, cells would otherwise
- * reach over voids without any fluid, and rounding noise of a kernel's rim would count as a
- * value. */
-#define MCOR_LEAST_WEIGHT ((real)1e-3)
-
 /* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
  * are not yet known, rounded up to whole planes of 16; and which cells are new since the last
  * time, the cells then being kept in `examined`. */
@@ -42,22 +37,6 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   examined[slot] = cells[slot];
 }
 
-/* The field's value and the trimming weight (-1: no valid value) of node n of a brick. */
-void mcor_march_store(real s, real w, real t, __global real* value, __global real* weight)
-{
-#if MCOR_FIELD == 0
-  const bool defined = w >= MCOR_LEAST_WEIGHT;
-  *value = defined ? s / w : (real)0;
-  *weight = defined ? t : (real)-1;
-#elif MCOR_FIELD == 1
-  *value = s;
-  *weight = t;
-#else
-  *value = w;
-  *weight = t;
-#endif
-}
-
 /* One work-item = MCOR_ITEM_NODES nodes of a brick. Reads the particles that reach those needed.
  * Writes their values and weights. */
 __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
@@ -76,20 +55,12 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
     return;
   }
   const mcor_grid grid = MCOR_GRID;
+  mcor_query query = mcor_node_query(&grid, bricks[slot], first, wanted, 1);
   mcor_node_sums sums;
-  mcor_node_sum(&grid, bricks[slot], first, wanted, 1, &sums);
-  for (ulong rest = wanted; rest; rest &= rest - 1)
-  {
-    const int n = mcor_ctz(rest), g = n / MCOR_LANES, lane = n % MCOR_LANES;
-    const real w = MCOR_GET(sums.w[g], lane);
-#if MCOR_SOLIDS
-    const real t = MCOR_GET(sums.t[g], lane);
-#else
-    const real t = w;
-#endif
-    mcor_march_store(MCOR_GET(sums.s[g], lane), w, t, node_value + first_node + n,
-      node_weight + first_node + n);
-  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  mcor_node_sum(&grid, &query, &tile, first, wanted, &sums);
+  mcor_node_store(&sums, wanted, node_value + first_node, node_weight + first_node);
 }
 
 /* One work-item = one brick. Reads node values, those needed being known by now. Writes which nodes

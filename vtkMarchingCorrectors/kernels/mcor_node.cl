@@ -83,10 +83,9 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 #endif
 }
 
-/* Sums at the nodes from `first` on, MCOR_ITEM_NODES of a brick, for the groups that `wanted` has:
- * over all particles in reach, or only those within `share` of their support. */
-void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, float share,
-  mcor_node_sums* sums)
+/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on; only those that
+ * `wanted` has need be in it. share: of each particle's support. */
+mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, ulong wanted, float share)
 {
   /* From the lowest plane, wanted or not: positions count from there, and those of particles that
    * reach far are rounded, which no value may depend on. */
@@ -101,6 +100,15 @@ void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, f
     query.low[a] = (fix)corner[a] << grid->fix_bits;
     query.high[a] = query.low[a] + ((fix)extent[a] << grid->fix_bits);
   }
+  return query;
+}
+
+/* Sums at those nodes, for the groups that `wanted` has. The tile may hold the query's particles
+ * already. */
+void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, int first,
+  ulong wanted, mcor_node_sums* sums)
+{
+  const real share = -query->radius;
   for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
   {
     sums->s[g] = sums->w[g] = 0;
@@ -108,15 +116,13 @@ void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, f
     sums->t[g] = 0;
 #endif
   }
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool begin = true; mcor_tile_next(grid, &query, &tile, begin); begin = false)
+  for (bool begin = true; mcor_tile_next(grid, query, tile, begin); begin = false)
   {
     real term[MCOR_TILE + 16];
 #if MCOR_FIELD != 2
-    for (int i = 0; i < tile.count; ++i)
+    for (int i = 0; i < tile->count; ++i)
     {
-      term[i] = tile.weight[i] * tile.value[i];
+      term[i] = tile->weight[i] * tile->value[i];
     }
 #endif
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
@@ -124,9 +130,39 @@ void mcor_node_sum(const mcor_grid* grid, int4 brick, int first, ulong wanted, f
       const int n = g * MCOR_LANES;
       if (wanted >> n & 1)
       {
-        mcor_node_add(&tile, term, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
-          (real)((first + n) / 16 - low), share, sums);
+        mcor_node_add(tile, term, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
+          (real)(n / 16), share, sums);
       }
     }
+  }
+}
+
+/* A Shepard mean needs this fluid weight. Where solids make up the rest, cells would otherwise
+ * reach over voids without any fluid, and rounding noise of a kernel's rim would count as a
+ * value. */
+#define MCOR_LEAST_WEIGHT ((real)1e-3)
+
+/* Writes the field's values and the trimming weights (-1: no valid value) at the wanted nodes of a
+ * work-item, from its first on. */
+void mcor_node_store(
+  const mcor_node_sums* sums, ulong wanted, __global real* value, __global real* weight)
+{
+  for (ulong rest = wanted; rest; rest &= rest - 1)
+  {
+    const int n = mcor_ctz(rest), g = n / MCOR_LANES, lane = n % MCOR_LANES;
+    const real s = MCOR_GET(sums->s[g], lane), w = MCOR_GET(sums->w[g], lane);
+#if MCOR_SOLIDS
+    const real t = MCOR_GET(sums->t[g], lane);
+#else
+    const real t = w;
+#endif
+#if MCOR_FIELD == 0
+    const bool defined = w >= MCOR_LEAST_WEIGHT;
+    value[n] = defined ? s / w : (real)0;
+    weight[n] = defined ? t : (real)-1;
+#else
+    value[n] = MCOR_FIELD == 1 ? s : w;
+    weight[n] = t;
+#endif
   }
 }

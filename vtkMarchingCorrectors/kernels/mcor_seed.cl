@@ -206,9 +206,9 @@ int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, re
 /* A coarse cube that more particles reach is divided without a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
-/* State of a cube of nodes, the query's box. Of a coarse one, less is asked: it may be taken for
- * certain where a part is void, and for undecided. */
-int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
+/* State of a cube of nodes, the query's box, whose particles are left in the tile. Of a coarse one,
+ * less is asked: it may be taken for certain where a part is void, and for undecided. */
+int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   __global const uchar* sides, real iso, real node_threshold)
 {
   const int of_sides[3] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW };
@@ -223,25 +223,24 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
   mcor_bound bound = { 0, 0, 0 };
   bool from_below = false;
   int seen = 0, found = 0;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
+  mcor_tile_init(tile);
+  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
-    found += tile.count;
-    seen |= mcor_tile_sides(&tile, iso);
+    found += tile->count;
+    seen |= mcor_tile_sides(tile, iso);
     if (coarse && found > MCOR_COARSE_PARTICLES)
     {
       return MCOR_EXAMINE;
     }
-    if (tile.complete && MCOR_RANGE_DECIDES && seen != 3)
+    if (tile->complete && MCOR_RANGE_DECIDES && seen != 3)
     {
       break;
     }
     if (first)
     {
-      from_below = mcor_seed_middle(query, &tile, iso) > (MCOR_FIELD == 0 ? (real)0 : iso);
+      from_below = mcor_seed_middle(query, tile, iso) > (MCOR_FIELD == 0 ? (real)0 : iso);
     }
-    mcor_seed_bound(query, &tile, iso, from_below, &bound);
+    mcor_seed_bound(query, tile, iso, from_below, &bound);
   }
   if (found == 0)
   {
@@ -255,42 +254,61 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, bool coarse,
   return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
 }
 
-/* Edge of the cubes of nodes of which states are kept, and their number in a block; each level is
- * within the one before. */
+/* Edge of the cubes of nodes of which states are kept besides those of bricks, and their number in a
+ * block. */
 #define MCOR_REGION_CUBES 8
 #define MCOR_BLOCK_REGIONS 64
 
-/* Region of the brick with mark m. */
-int mcor_seed_region_of(int m)
+/* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
+ * the states of its bricks; asks for those that are not certain. */
+__kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+  const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
+  __global const uchar* sides, const real iso, const real node_threshold, __global uchar* states,
+  __global uint* brick_bits)
 {
-  const int region = (m >> 1 & 3) | (m >> 4 & 3) << 2 | (m >> 7 & 3) << 4;
-  return m / MCOR_BLOCK_BRICKS * MCOR_BLOCK_REGIONS + region;
-}
-
-/* Position in bricks of cube i, of per_block (64 or 512) cubes in a block. */
-int4 mcor_seed_cube(__global const ulong* block_keys, const int blocks_x, const int blocks_y,
-  const int per_block, int i)
-{
-  if (per_block == MCOR_BLOCK_BRICKS)
+  const int block = get_global_id(0) / MCOR_BLOCK_REGIONS, r = get_global_id(0) % MCOR_BLOCK_REGIONS;
+  if (block >= block_count)
   {
-    return mcor_brick_of_mark(block_keys, blocks_x, blocks_y, i);
+    return;
   }
-  const int r = i % per_block;
-  return mcor_brick_of_mark(block_keys, blocks_x, blocks_y, i / per_block * MCOR_BLOCK_BRICKS) +
-    (int4)(r & 3, r >> 2 & 3, r >> 4, 0) * (MCOR_REGION_CUBES / MCOR_BRICK);
+  /* The region's first brick. */
+  const int mark = block * MCOR_BLOCK_BRICKS + 2 * (r & 3) + 16 * (r >> 2 & 3) + 128 * (r >> 4);
+  int state = block_states[block];
+  if (state == MCOR_EXAMINE)
+  {
+    const mcor_grid grid = MCOR_GRID;
+    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
+    mcor_query query;
+    mcor_tile tile;
+    mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
+      MCOR_REGION_CUBES - 1, fix_bits);
+    state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
+  }
+  for (int b = 0; b < 8; ++b)
+  {
+    const int m = mark + (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
+    states[m] = (uchar)state;
+    if (state == MCOR_EXAMINE)
+    {
+      mcor_ask_brick(brick_bits, m);
+    }
+  }
 }
 
 /* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
  * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
  * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
  * evaluated. */
-bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, real iso)
+bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, mcor_tile* tile, real iso)
 {
+  const ulong wanted = MCOR_ITEM_NODES == 64 ? ~0UL : 1UL;
   bool inside = true;
   for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
   {
+    mcor_query query = mcor_node_query(grid, brick, first, wanted, 0.5f);
     mcor_node_sums sums;
-    mcor_node_sum(grid, brick, first, MCOR_ITEM_NODES == 64 ? ~0UL : 1UL, 0.5f, &sums);
+    mcor_tile_init(tile);
+    mcor_node_sum(grid, &query, tile, first, wanted, &sums);
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
       inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
@@ -299,36 +317,41 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, real iso)
   return inside;
 }
 
-/* One work-item = one cube of nodes: one of a block's 64 regions or 512 bricks (per_block). Reads
- * the particles that reach it, and the states of the level before. Writes its state. */
-__kernel void mcor_seed_states(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, const int per_block,
-  __global const uchar* before, __global const uchar* sides, const real iso,
-  const real node_threshold, __global uchar* states)
+/* One work-item = one brick whose region is not certain, or that was evaluated for another iso
+ * value. Reads the particles that reach it. Writes the states of bricks not yet evaluated; and, as
+ * their particles are at hand, the values of nodes that are to be, where a work-item evaluates
+ * whole bricks. */
+__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, const int brick_count,
+  __global const int4* bricks, __global const uchar* sides, const real iso,
+  const real node_threshold, __global uchar* states, __global ulong* known,
+  __global real* node_value, __global real* node_weight)
 {
-  const int i = get_global_id(0);
-  if (i >= block_count * per_block)
+  const int slot = get_global_id(0);
+  if (slot >= brick_count || known[slot])
   {
-    return;
-  }
-  const bool is_brick = per_block == MCOR_BLOCK_BRICKS;
-  const int outer = is_brick ? mcor_seed_region_of(i) : i / per_block;
-  if (before[outer] != MCOR_EXAMINE)
-  {
-    states[i] = before[outer];
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int4 brick = mcor_seed_cube(block_keys, blocks_x, blocks_y, per_block, i);
-  if (MCOR_FIELD == 2 && !MCOR_TENSOR && is_brick && mcor_seed_is_inside(&grid, brick, iso))
+  const int4 brick = bricks[slot];
+  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  mcor_tile tile;
+  if (MCOR_FIELD == 2 && !MCOR_TENSOR && mcor_seed_is_inside(&grid, brick, &tile, iso))
   {
-    states[i] = MCOR_ABOVE;
+    states[m] = MCOR_ABOVE;
     return;
   }
-  mcor_query query;
-  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-    (is_brick ? MCOR_BRICK : MCOR_REGION_CUBES) - 1, fix_bits);
-  states[i] = (uchar)mcor_seed_state(&grid, &query, false, sides, iso, node_threshold);
+  mcor_query query = mcor_node_query(&grid, brick, 0, ~0UL, 1);
+  const int state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
+  states[m] = (uchar)state;
+#if MCOR_ITEM_NODES == 64
+  if (state == MCOR_EXAMINE)
+  {
+    mcor_node_sums sums;
+    mcor_node_sum(&grid, &query, &tile, 0, ~0UL, &sums);
+    mcor_node_store(&sums, ~0UL, node_value + slot * 64L, node_weight + slot * 64L);
+    known[slot] = ~0UL;
+  }
+#endif
 }
 
 /* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below

@@ -67,12 +67,23 @@ realv mcor_height(realv dz, realv inv_h)
 #endif
 }
 
-realv mcor_weight(realv planar, realv height, realv inv_h)
+/* In two steps, to be made for several particles in turn: as a chain, they take longer than a CPU can
+ * look ahead. */
+realv mcor_distance(realv planar, realv height)
 {
 #if MCOR_TENSOR
   return planar * height;
 #else
-  return MCOR_W(mcor_sqrt(planar + height) * inv_h);
+  return mcor_sqrt(planar + height);
+#endif
+}
+
+realv mcor_weight(realv distance, realv inv_h)
+{
+#if MCOR_TENSOR
+  return distance;
+#else
+  return MCOR_W(distance * inv_h);
 #endif
 }
 

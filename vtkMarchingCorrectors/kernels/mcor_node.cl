@@ -16,6 +16,9 @@
 #endif
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 
+/* Particles in turn, see mcor_distance. */
+#define MCOR_NODE_STEP (MCOR_LANES == 1 ? 1 : 32)
+
 /* Sums at the nodes of a work-item: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
 typedef struct
 {
@@ -62,19 +65,28 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 #if MCOR_SOLIDS
   realv t = sums->t[g];
 #endif
-  for (int k = 0; k < count; ++k)
+  for (int begin = 0; begin < count; begin += MCOR_NODE_STEP)
   {
-    const int i = list[k];
-    const real inv_h = tile->inv_h[i], weight = tile->weight[i];
-    const realv planar = mcor_planar(tile->x[i] - node_x, tile->y[i] - node_y, inv_h);
-    const realv v = mcor_weight(planar, height[k], inv_h);
+    realv distance[MCOR_NODE_STEP];
+    const int end = min(begin + MCOR_NODE_STEP, count);
+    for (int k = begin; k < end; ++k)
+    {
+      const int i = list[k];
+      distance[k - begin] = mcor_distance(
+        mcor_planar(tile->x[i] - node_x, tile->y[i] - node_y, tile->inv_h[i]), height[k]);
+    }
+    for (int k = begin; k < end; ++k)
+    {
+      const int i = list[k];
+      const realv v = mcor_weight(distance[k - begin], tile->inv_h[i]);
 #if MCOR_FIELD != 2
-    s += term[i] * v;
+      s += term[i] * v;
 #endif
-    w += weight * v;
+      w += tile->weight[i] * v;
 #if MCOR_SOLIDS
-    t += tile->trim_weight[i] * v;
+      t += tile->trim_weight[i] * v;
 #endif
+    }
   }
   sums->s[g] = s;
   sums->w[g] = w;

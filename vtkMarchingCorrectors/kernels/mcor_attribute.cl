@@ -76,8 +76,8 @@ void mcor_reach_evaluate(
   {
     mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
       MCOR_REACH(reach, z, i), d);
-    reach->w[i] =
-      mcor_weight_gradient(d[0], d[1], d[2], MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
+    const mcor_offset offset = mcor_offset_of(d);
+    reach->w[i] = mcor_weight_gradient(&offset, MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
   }
 }
 

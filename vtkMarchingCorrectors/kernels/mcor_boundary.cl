@@ -121,7 +121,8 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
     for (int i = 0; i < tile->count; ++i)
     {
       mcor_points_from(at, points, tile->x[i], tile->y[i], tile->z[i], u);
-      mcor_weight_gradient(u[0], u[1], u[2], tile->inv_h[i], &gx, &gy, &gz);
+      const mcor_offset offset = mcor_offset_of(u);
+      mcor_weight_gradient(&offset, tile->inv_h[i], &gx, &gy, &gz);
       const real v = MCOR_TILE_TRIM(tile)[i], half_v = (real)0.5 * v;
       m->xx -= v * (u[0] * gx);
       m->yy -= v * (u[1] * gy);

@@ -23,32 +23,41 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   mcor_points_relative(grid, query, points, at_node);
   for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
   {
-    for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+    for (int begin = 0; begin < MCOR_REACH_COUNT(reach); begin += MCOR_STEP)
     {
-      mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
-        MCOR_REACH(reach, z, i), d);
-      const realv k =
-        mcor_weight_gradient(d[0], d[1], d[2], MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
-      const realv m = MCOR_REACH(reach, weight, i);
-      reach->w[i] = k;
+      mcor_offset offset[MCOR_STEP];
+      const int end = min(begin + MCOR_STEP, MCOR_REACH_COUNT(reach));
+      for (int i = begin; i < end; ++i)
+      {
+        mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+          MCOR_REACH(reach, z, i), d);
+        offset[i - begin] = mcor_offset_of(d);
+      }
+      for (int i = begin; i < end; ++i)
+      {
+        const realv k =
+          mcor_weight_gradient(offset + (i - begin), MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
+        const realv m = MCOR_REACH(reach, weight, i);
+        reach->w[i] = k;
 #if MCOR_FIELD != 2
-      const realv c = MCOR_REACH_TERM(reach, i, iso);
-      s += c * k;
-      sx += c * gx;
-      sy += c * gy;
-      sz += c * gz;
+        const realv c = MCOR_REACH_TERM(reach, i, iso);
+        s += c * k;
+        sx += c * gx;
+        sy += c * gy;
+        sz += c * gz;
 #endif
-      w += m * k;
-      wx += m * gx;
-      wy += m * gy;
-      wz += m * gz;
+        w += m * k;
+        wx += m * gx;
+        wy += m * gy;
+        wz += m * gz;
 #if MCOR_SOLIDS
-      const realv mt = MCOR_REACH_TRIM(reach, i);
-      t += mt * k;
-      tx += mt * gx;
-      ty += mt * gy;
-      tz += mt * gz;
+        const realv mt = MCOR_REACH_TRIM(reach, i);
+        t += mt * k;
+        tx += mt * gx;
+        ty += mt * gy;
+        tz += mt * gz;
 #endif
+      }
     }
   }
 #if MCOR_FIELD == 0

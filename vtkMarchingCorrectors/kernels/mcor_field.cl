@@ -67,8 +67,10 @@ realv mcor_height(realv dz, realv inv_h)
 #endif
 }
 
-/* In two steps, to be made for several particles in turn: as a chain, they take longer than a CPU can
- * look ahead. */
+/* In two steps, to be made for MCOR_STEP particles in turn: as a chain, they take longer than a CPU
+ * can look ahead. */
+#define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
+
 realv mcor_distance(realv planar, realv height)
 {
 #if MCOR_TENSOR
@@ -87,27 +89,40 @@ realv mcor_weight(realv distance, realv inv_h)
 #endif
 }
 
-/* The same, and the gradient with respect to (dx, dy, dz). */
-realv mcor_weight_gradient(
-  realv dx, realv dy, realv dz, realv inv_h, realv* gx, realv* gy, realv* gz)
+/* The same, and the gradient with respect to (dx, dy, dz); again in two steps. */
+typedef struct
+{
+  realv x, y, z, r2, inv_r;
+} mcor_offset;
+
+mcor_offset mcor_offset_of(const realv d[3])
 {
 #if MCOR_TENSOR
-  const realv qx = fabs(dx) * inv_h, qy = fabs(dy) * inv_h, qz = fabs(dz) * inv_h;
+  const realv r2 = 0, inv_r = 0; /* not needed */
+#else
+  const realv r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], inv_r = mcor_rsqrt(r2);
+#endif
+  const mcor_offset offset = { d[0], d[1], d[2], r2, inv_r };
+  return offset;
+}
+
+realv mcor_weight_gradient(const mcor_offset* d, realv inv_h, realv* gx, realv* gy, realv* gz)
+{
+#if MCOR_TENSOR
+  const realv qx = fabs(d->x) * inv_h, qy = fabs(d->y) * inv_h, qz = fabs(d->z) * inv_h;
   const realv wx = MCOR_W(qx), wy = MCOR_W(qy), wz = MCOR_W(qz);
-  *gx = sign(dx) * MCOR_DW(qx) * wy * wz * inv_h;
-  *gy = sign(dy) * MCOR_DW(qy) * wx * wz * inv_h;
-  *gz = sign(dz) * MCOR_DW(qz) * wx * wy * inv_h;
+  *gx = sign(d->x) * MCOR_DW(qx) * wy * wz * inv_h;
+  *gy = sign(d->y) * MCOR_DW(qy) * wx * wz * inv_h;
+  *gz = sign(d->z) * MCOR_DW(qz) * wx * wy * inv_h;
   return wx * wy * wz;
 #else
   /* 1 / r being finite at r = 0, the gradient is 0 there: for the quadratic kernel, whose slope is
    * not, by definition. */
-  const realv r2 = dx * dx + dy * dy + dz * dz;
-  const realv inv_r = mcor_rsqrt(r2);
-  const realv q = r2 * (inv_r * inv_h);
-  const realv slope = MCOR_DW(q) * (inv_r * inv_h);
-  *gx = slope * dx;
-  *gy = slope * dy;
-  *gz = slope * dz;
+  const realv q = d->r2 * (d->inv_r * inv_h);
+  const realv slope = MCOR_DW(q) * (d->inv_r * inv_h);
+  *gx = slope * d->x;
+  *gy = slope * d->y;
+  *gz = slope * d->z;
   return MCOR_W(q);
 #endif
 }

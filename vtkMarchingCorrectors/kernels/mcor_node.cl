@@ -16,9 +16,6 @@
 #endif
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 
-/* Particles in turn, see mcor_distance. */
-#define MCOR_NODE_STEP (MCOR_LANES == 1 ? 1 : 32)
-
 /* Sums at the nodes of a work-item: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
 typedef struct
 {
@@ -65,10 +62,10 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 #if MCOR_SOLIDS
   realv t = sums->t[g];
 #endif
-  for (int begin = 0; begin < count; begin += MCOR_NODE_STEP)
+  for (int begin = 0; begin < count; begin += MCOR_STEP)
   {
-    realv distance[MCOR_NODE_STEP];
-    const int end = min(begin + MCOR_NODE_STEP, count);
+    realv distance[MCOR_STEP];
+    const int end = min(begin + MCOR_STEP, count);
     for (int k = begin; k < end; ++k)
     {
       const int i = list[k];

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/* *
+/**
  * @class   vtkMarchingCorrectors
  * @brief   generate an isosurface directly from SPH particles
  *
@@ -98,7 +98,7 @@
  *
  * @sa
  * vtkSPHInterpolator vtkContourFilter vtkFlyingEdges3D vtkContourValues
- * */
+ */
 
 #ifndef vtkMarchingCorrectors_h
 #define vtkMarchingCorrectors_h
@@ -381,11 +381,12 @@ public:
   ///@}
 
   ///@{
-  /* * How the corners of a cell are connected where their values alone leave it open, see
+  /**
+   * How the corners of a cell are connected where their values alone leave it open, see
    * TopologyType. TOPOLOGY_TABLE (the default) keeps the higher values apart on ambiguous faces,
    * and makes no tunnels through cells. TOPOLOGY_FIELD evaluates the field there, so that bridges
    * and tunnels as thin as a cube are those of the field. The surface is a manifold with both.
-   * */
+   */
   vtkSetClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   vtkGetMacro(Topology, int);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
@@ -411,14 +412,15 @@ public:
   ///@}
 
   ///@{
-  /* * What tells trimming where the fluid ends, see BoundaryDetectionType; WEIGHT_SUM by default.
+  /**
+   * What tells trimming where the fluid ends, see BoundaryDetectionType; WEIGHT_SUM by default.
    * The eigenvalue is that of Marrone et al., "Fast free-surface detection and level-set function
    * definition in SPH solvers", J. Comput. Phys. 229, 2010: the smallest one of the inverse of the
    * renormalization matrix (its symmetric part). Both are about 1 inside and fall to 0 outside, but
    * the eigenvalue needs another VertexThreshold: 0.3 trims about where a weight sum of 0.5 does;
    * 0.75 within the fluid, 0.9 smoothing lengths from a flat surface. Near 0.5 the border is
    * ragged, as the eigenvalue stays there over a depth of half a smoothing length.
-   * */
+   */
   vtkSetClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
   vtkGetMacro(BoundaryDetection, int);
   void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
@@ -497,9 +499,10 @@ public:
   ///@}
 
   ///@{
-  /* * Compute "BoundaryEigenvalue", no unit: see BoundaryDetection, whose choice does not matter
+  /**
+   * Compute "BoundaryEigenvalue", no unit: see BoundaryDetection, whose choice does not matter
    * here. Off by default.
-   * */
+   */
   vtkSetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
   vtkGetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
   vtkBooleanMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
@@ -589,9 +592,10 @@ public:
   void ReleaseDeviceMemory();
 
   ///@{
-  /* * Most device memory in use and kept between updates, in MiB; 0, the default, means all that
+  /**
+   * Most device memory in use and kept between updates, in MiB; 0, the default, means all that
    * there is. An update that would need more fails with a sentence that says how much.
-   * */
+   */
   vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(DeviceMemoryLimit, int);
   ///@}

@@ -295,6 +295,25 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   }
 }
 
+/* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
+real mcor_seed_filled(const mcor_query* query, const mcor_tile* tile)
+{
+  realv volume = 0, inv_h = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const realv s = MCOR_LOAD(i, tile->inv_h);
+    volume += MCOR_LOAD(i, tile->weight) / fmax(s * s * s, (realv)1e-30f);
+    inv_h += s;
+  }
+  const real r = -query->radius * MCOR_SUPPORT * tile->count / mcor_lane_sum(inv_h);
+  const real e = 2 * query->half_size[0];
+  const real box = e * e * e + 6 * e * e * r + M_PI_F * r * r * (3 * e + 4 * r / 3);
+  return mcor_lane_sum(volume) / (MCOR_NORM * box);
+}
+
+/* With less than this filled, a brick is taken to be near the surface. */
+#define MCOR_INSIDE_FILLED ((real)0.8f)
+
 /* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
  * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
  * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
@@ -308,6 +327,12 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, mcor_tile* tile, rea
     mcor_query query = mcor_node_query(grid, brick, first, wanted, 0.5f);
     mcor_node_sums sums;
     mcor_tile_init(tile);
+    mcor_tile_next(grid, &query, tile, true);
+    if (tile->count == 0 ||
+      (tile->complete && mcor_seed_filled(&query, tile) < MCOR_INSIDE_FILLED))
+    {
+      return false;
+    }
     mcor_node_sum(grid, &query, tile, first, wanted, &sums);
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {

@@ -5,8 +5,6 @@
 
 #include <limits.h>
 
-#define MCOR_RADIX_BITS 8
-
 /* Replaces counts[0..count) by their exclusive prefix sums; element `count` becomes the total. The
  * buffer holds count + 1 ints. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
@@ -38,28 +36,42 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
   *b = c;
 }
 
+/* Bits that one round of sorting treats: as few rounds as can be, of about the same size. */
+static int mcor_digit_bits(const mcor_context* context, uint64_t key_limit)
+{
+  const int most = context->cl.lanes == 1 ? 8 : 11; /* MCOR_DIGIT_BITS of mcor_scan.cl */
+  int bits = 1;
+  while (bits < 64 && (key_limit - 1) >> bits)
+  {
+    ++bits;
+  }
+  const int rounds = (bits + most - 1) / most;
+  return (bits + rounds - 1) / rounds;
+}
+
 /* Sorts keys, all below key_limit; values[i] becomes the former position of key i. Stable. */
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
-  const int chunks = context->cl.chunks;
+  const int chunks = context->cl.chunks, bits = mcor_digit_bits(context, key_limit);
   const size_t n = (size_t)count;
   int total;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort_keys, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &context->sort_values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort_histogram,
-    (((size_t)chunks << MCOR_RADIX_BITS) + 1) * sizeof(cl_int)));
+    (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(
     context, "mcor_sort_identity", MCOR_LIGHT, count, MCOR_INT(count), MCOR_BUFFER(values)));
-  for (int shift = 0; shift < 64 && (key_limit - 1) >> shift; shift += MCOR_RADIX_BITS)
+  for (int shift = 0; shift < 64 && (key_limit - 1) >> shift; shift += bits)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
-      MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_BUFFER(&context->sort_histogram)));
-    MCOR_TRY(mcor_scan(context, &context->sort_histogram, chunks << MCOR_RADIX_BITS, &total));
+      MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),
+      MCOR_BUFFER(&context->sort_histogram)));
+    MCOR_TRY(mcor_scan(context, &context->sort_histogram, chunks << bits, &total));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
       MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift),
-      MCOR_BUFFER(&context->sort_histogram), MCOR_BUFFER(&context->sort_keys),
+      MCOR_INT(bits), MCOR_BUFFER(&context->sort_histogram), MCOR_BUFFER(&context->sort_keys),
       MCOR_BUFFER(&context->sort_values)));
     mcor_swap(keys, &context->sort_keys);
     mcor_swap(values, &context->sort_values);

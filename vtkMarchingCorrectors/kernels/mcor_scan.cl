@@ -4,7 +4,8 @@
 /* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `chunks` runs of
  * equal length; one work-item walks one run. */
 
-#define MCOR_RADIX 256
+/* Bits that one round of the radix sort treats, at most. Twin in mcor_scan.c. */
+#define MCOR_DIGIT_BITS (MCOR_LANES == 1 ? 8 : 11)
 
 int mcor_chunk_begin(int chunk, int chunks, int count)
 {
@@ -73,24 +74,25 @@ __kernel void mcor_scan_fill(
 
 /* One work-item = one chunk. Reads the keys of the chunk. Writes how often each digit occurs. */
 __kernel void mcor_sort_count(__global const ulong* keys, const int count, const int chunks,
-  const int shift, __global int* histogram)
+  const int shift, const int bits, __global int* histogram)
 {
   const int chunk = get_global_id(0);
   if (chunk >= chunks)
   {
     return;
   }
-  int bins[MCOR_RADIX];
-  for (int b = 0; b < MCOR_RADIX; ++b)
+  int bins[1 << MCOR_DIGIT_BITS];
+  const int radix = 1 << bits;
+  for (int b = 0; b < radix; ++b)
   {
     bins[b] = 0;
   }
   const int end = mcor_chunk_begin(chunk + 1, chunks, count);
   for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
   {
-    ++bins[(int)(keys[i] >> shift) & (MCOR_RADIX - 1)];
+    ++bins[(int)(keys[i] >> shift) & (radix - 1)];
   }
-  for (int b = 0; b < MCOR_RADIX; ++b)
+  for (int b = 0; b < radix; ++b)
   {
     histogram[b * chunks + chunk] = bins[b];
   }
@@ -99,16 +101,17 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
 /* One work-item = one chunk. Reads keys, values and the scanned histogram. Writes both in the order
  * of the digit, equal digits in the order in which they came. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
-  const int count, const int chunks, const int shift, __global const int* histogram,
-  __global ulong* sorted_keys, __global int* sorted_values)
+  const int count, const int chunks, const int shift, const int bits,
+  __global const int* histogram, __global ulong* sorted_keys, __global int* sorted_values)
 {
   const int chunk = get_global_id(0);
   if (chunk >= chunks)
   {
     return;
   }
-  int bins[MCOR_RADIX];
-  for (int b = 0; b < MCOR_RADIX; ++b)
+  int bins[1 << MCOR_DIGIT_BITS];
+  const int radix = 1 << bits;
+  for (int b = 0; b < radix; ++b)
   {
     bins[b] = histogram[b * chunks + chunk];
   }
@@ -116,7 +119,7 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
   {
     const ulong key = keys[i];
-    const int to = bins[(int)(key >> shift) & (MCOR_RADIX - 1)]++;
+    const int to = bins[(int)(key >> shift) & (radix - 1)]++;
     sorted_keys[to] = key;
     sorted_values[to] = values[i];
   }

@@ -5,12 +5,15 @@
 
 #include "mcor_internal.h"
 
+#define MCOR_PAIR_GROUPS 8 /* as in mcor_pair.cl */
+
 static mcor_status mcor_mark(mcor_context* context, double iso, int mark_cells)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int lanes = context->cl.lanes, items = (context->grid.count + lanes - 1) / lanes;
-  mcor_buffer* has_pairs = &context->scratch[3]; /* from one launch to the next */
-  MCOR_TRY(mcor_reserve(context, has_pairs, (size_t)items));
+  const int lanes = context->cl.lanes, groups = (context->grid.count + lanes - 1) / lanes;
+  const int items = (groups + MCOR_PAIR_GROUPS - 1) / MCOR_PAIR_GROUPS;
+  mcor_buffer* has_pairs = &context->scratch[3]; /* of groups, from one launch to the next */
+  MCOR_TRY(mcor_reserve(context, has_pairs, (size_t)groups));
   return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_LIGHT, items, MCOR_GRID_ARGS(context),
     MCOR_BRICK_ARGS(context), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(has_pairs),

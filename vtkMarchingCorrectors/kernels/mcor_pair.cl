@@ -144,44 +144,93 @@ bool mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mco
   return count > 0;
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the particles within the smoothing length of
- * each. mark_cells 0: asks for bricks for pairs that straddle the iso value, and writes whether
- * there are any; 1: marks cells. */
+/* Fits the query to particles [begin, end) and what may pair with them. Returns whether there are
+ * particles on both sides. */
+bool mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale,
+  __global const uchar* sides, mcor_query* query)
+{
+  const real coarsest = mcor_query_particles(grid, query, begin, end - begin);
+  query->radius = (float)(MCOR_PAIR_REACH / (coarsest * h_scale));
+  return mcor_query_sides(grid, query, sides) == 3;
+}
+
+/* Greatest inv_h of the tile's particles. */
+real mcor_pair_finest(const mcor_tile* tile)
+{
+  realv most = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    most = fmax(most, MCOR_LOAD(i, tile->inv_h));
+  }
+  real finest = 0;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    finest = fmax(finest, MCOR_GET(most, lane));
+  }
+  return finest;
+}
+
+/* Marks for particles [begin, end), of which there are no more than MCOR_LANES. */
+bool mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BRICK_PARAMS, int begin, int end,
+  __global const uchar* sides, real iso, real h_scale, int mark_cells, __global uint* asked,
+  __global uint* cells)
+{
+  bool some = false;
+  mcor_query query;
+  if (!mcor_pair_query(grid, begin, end, h_scale, sides, &query))
+  {
+    return false;
+  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool first = true; mcor_tile_next(grid, &query, &tile, first); first = false)
+  {
+    const int seen = mcor_tile_sides(&tile, iso);
+    const real finest = mcor_pair_finest(&tile);
+    for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
+    {
+      /* One below that is no coarser than any other leaves all its pairs to those. */
+      const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
+      if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
+      {
+        some |= mcor_pair_mark_particle(
+          grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, asked, cells);
+      }
+    }
+  }
+  return some;
+}
+
+/* Groups of MCOR_LANES particles that one work-item looks at together first: most particles are far
+ * from the surface. */
+#define MCOR_PAIR_GROUPS 8
+
+/* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles. Reads the particles within
+ * the smoothing length of each. mark_cells 0: asks for bricks for pairs that straddle the iso value,
+ * and writes of each group whether there are any; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
   const real iso, const real h_scale, const int mark_cells, __global uchar* has_pairs,
   __global uint* asked, __global uint* cells)
 {
-  const int item = get_global_id(0), begin = item * MCOR_LANES;
-  if (begin >= particle_count || (mark_cells && !has_pairs[item]))
+  const int first = get_global_id(0) * MCOR_PAIR_GROUPS, begin = first * MCOR_LANES;
+  if (begin >= particle_count)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int end = min(begin + MCOR_LANES, particle_count);
+  const int end = min(begin + MCOR_PAIR_GROUPS * MCOR_LANES, particle_count);
   mcor_query query;
-  const real coarsest = mcor_query_particles(&grid, &query, begin, end - begin);
-  query.radius = (float)(MCOR_PAIR_REACH / (coarsest * h_scale));
-  bool some = false;
-  if (mcor_query_sides(&grid, &query, sides) != 3)
+  const bool some =
+    mark_cells || mcor_pair_query(&grid, begin, end, h_scale, sides, &query);
+  for (int group = first, i = begin; i < end; ++group, i += MCOR_LANES)
   {
-    has_pairs[item] = 0;
-    return;
-  }
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
-  {
-    const int seen = mcor_tile_sides(&tile, iso);
-    for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
+    if (!mark_cells || has_pairs[group])
     {
-      if (!MCOR_SOLIDS || p_weight[j] != 0)
-      {
-        some |= mcor_pair_mark_particle(
-          &grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, asked, cells);
-      }
+      has_pairs[group] = some &&
+        mcor_pair_mark_particles(&grid, MCOR_BRICK_ARGS, i, min(i + MCOR_LANES, end), sides, iso,
+          h_scale, mark_cells, asked, cells);
     }
   }
-  has_pairs[item] = some;
 }
 
 /* Per cell of a brick: whether its lower face across an axis is crossed, i.e. has nodes on both

@@ -209,19 +209,6 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
   triangle_count[slot] = triangles;
 }
 
-/* Rank of edge (node n, axis) among the vertices of its brick: by node, then axis. */
-int mcor_march_rank(__global const ulong* e, int n, int axis)
-{
-  const ulong below = (1UL << n) - 1;
-  int rank = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const ulong counted = a < axis ? below | 1UL << n : below;
-    rank += (int)(popcount(e[a] & counted) + popcount(e[6 + a] & counted));
-  }
-  return rank;
-}
-
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
  * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against
  * the iso value. */
@@ -263,25 +250,68 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
   }
 }
 
+/* Nodes of a brick's cells. */
+#define MCOR_CELL_NODES 125
+
+/* Number of the first vertex of node n's edges among the vertices of its brick. */
+int mcor_march_rank(__global const ulong* e, int n)
+{
+  const ulong below = (1UL << n) - 1;
+  int rank = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    rank += (int)(popcount(e[axis] & below) + popcount(e[6 + axis] & below));
+  }
+  return rank;
+}
+
+/* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched edge,
+ * -1 less the first of the two. */
+void mcor_march_numbers(__global const int* neighbours, __global const ulong* edges,
+  __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
+{
+  for (int d = 0; d < 8; ++d)
+  {
+    const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
+    if (owner < 0)
+    {
+      continue;
+    }
+    __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
+    const ulong border = (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) &
+      (d & 4 ? MCOR_LOW_Z : ~0UL);
+    for (ulong rest = (e[0] | e[1] | e[2]) & border; rest; rest &= rest - 1)
+    {
+      const int n = mcor_ctz(rest);
+      const int at = (n & 3) + 5 * (n >> 2 & 3) + 25 * (n >> 4) + 4 * (d & 1) +
+        20 * (d >> 1 & 1) + 100 * (d >> 2);
+      int number = vertex_base[owner] + mcor_march_rank(e, n);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (e[axis] >> n & 1)
+        {
+          const bool pinched = e[6 + axis] >> n & 1;
+          numbers[axis][at] = pinched ? -1 - number : number;
+          number += 1 + pinched;
+        }
+      }
+    }
+  }
+}
+
 /* Writes the triangles of a cell, given by a row of the case table; returns where the next ones
  * go. */
-__global int* mcor_march_emit(__global const uchar* row, int count, __global const int* neighbours,
-  __global const ulong* edges, __global const int* vertex_base, int slot, int cell,
-  __global int* to)
+__global int* mcor_march_emit(__global const uchar* row, int count,
+  const int numbers[3][MCOR_CELL_NODES], int cell, __global int* to)
 {
+  const int first = (cell & 3) + 5 * (cell >> 2 & 3) + 25 * (cell >> 4);
   for (int i = 0; i < 3 * count; ++i)
   {
     /* An edge is its axis and its lower corner within the cell, bits x, y, z. */
-    const int axis = row[i] >> 3, corner = row[i] & 7;
-    const int x = (cell & 3) + (corner & 1), y = (cell >> 2 & 3) + (corner >> 1 & 1),
-              z = (cell >> 4) + (corner >> 2);
-    const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
-    const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
-    const int n = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
-    __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
-    const int first_other = axis == 0 ? 1 : 0;
-    const int second_fan = (int)(e[6 + axis] >> n & 1) & (corner >> first_other & 1);
-    *to++ = vertex_base[owner] + mcor_march_rank(e, n, axis) + second_fan;
+    const int axis = row[i] >> 3, x = row[i] & 1, y = row[i] >> 1 & 1, z = row[i] >> 2 & 1;
+    const int number = numbers[axis][first + x + 5 * y + 25 * z];
+    /* The second fan is the one of cells below in the first other axis. */
+    *to++ = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
   }
   return to;
 }
@@ -298,13 +328,15 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
     return;
   }
   ulong m[8];
+  int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
   __global int* to = triangles + triangle_base[slot] * 3L;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
     __global const uchar* row = case_table + mcor_march_case(m, cell) * 16;
-    to = mcor_march_emit(row, row[15], neighbours, edges, vertex_base, slot, cell, to);
+    to = mcor_march_emit(row, row[15], numbers, cell, to);
   }
 }
 

@@ -406,7 +406,9 @@ __kernel void mcor_topology_triangles(const int brick_count, __global const int*
     return;
   }
   ulong m[8];
+  int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
   __global int* to = triangles + triangle_base[slot] * 3L;
   int tunnel;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
@@ -414,7 +416,6 @@ __kernel void mcor_topology_triangles(const int brick_count, __global const int*
     const int cell = mcor_ctz(rest);
     __global const uchar* row =
       mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel);
-    to = mcor_march_emit(
-      row, row[MCOR_ROW_TRIANGLES], neighbours, edges, vertex_base, slot, cell, to);
+    to = mcor_march_emit(row, row[MCOR_ROW_TRIANGLES], numbers, cell, to);
   }
 }

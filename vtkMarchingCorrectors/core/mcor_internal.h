@@ -220,7 +220,7 @@ void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_keep_bricks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
-mcor_status mcor_grow_bricks(mcor_context* context, bool first, bool* grown);
+mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);

@@ -82,7 +82,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
       statistics->seed_cells_not_intersected += seeds - hits;
     }
     ++statistics->march_rounds;
-    MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, first, &grown));
+    MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
   }
   MCOR_TRY(mcor_classify_cells(context));
   MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &used));

@@ -7,10 +7,34 @@
 
 #define MCOR_CHUNK_PARTICLES 16 /* MCOR_CHUNK of mcor_seed.cl */
 
+/* Asks for bricks beside those with `fresh` nodes, which these show to be needed. */
+static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* grown = &context->scratch[1];
+  MCOR_TRY(mcor_fill(context, grown, 0, sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(fresh), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
+}
+
+/* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
+mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
+{
+  cl_int flag;
+  MCOR_TRY(mcor_ask_beside(context, &context->bricks.need));
+  MCOR_TRY(mcor_read(context, &context->scratch[1], 0, &flag, sizeof flag));
+  *grown = flag != 0;
+  return *grown ? mcor_place_bricks(context) : MCOR_OK;
+}
+
 /* Places every brick whose nodes must be evaluated, and evaluates most of them. */
 static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
   const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
   const double node_threshold = context->options->node_threshold;
   MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)count));
@@ -20,33 +44,20 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_place_bricks(context));
+  const size_t masks = (size_t)bricks->now.count * sizeof(cl_ulong);
+  MCOR_TRY(mcor_reserve(context, &mesh->above, masks));
+  MCOR_TRY(mcor_reserve(context, &mesh->valid, masks));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, bricks->now.count,
     MCOR_GRID_ARGS(context), MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&mesh->valid)));
   MCOR_TRY(mcor_keep_bricks(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, count / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_ask_beside(context, &bricks->now.known));
   return mcor_place_bricks(context);
-}
-
-/* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
-mcor_status mcor_grow_bricks(mcor_context* context, bool first, bool* grown)
-{
-  mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
-  mcor_buffer* flag = &context->scratch[1];
-  cl_int value;
-  MCOR_TRY(mcor_fill(context, flag, 0, sizeof value));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_INT(first), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&mesh->above),
-    MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits),
-    MCOR_BUFFER(flag)));
-  MCOR_TRY(mcor_read(context, flag, 0, &value, sizeof value));
-  *grown = value != 0;
-  return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
 /* The sides of the iso value on which particles are, where the field has values at particles. */

@@ -64,26 +64,18 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
 }
 
 /* One work-item = one brick. Reads node values, those needed being known by now. Writes which nodes
- * are above the iso value, and which are valid (weight not below the node threshold). */
+ * are above the iso value, and which are valid. */
 __kernel void mcor_march_sign(const int brick_count, __global const ulong* need,
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)
 {
   const int slot = get_global_id(0);
-  if (slot >= brick_count)
+  if (slot < brick_count)
   {
-    return;
+    known[slot] |= need[slot];
+    mcor_node_signs(known[slot], node_value + slot * 64L, node_weight + slot * 64L, iso,
+      node_threshold, above + slot, valid + slot);
   }
-  ulong a = 0, v = 0;
-  for (int n = 0; n < 64; ++n)
-  {
-    a |= (ulong)(node_value[slot * 64L + n] >= iso) << n;
-    v |= (ulong)(MCOR_FIELD == 2 || node_weight[slot * 64L + n] >= node_threshold) << n;
-  }
-  const ulong all = known[slot] | need[slot];
-  known[slot] = all;
-  above[slot] = a & all;
-  valid[slot] = v & all;
 }
 
 /* Per cell: whether some (all) of its 8 nodes are set. m: masks of a brick and its upper

@@ -175,3 +175,18 @@ void mcor_node_store(
 #endif
   }
 }
+
+/* Writes which known nodes of a brick are above the iso value, and which are valid: their weight is
+ * not below the node threshold. */
+void mcor_node_signs(ulong known, __global const real* value, __global const real* weight, real iso,
+  real node_threshold, __global ulong* above, __global ulong* valid)
+{
+  ulong a = 0, v = 0;
+  for (int n = 0; n < 64; ++n)
+  {
+    a |= (ulong)(value[n] >= iso) << n;
+    v |= (ulong)(MCOR_FIELD == 2 || weight[n] >= node_threshold) << n;
+  }
+  *above = a & known;
+  *valid = v & known;
+}

@@ -342,41 +342,57 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, mcor_tile* tile, rea
   return inside;
 }
 
+/* State of a brick whose region is not certain. As its particles are at hand, its nodes are evaluated
+ * if they are to be, where a work-item evaluates whole bricks; returns the known ones. */
+ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* sides, real iso,
+  real node_threshold, __global uchar* state, __global real* value, __global real* weight)
+{
+  mcor_tile tile;
+  if (MCOR_FIELD == 2 && !MCOR_TENSOR && mcor_seed_is_inside(grid, brick, &tile, iso))
+  {
+    *state = MCOR_ABOVE;
+    return 0;
+  }
+  mcor_query query = mcor_node_query(grid, brick, 0, ~0UL, 1);
+  *state = (uchar)mcor_seed_state(grid, &query, &tile, false, sides, iso, node_threshold);
+  if (*state != MCOR_EXAMINE || MCOR_ITEM_NODES != 64)
+  {
+    return 0;
+  }
+  mcor_node_sums sums;
+  mcor_node_sum(grid, &query, &tile, 0, ~0UL, &sums);
+  mcor_node_store(&sums, ~0UL, value, weight);
+  return ~0UL;
+}
+
 /* One work-item = one brick whose region is not certain, or that was evaluated for another iso
- * value. Reads the particles that reach it. Writes the states of bricks not yet evaluated; and, as
- * their particles are at hand, the values of nodes that are to be, where a work-item evaluates
- * whole bricks. */
+ * value. Reads the particles that reach it. Writes its state if it was not; which nodes are known by
+ * now, and their values and signs. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const uchar* sides, const real iso,
   const real node_threshold, __global uchar* states, __global ulong* known,
-  __global real* node_value, __global real* node_weight)
+  __global real* node_value, __global real* node_weight, __global ulong* above,
+  __global ulong* valid)
 {
   const int slot = get_global_id(0);
-  if (slot >= brick_count || known[slot])
+  if (slot >= brick_count)
   {
     return;
   }
-  const mcor_grid grid = MCOR_GRID;
-  const int4 brick = bricks[slot];
-  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-  mcor_tile tile;
-  if (MCOR_FIELD == 2 && !MCOR_TENSOR && mcor_seed_is_inside(&grid, brick, &tile, iso))
+  __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
+  if (!known[slot])
   {
-    states[m] = MCOR_ABOVE;
-    return;
+    const mcor_grid grid = MCOR_GRID;
+    const int4 brick = bricks[slot];
+    const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+    known[slot] =
+      mcor_seed_brick(&grid, brick, sides, iso, node_threshold, states + m, value, weight);
   }
-  mcor_query query = mcor_node_query(&grid, brick, 0, ~0UL, 1);
-  const int state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
-  states[m] = (uchar)state;
-#if MCOR_ITEM_NODES == 64
-  if (state == MCOR_EXAMINE)
+  above[slot] = valid[slot] = 0;
+  if (known[slot])
   {
-    mcor_node_sums sums;
-    mcor_node_sum(&grid, &query, &tile, 0, ~0UL, &sums);
-    mcor_node_store(&sums, ~0UL, node_value + slot * 64L, node_weight + slot * 64L);
-    known[slot] = ~0UL;
+    mcor_node_signs(known[slot], value, weight, iso, node_threshold, above + slot, valid + slot);
   }
-#endif
 }
 
 /* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below
@@ -429,16 +445,16 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   }
 }
 
-/* One work-item = one evaluated brick; those without new nodes have been looked at before, unless
- * `all` are new to the iso value. Reads its nodes' sides, and the states of bricks around it that
- * are not evaluated. Asks for those certain of another side than a valid node next to them. */
+/* One work-item = one brick; those without `fresh` nodes have been looked at before. Reads its nodes'
+ * sides, and the states of bricks around it that are not evaluated. Asks for those certain of another
+ * side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, const int all, __global const ulong* need,
+  __global const int4* bricks, __global const ulong* fresh,
   __global const ulong* above, __global const ulong* valid, __global const uchar* states,
   __global uint* brick_bits, __global int* grown)
 {
   const int slot = get_global_id(0);
-  if (slot >= brick_count || !(all || need[slot]))
+  if (slot >= brick_count || fresh[slot] == 0)
   {
     return;
   }

@@ -30,7 +30,7 @@ void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute
 #define MCOR_VALUE(values, i) mcor_each_lane(vload4(i, values))
 void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
 {
-  real of_tile[MCOR_TILE + 16];
+  MCOR_ALIGNED real of_tile[MCOR_TILE + 16];
   for (int i = 0; i < reach->tile.count; ++i)
   {
     of_tile[i] = attribute[reach->tile.list[i]];

@@ -127,7 +127,7 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, in
   }
   for (bool begin = true; mcor_tile_next(grid, query, tile, begin); begin = false)
   {
-    real term[MCOR_TILE + 16];
+    MCOR_ALIGNED real term[MCOR_TILE + 16];
 #if MCOR_FIELD != 2
     for (int i = 0; i < tile->count; ++i)
     {

@@ -267,7 +267,7 @@ typedef struct
   mcor_tile tile;
   realv w[MCOR_TILE]; /* as above */
   mcor_reach_masks masks;
-  real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE], inv_h[MCOR_REACH_SIZE];
+  MCOR_ALIGNED real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE], inv_h[MCOR_REACH_SIZE];
   real weight[MCOR_REACH_SIZE], term[MCOR_REACH_SIZE]; /* term: weight * MCOR_FIELD_TERM */
 #if MCOR_SOLIDS
   real trim_weight[MCOR_REACH_SIZE];
@@ -317,7 +317,7 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
  * the shorter lists become 0, which is no weight. */
 void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
 {
-  real packed[MCOR_PARTS][MCOR_TILE + 2 * MCOR_LANES];
+  MCOR_ALIGNED real packed[MCOR_PARTS][MCOR_TILE + 2 * MCOR_LANES];
   for (int part = 0; part < MCOR_PARTS; ++part)
   {
     real* next = packed[part];
@@ -359,7 +359,7 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
   mcor_reach_pack(&reach->masks, tile->inv_h, reach->inv_h);
   mcor_reach_pack(&reach->masks, tile->weight, reach->weight);
 #if MCOR_FIELD != 2
-  real term[MCOR_TILE + MCOR_LANES];
+  MCOR_ALIGNED real term[MCOR_TILE + MCOR_LANES];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
     MCOR_CAT(vstore, MCOR_LANES)(

@@ -3,6 +3,10 @@
 
 /* The tile: particles that reach a box, packed for evaluation. */
 
+/* Of arrays that are read MCOR_LANES elements at a time: no such access then touches two cache
+ * lines. */
+#define MCOR_ALIGNED __attribute__((aligned(sizeof(real) * MCOR_LANES)))
+
 /* MCOR_LANES elements from p[i] on. Compilers may make several accesses of vloadn and vstoren. */
 #if MCOR_LANES == 1
 #define MCOR_LOAD(i, p) ((p)[i])
@@ -27,10 +31,10 @@ typedef struct
   int count;
   bool complete;  /* the tile holds everything */
   bool delivered; /* nothing is left for this loop */
-  int list[MCOR_TILE + 16];
+  MCOR_ALIGNED int list[MCOR_TILE + 16];
   /* Position from the query's low corner, in cubes: exact in single precision while the support is
    * below 8 cubes, so that results do not depend on the box. */
-  real x[MCOR_TILE + 16], y[MCOR_TILE + 16], z[MCOR_TILE + 16];
+  MCOR_ALIGNED real x[MCOR_TILE + 16], y[MCOR_TILE + 16], z[MCOR_TILE + 16];
   real inv_h[MCOR_TILE + 16], weight[MCOR_TILE + 16], value[MCOR_TILE + 16];
 #if MCOR_SOLIDS
   real trim_weight[MCOR_TILE + 16];

@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT
- * components are evaluated along with the correction, where each vertex's particles are at hand;
- * the rest, as many at a time, at the finished mesh's vertices. */
+/* Other particle arrays at the surface's points [III-D.4]. Of the components that vary, the first
+ * MCOR_ATTRIBUTE_LIMIT are evaluated along with the correction, where each vertex's particles are at
+ * hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values, often
+ * masses or smoothing lengths, is that value. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -19,7 +20,19 @@ static double mcor_component_scale(const mcor_array* array, int64_t count, int c
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
 }
 
-/* Takes up to MCOR_ATTRIBUTE_LIMIT components to the device, from number `first` of all on. */
+static bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
+{
+  int64_t i = 1;
+  while (i < count &&
+    mcor_array_at(array, i, component) == mcor_array_at(array, 0, component))
+  {
+    ++i;
+  }
+  return i >= count;
+}
+
+/* Takes up to MCOR_ATTRIBUTE_LIMIT components to the device, from number `first` of those that vary
+ * on. */
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
 {
   mcor_attributes* attributes = &context->attributes;
@@ -27,12 +40,13 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   attributes->count = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    for (int c = 0; c < mcor_components(&input->attributes[a]); ++c, ++number)
+    const mcor_array* array = &input->attributes[a];
+    for (int c = 0; c < mcor_components(array) && attributes->count < MCOR_ATTRIBUTE_LIMIT; ++c)
     {
-      if (number >= first && attributes->count < MCOR_ATTRIBUTE_LIMIT)
+      if (!mcor_is_constant(array, input->count, c) && number++ >= first)
       {
-        attributes->component[attributes->count++] = (mcor_component){ a, c,
-          mcor_component_scale(&input->attributes[a], input->count, c) };
+        attributes->component[attributes->count++] =
+          (mcor_component){ a, c, mcor_component_scale(array, input->count, c) };
       }
     }
   }
@@ -97,6 +111,33 @@ static mcor_status mcor_put_attributes(mcor_context* context, const mcor_input* 
   return mcor_unmap(context, means, &view);
 }
 
+/* Hands over the components that do not vary; returns how many there are of the others. */
+static int mcor_put_constants(
+  const mcor_input* input, int64_t points, mcor_surface* surface)
+{
+  int varying = 0;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const mcor_array* array = &input->attributes[a];
+    const int width = mcor_components(array);
+    for (int c = 0; c < width; ++c)
+    {
+      if (!mcor_is_constant(array, input->count, c))
+      {
+        ++varying;
+        continue;
+      }
+      const double value = mcor_array_at(array, 0, c);
+      double* to = surface->attributes[a] + surface->point_count * width + c;
+      for (int64_t i = 0; i < points; ++i)
+      {
+        to[i * width] = value;
+      }
+    }
+  }
+  return varying;
+}
+
 /* Evaluates the components on the device at all vertices. */
 static mcor_status mcor_evaluate_attributes(mcor_context* context, int groups)
 {
@@ -139,11 +180,8 @@ mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_mesh* mesh = &context->mesh;
-  int components = 0, groups;
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    components += mcor_components(&input->attributes[a]);
-  }
+  const int components = mcor_put_constants(input, scanned[mesh->vertex_count], surface);
+  int groups;
   if (components > 0)
   {
     MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));

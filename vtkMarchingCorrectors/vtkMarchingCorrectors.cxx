@@ -292,9 +292,16 @@ int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyDat
   mcor_options options;
   mcor_surface surface = {};
   this->FillOptions(options, input);
-  this->Internals->SetVersions(input);
+  if (this->KeepDeviceData)
+  {
+    this->Internals->SetVersions(input);
+  }
   const mcor_status status =
     mcor_extract(this->Internals->Context, &input.Core, &options, &surface);
+  if (!this->KeepDeviceData)
+  {
+    this->ReleaseDeviceMemory();
+  }
   if (status == MCOR_OK)
   {
     vtkMarchingCorrectorsOutput builder(this, input, options, surface);
@@ -375,5 +382,6 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Iteration Limit: " << this->IterationLimit << "\n";
   os << indent << "Device Memory Limit: " << this->DeviceMemoryLimit << " MiB\n";
+  os << indent << "Keep Device Data: " << this->KeepDeviceData << "\n";
   PrintName(os, indent, "Error Message", this->ErrorMessage);
 }

@@ -602,6 +602,17 @@ public:
 
   ///@{
   /**
+   * Keep on the device what the next update may reuse: the search grid and the node values. On by
+   * default. Off, everything is given back as soon as an update does not need it any more: for one
+   * that is the only one.
+   */
+  vtkSetMacro(KeepDeviceData, vtkTypeBool);
+  vtkGetMacro(KeepDeviceData, vtkTypeBool);
+  vtkBooleanMacro(KeepDeviceData, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * The correction stops where |field - iso value| is at most Tolerance times the range of the
    * scalar. No unit, > 0, 1e-6 by default.
    */
@@ -675,6 +686,7 @@ protected:
   double Tolerance = 1e-6;
   int IterationLimit = 30;
   int DeviceMemoryLimit = 0;
+  vtkTypeBool KeepDeviceData = 1;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;

@@ -151,6 +151,7 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetInterpolateAttributes(options.Attributes);
   filter->SetDevice(options.Device.c_str());
   filter->SetDeviceMemoryLimit(options.MemoryLimit);
+  filter->KeepDeviceDataOff();
 }
 
 struct Run
@@ -165,7 +166,6 @@ Run Extract(
   vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages)
 {
   messages->Clear();
-  filter->ReleaseDeviceMemory();
   filter->Modified();
   const auto start = std::chrono::steady_clock::now();
   filter->Update();

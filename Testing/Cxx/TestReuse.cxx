@@ -83,6 +83,9 @@ std::vector<Step> Steps()
     { "double precision",
       [](Filter* f, vtkPolyData*) { f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION); } },
     { "memory released", [](Filter* f, vtkPolyData*) { f->ReleaseDeviceMemory(); } },
+    { "nothing kept", [](Filter* f, vtkPolyData*) { f->KeepDeviceDataOff(); } },
+    { "iso value, nothing kept", [](Filter* f, vtkPolyData*) { f->SetValue(0, 0.35); } },
+    { "kept again", [](Filter* f, vtkPolyData*) { f->KeepDeviceDataOn(); } },
     { "nothing new", [](Filter* f, vtkPolyData*) { f->Modified(); } },
   };
 }

@@ -10,6 +10,7 @@
 #include "mcor_parallel.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
  * overflows whatever the device's precision. */
@@ -20,42 +21,55 @@ static double mcor_component_scale(const mcor_array* array, int64_t count, int c
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
 }
 
-static bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
-{
-  int64_t i = 1;
-  while (i < count &&
-    mcor_array_at(array, i, component) == mcor_array_at(array, 0, component))
-  {
-    ++i;
-  }
-  return i >= count;
-}
-
-/* Takes up to MCOR_ATTRIBUTE_LIMIT components to the device, from number `first` of those that vary
- * on. */
-mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
+/* Finds the components that vary. */
+mcor_status mcor_list_attributes(mcor_context* context, const mcor_input* input)
 {
   mcor_attributes* attributes = &context->attributes;
-  int number = 0;
-  attributes->count = 0;
+  size_t most = 1;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    most += (size_t)mcor_components(&input->attributes[a]);
+  }
+  free(attributes->varying);
+  attributes->varying_count = attributes->count = 0;
+  attributes->varying = malloc(most * sizeof *attributes->varying);
+  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    for (int c = 0; c < mcor_components(array) && attributes->count < MCOR_ATTRIBUTE_LIMIT; ++c)
+    for (int c = 0; c < mcor_components(array); ++c)
     {
-      if (!mcor_is_constant(array, input->count, c) && number++ >= first)
+      if (!mcor_is_constant(array, input->count, c))
       {
-        attributes->component[attributes->count++] =
+        attributes->varying[attributes->varying_count++] =
           (mcor_component){ a, c, mcor_component_scale(array, input->count, c) };
       }
     }
   }
+  return MCOR_OK;
+}
+
+/* Whether something is left to be evaluated at the finished mesh's vertices. */
+bool mcor_attributes_remain(const mcor_context* context)
+{
+  return context->options->nearest_particle ||
+    context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT;
+}
+
+/* Takes up to MCOR_ATTRIBUTE_LIMIT of the components that vary to the device, from number `first`
+ * on. */
+mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
+{
+  mcor_attributes* attributes = &context->attributes;
+  const int rest = attributes->varying_count - first;
+  attributes->first = first;
+  attributes->count = rest < MCOR_ATTRIBUTE_LIMIT ? rest : MCOR_ATTRIBUTE_LIMIT;
   const int stride = context->grid.count;
   MCOR_TRY(mcor_reserve(context, &attributes->sorted,
     (size_t)attributes->count * (size_t)stride * context->cl.real_size));
   for (int i = 0; i < attributes->count; ++i)
   {
-    const mcor_component* c = &attributes->component[i];
+    const mcor_component* c = &attributes->varying[first + i];
     MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component, 0,
       c->scale, &attributes->sorted, i * stride));
   }
@@ -70,6 +84,7 @@ typedef struct mcor_means
   const cl_int* scanned;
   const void* values;
   int c, width;
+  double scale;
   double* to;
 } mcor_means;
 
@@ -77,13 +92,12 @@ static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_means* m = data;
   const int count = m->context->attributes.count;
-  const double scale = m->context->attributes.component[m->c].scale;
   for (int64_t v = first; v < last; ++v)
   {
     if (mcor_is_put(m->scanned, v))
     {
       m->to[m->scanned[v] * (int64_t)m->width] =
-        mcor_get_real(m->context, m->values, v * count + m->c) / scale;
+        mcor_get_real(m->context, m->values, v * count + m->c) / m->scale;
     }
   }
   (void)slice;
@@ -101,30 +115,33 @@ static mcor_status mcor_put_attributes(mcor_context* context, const mcor_input* 
     (size_t)vertices * (size_t)attributes->count * context->cl.real_size, false, &view));
   for (int c = 0; c < attributes->count; ++c)
   {
-    const mcor_component* component = &attributes->component[c];
+    const mcor_component* component = &attributes->varying[attributes->first + c];
     const int width = mcor_components(&input->attributes[component->attribute]);
     double* to = surface->attributes[component->attribute] + surface->point_count * width +
       component->component;
-    mcor_means job = { context, scanned, view, c, width, to };
+    mcor_means job = { context, scanned, view, c, width, component->scale, to };
     mcor_parallel_for(vertices, MCOR_LIGHT_GRAIN, mcor_put_means, &job);
   }
   return mcor_unmap(context, means, &view);
 }
 
-/* Hands over the components that do not vary; returns how many there are of the others. */
-static int mcor_put_constants(
-  const mcor_input* input, int64_t points, mcor_surface* surface)
+/* Hands over the components that do not vary: all that are not in the list, which has them in the
+ * order of the arrays. */
+static void mcor_put_constants(
+  const mcor_context* context, const mcor_input* input, int64_t points, mcor_surface* surface)
 {
-  int varying = 0;
+  const mcor_attributes* attributes = &context->attributes;
+  int next = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
     const int width = mcor_components(array);
     for (int c = 0; c < width; ++c)
     {
-      if (!mcor_is_constant(array, input->count, c))
+      if (next < attributes->varying_count && attributes->varying[next].attribute == a &&
+        attributes->varying[next].component == c)
       {
-        ++varying;
+        ++next;
         continue;
       }
       const double value = mcor_array_at(array, 0, c);
@@ -135,7 +152,6 @@ static int mcor_put_constants(
       }
     }
   }
-  return varying;
 }
 
 /* Evaluates the components on the device at all vertices. */
@@ -180,13 +196,14 @@ mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_mesh* mesh = &context->mesh;
-  const int components = mcor_put_constants(input, scanned[mesh->vertex_count], surface);
+  const int varying = context->attributes.varying_count;
   int groups;
-  if (components > 0)
+  mcor_put_constants(context, input, scanned[mesh->vertex_count], surface);
+  if (varying > 0)
   {
     MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));
   }
-  if (components > MCOR_ATTRIBUTE_LIMIT || context->options->nearest_particle)
+  if (mcor_attributes_remain(context))
   {
     MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, mesh->vertex_count, &groups));
   }
@@ -194,7 +211,7 @@ mcor_status mcor_add_attributes(
   {
     MCOR_TRY(mcor_add_nearest(context, scanned, groups, surface));
   }
-  for (int first = MCOR_ATTRIBUTE_LIMIT; first < components; first += MCOR_ATTRIBUTE_LIMIT)
+  for (int first = MCOR_ATTRIBUTE_LIMIT; first < varying; first += MCOR_ATTRIBUTE_LIMIT)
   {
     MCOR_TRY(mcor_load_attributes(context, input, first));
     MCOR_TRY(mcor_evaluate_attributes(context, groups));

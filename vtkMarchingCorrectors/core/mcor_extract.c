@@ -88,6 +88,9 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_bricks(context, &b->now);
   free(context->source);
   context->source = NULL;
+  free(context->attributes.varying);
+  context->attributes.varying = NULL;
+  context->attributes.varying_count = 0;
   context->grid_valid = context->value_valid = context->nodes_valid = false;
 }
 
@@ -208,16 +211,41 @@ static mcor_status mcor_prepare(
   return MCOR_OK;
 }
 
+/* What only another call could use any more. */
+static void mcor_release_nodes(mcor_context* context)
+{
+  mcor_release(context, &context->bricks.now.value);
+  mcor_release(context, &context->bricks.now.weight);
+  context->nodes_valid = false;
+}
+
+static void mcor_release_particles(mcor_context* context)
+{
+  mcor_grid* g = &context->grid;
+  mcor_buffer* const buffers[] = { &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py, &g->pz,
+    &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+}
+
 static mcor_status mcor_extract_iso(
   mcor_context* context, const mcor_input* input, int i, mcor_surface* surface)
 {
   const mcor_options* options = context->options;
+  const bool last = i + 1 == options->iso_count;
   const double value = options->iso_values[i], iso = value - context->value_shift;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin));
   MCOR_TRY(mcor_select_seeds(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step));
   MCOR_TRY(mcor_march(context, iso));
+  if (last && input->scalar_version == 0)
+  {
+    mcor_release_nodes(context);
+  }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step));
   if (context->mesh.march_count > 0)
   {
@@ -228,6 +256,10 @@ static mcor_status mcor_extract_iso(
   MCOR_TRY(mcor_trim(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step));
   mcor_release(context, &context->attributes.sorted);
+  if (last && input->particles_version == 0 && !mcor_output_evaluates(context))
+  {
+    mcor_release_particles(context);
+  }
   return mcor_append_output(context, input, value, surface);
 }
 
@@ -282,6 +314,7 @@ static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
     return MCOR_OK;
   }
   mcor_check_reuse(context, input, options);
+  MCOR_TRY(mcor_list_attributes(context, input));
   MCOR_TRY(mcor_prepare(context, input, options));
   for (int i = 0; i < options->iso_count; ++i)
   {

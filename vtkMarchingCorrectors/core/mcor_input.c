@@ -91,6 +91,31 @@ double mcor_largest(const mcor_array* array, int64_t count, int component)
                      : mcor_largest_float((const float*)array->data + component, count, stride);
 }
 
+bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
+{
+  const int64_t stride = mcor_components(array);
+  int64_t i = 1;
+  if (!array->data)
+  {
+    return true;
+  }
+  if (array->type == MCOR_FLOAT64)
+  {
+    const double* data = (const double*)array->data + component;
+    for (; i < count && data[i * stride] == data[0]; ++i)
+    {
+    }
+  }
+  else
+  {
+    const float* data = (const float*)array->data + component;
+    for (; i < count && data[i * stride] == data[0]; ++i)
+    {
+    }
+  }
+  return i >= count;
+}
+
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
 {
   if (mcor_components(&input->scalar) == 1 && !input->scalar_dot.data)

@@ -37,6 +37,9 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
 /* The largest absolute value of one component; all are finite. */
 double mcor_largest(const mcor_array* array, int64_t count, int component);
 
+/* Whether all values of one component are equal. */
+bool mcor_is_constant(const mcor_array* array, int64_t count, int component);
+
 /* The scalar A of particle i. */
 double mcor_scalar_at(const mcor_input* input, int64_t i);
 /* About the median of the scalar of fluid particles; measured before. */

@@ -130,11 +130,12 @@ typedef struct mcor_component
 
 #define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_attribute.cl */
 
-/* The components on the device. */
+/* The components that vary, and those of them that are on the device. */
 typedef struct mcor_attributes
 {
-  int count;
-  mcor_component component[MCOR_ATTRIBUTE_LIMIT];
+  mcor_component* varying; /* [varying_count] */
+  int varying_count;
+  int first, count;
   mcor_buffer sorted; /* real [count][grid.count] */
 } mcor_attributes;
 
@@ -239,9 +240,12 @@ mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
   const mcor_buffer* offset, int count, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
+mcor_status mcor_list_attributes(mcor_context* context, const mcor_input* input);
+bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
 mcor_status mcor_add_attributes(mcor_context* context, const mcor_input* input,
   const cl_int* scanned, mcor_surface* surface);
+bool mcor_output_evaluates(const mcor_context* context);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);

@@ -388,6 +388,12 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   return MCOR_OK;
 }
 
+/* Whether the output still needs particles on the device. */
+bool mcor_output_evaluates(const mcor_context* context)
+{
+  return context->options->boundary_eigenvalue || mcor_attributes_remain(context);
+}
+
 /* Gives back what only making the mesh needed, so that the output finds room. */
 static void mcor_release_construction(mcor_context* context)
 {

@@ -353,7 +353,9 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* s
     *state = MCOR_ABOVE;
     return 0;
   }
-  mcor_query query = mcor_node_query(grid, brick, 0, ~0UL, 1);
+  mcor_query query;
+  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
+    MCOR_BRICK - 1, grid->fix_bits);
   *state = (uchar)mcor_seed_state(grid, &query, &tile, false, sides, iso, node_threshold);
   if (*state != MCOR_EXAMINE || MCOR_ITEM_NODES != 64)
   {

@@ -410,12 +410,18 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
 
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes)
 {
-  MCOR_TRY(mcor_reserve(context, buffer, bytes));
-  if (bytes > 0)
+  return mcor_fill_end(context, buffer, byte, 0, bytes);
+}
+
+mcor_status mcor_fill_end(
+  mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last)
+{
+  MCOR_TRY(mcor_reserve(context, buffer, last));
+  if (last > first)
   {
     MCOR_CL_TRY(context,
-      clEnqueueFillBuffer(
-        context->cl.queue, buffer->mem, &byte, sizeof byte, 0, bytes, 0, NULL, NULL),
+      clEnqueueFillBuffer(context->cl.queue, buffer->mem, &byte, sizeof byte, first, last - first,
+        0, NULL, NULL),
       "clEnqueueFillBuffer");
   }
   return MCOR_OK;

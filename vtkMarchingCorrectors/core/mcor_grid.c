@@ -58,20 +58,27 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   return base;
 }
 
+/* Element for each particle, and zeros that vector loads find beyond the end. */
+static mcor_status mcor_reserve_padded(
+  mcor_context* context, mcor_buffer* buffer, int count, size_t size)
+{
+  const size_t end = (size_t)count * size;
+  return mcor_fill_end(context, buffer, 0, end, end + MCOR_PADDING * size);
+}
+
 static mcor_status mcor_reserve_particles(mcor_context* context, int count)
 {
   mcor_grid* grid = &context->grid;
-  const size_t n = (size_t)count + MCOR_PADDING;
   mcor_buffer* fixes[] = { &grid->px, &grid->py, &grid->pz };
   mcor_buffer* reals[] = { &grid->inv_h, &grid->trim_weight, &grid->value };
   for (int i = 0; i < 3; ++i)
   {
-    /* Zeroed, as vector loads read the padding. */
-    MCOR_TRY(mcor_fill(context, fixes[i], 0, n * context->cl.fix_size));
-    MCOR_TRY(mcor_fill(context, reals[i], 0, n * context->cl.real_size));
+    MCOR_TRY(mcor_reserve_padded(context, fixes[i], count, context->cl.fix_size));
+    MCOR_TRY(mcor_reserve_padded(context, reals[i], count, context->cl.real_size));
   }
-  return grid->has_solids ? mcor_fill(context, &grid->fluid_weight, 0, n * context->cl.real_size)
-                          : MCOR_OK;
+  return grid->has_solids
+    ? mcor_reserve_padded(context, &grid->fluid_weight, count, context->cl.real_size)
+    : MCOR_OK;
 }
 
 /* Sorts by search cell, then within a cell, and moves the particles into that order. */

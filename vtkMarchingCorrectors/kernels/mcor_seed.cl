@@ -227,7 +227,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     found += tile->count;
-    seen |= mcor_tile_sides(tile, iso);
+    seen |= MCOR_RANGE_DECIDES ? mcor_tile_sides(tile, iso) : 3;
     if (coarse && found > MCOR_COARSE_PARTICLES)
     {
       return MCOR_EXAMINE;

@@ -192,7 +192,9 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
     MCOR_PACK_REAL(mask, z, tile->z + count);
     MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
     MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->weight), tile->weight + count);
+#if MCOR_FIELD != 2
     MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->value), tile->value + count);
+#endif
 #if MCOR_SOLIDS
     MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->trim_weight), tile->trim_weight + count);
 #endif

@@ -21,6 +21,9 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
 #include <initializer_list>
 #include <limits>
 #include <string>
@@ -41,16 +44,24 @@ vtkSmartPointer<ArrayT> Adopt(ValueT*& values, int components, vtkIdType tuples)
   return array;
 }
 
-vtkSmartPointer<vtkDataArray> RoundToFloat(const double* values, int components, vtkIdType tuples)
+/** Rounds in place: the surface is the largest thing at this time. */
+vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkIdType tuples)
 {
-  auto array = vtkSmartPointer<vtkFloatArray>::New();
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  if (values)
+  const vtkIdType count = values ? tuples * components : 0;
+  char* to = reinterpret_cast<char*>(values);
+  for (vtkIdType first = 0; first < count;)
   {
-    std::transform(values, values + tuples * components, array->GetPointer(0),
+    std::array<float, 1024> rounded;
+    const vtkIdType n = std::min<vtkIdType>(count - first, rounded.size());
+    std::transform(values + first, values + first + n, rounded.begin(),
       [](double value) { return static_cast<float>(value); });
+    std::memcpy(to + first * sizeof(float), rounded.data(), n * sizeof(float));
+    first += n;
   }
+  void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
+  float* floats = static_cast<float*>(kept ? kept : values);
+  auto array = Adopt<vtkFloatArray>(floats, components, count > 0 ? tuples : 0);
+  values = count > 0 ? nullptr : values;
   return array;
 }
 
@@ -138,9 +149,10 @@ void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
   {
     vtkNew<vtkTypeInt32Array> offsets;
     offsets->SetNumberOfValues(count + 1);
+    vtkTypeInt32* offset = offsets->GetPointer(0);
     for (vtkIdType i = 0; i <= count; ++i)
     {
-      offsets->SetValue(i, static_cast<vtkTypeInt32>(3 * i));
+      offset[i] = static_cast<vtkTypeInt32>(3 * i);
     }
     triangles->SetData(offsets, Adopt<vtkTypeInt32Array>(this->Surface.triangles, 1, 3 * count));
   }

@@ -38,7 +38,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
   const double node_threshold = context->options->node_threshold;
   MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_LIGHT, count / 8,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, count / 8,
     MCOR_GRID_ARGS(context), MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),

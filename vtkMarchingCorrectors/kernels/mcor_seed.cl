@@ -259,8 +259,70 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 #define MCOR_REGION_CUBES 8
 #define MCOR_BLOCK_REGIONS 64
 
+/* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
+real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
+{
+  realv volume = 0, inv_h = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const realv s = MCOR_LOAD(i, tile->inv_h);
+    volume += MCOR_LOAD(i, tile->weight) / fmax(s * s * s, (realv)1e-30f);
+    inv_h += s;
+  }
+  const real r = -query->radius * MCOR_SUPPORT * tile->count / mcor_lane_sum(inv_h);
+  const real e = (real)(query->high[0] - query->low[0]) * unit;
+  const real box = e * e * e + 6 * e * e * r + M_PI_F * r * r * (3 * e + 4 * r / 3);
+  return mcor_lane_sum(volume) / (MCOR_NORM * box);
+}
+
+/* With less than this filled, a brick is taken to be near the surface. */
+#define MCOR_INSIDE_FILLED ((real)0.8f)
+
+/* Of each particle's support. */
+#define MCOR_INSIDE_SHARE 0.5f
+
+/* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
+ * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
+ * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
+ * evaluated. wide: if it is complete, those of a box that holds the brick at (x, y, z). */
+bool mcor_seed_is_inside(
+  const mcor_grid* grid, int4 brick, const mcor_tile* wide, int x, int y, int z, real iso)
+{
+  const ulong wanted = MCOR_ITEM_NODES == 64 ? ~0UL : 1UL;
+  bool inside = true;
+  for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
+  {
+    mcor_query query = mcor_node_query(grid, brick, first, wanted, MCOR_INSIDE_SHARE);
+    mcor_node_sums sums;
+    mcor_tile tile;
+    mcor_tile_init(&tile);
+    if (wide->complete)
+    {
+      mcor_tile_narrow(wide, &query, grid->unit, x, y, z, &tile);
+    }
+    else
+    {
+      mcor_tile_next(grid, &query, &tile, true);
+    }
+    if (tile.count == 0 ||
+      (tile.complete && mcor_seed_filled(&query, grid->unit, &tile) < MCOR_INSIDE_FILLED))
+    {
+      return false;
+    }
+    mcor_node_sum(grid, &query, &tile, first, wanted, &sums);
+    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+    {
+      inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
+    }
+  }
+  return inside;
+}
+
+/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by bricks. */
+#define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
+
 /* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
- * the states of its bricks; asks for those that are not certain. */
+ * the states of its bricks as far as the region tells; asks for those that are not certain. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
   __global const uchar* sides, const real iso, const real node_threshold, __global uchar* states,
@@ -274,72 +336,35 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   /* The region's first brick. */
   const int mark = block * MCOR_BLOCK_BRICKS + 2 * (r & 3) + 16 * (r >> 2 & 3) + 128 * (r >> 4);
   int state = block_states[block];
+  const mcor_grid grid = MCOR_GRID;
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
+  mcor_query query;
+  mcor_tile tile;
+  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
+    MCOR_REGION_CUBES - 1, fix_bits);
   if (state == MCOR_EXAMINE)
   {
-    const mcor_grid grid = MCOR_GRID;
-    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
-    mcor_query query;
-    mcor_tile tile;
-    mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-      MCOR_REGION_CUBES - 1, fix_bits);
     state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
+  }
+  const bool prove = MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && state == MCOR_EXAMINE;
+  if (prove)
+  {
+    query.radius = -MCOR_INSIDE_SHARE;
+    mcor_tile_init(&tile);
+    mcor_tile_next(&grid, &query, &tile, true);
   }
   for (int b = 0; b < 8; ++b)
   {
-    const int m = mark + (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
-    states[m] = (uchar)state;
-    if (state == MCOR_EXAMINE)
+    const int x = b & 1, y = b >> 1 & 1, z = b >> 2, m = mark + x + 8 * y + 64 * z;
+    const bool inside = prove &&
+      mcor_seed_is_inside(&grid, brick + (int4)(x, y, z, 0), &tile, x * MCOR_BRICK, y * MCOR_BRICK,
+        z * MCOR_BRICK, iso);
+    states[m] = (uchar)(inside ? MCOR_ABOVE : state);
+    if (states[m] == MCOR_EXAMINE)
     {
       mcor_ask_brick(brick_bits, m);
     }
   }
-}
-
-/* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
-real mcor_seed_filled(const mcor_query* query, const mcor_tile* tile)
-{
-  realv volume = 0, inv_h = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    const realv s = MCOR_LOAD(i, tile->inv_h);
-    volume += MCOR_LOAD(i, tile->weight) / fmax(s * s * s, (realv)1e-30f);
-    inv_h += s;
-  }
-  const real r = -query->radius * MCOR_SUPPORT * tile->count / mcor_lane_sum(inv_h);
-  const real e = 2 * query->half_size[0];
-  const real box = e * e * e + 6 * e * e * r + M_PI_F * r * r * (3 * e + 4 * r / 3);
-  return mcor_lane_sum(volume) / (MCOR_NORM * box);
-}
-
-/* With less than this filled, a brick is taken to be near the surface. */
-#define MCOR_INSIDE_FILLED ((real)0.8f)
-
-/* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
- * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
- * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
- * evaluated. */
-bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, mcor_tile* tile, real iso)
-{
-  const ulong wanted = MCOR_ITEM_NODES == 64 ? ~0UL : 1UL;
-  bool inside = true;
-  for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
-  {
-    mcor_query query = mcor_node_query(grid, brick, first, wanted, 0.5f);
-    mcor_node_sums sums;
-    mcor_tile_init(tile);
-    mcor_tile_next(grid, &query, tile, true);
-    if (tile->count == 0 ||
-      (tile->complete && mcor_seed_filled(&query, tile) < MCOR_INSIDE_FILLED))
-    {
-      return false;
-    }
-    mcor_node_sum(grid, &query, tile, first, wanted, &sums);
-    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
-    {
-      inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
-    }
-  }
-  return inside;
 }
 
 /* State of a brick whose region is not certain. As its particles are at hand, its nodes are evaluated
@@ -347,13 +372,15 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, mcor_tile* tile, rea
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* sides, real iso,
   real node_threshold, __global uchar* state, __global real* value, __global real* weight)
 {
+  mcor_query query;
   mcor_tile tile;
-  if (MCOR_FIELD == 2 && !MCOR_TENSOR && mcor_seed_is_inside(grid, brick, &tile, iso))
+  mcor_tile_init(&tile);
+  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64 &&
+    mcor_seed_is_inside(grid, brick, &tile, 0, 0, 0, iso))
   {
     *state = MCOR_ABOVE;
     return 0;
   }
-  mcor_query query;
   mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
     MCOR_BRICK - 1, grid->fix_bits);
   *state = (uchar)mcor_seed_state(grid, &query, &tile, false, sides, iso, node_threshold);

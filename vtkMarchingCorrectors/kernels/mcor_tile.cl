@@ -254,3 +254,33 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   tile->complete = first && tile->delivered;
   return true;
 }
+
+/* Fills a tile's positions and weights from a complete one, whose box holds the query's at
+ * (x, y, z). */
+void mcor_tile_narrow(
+  const mcor_tile* wide, const mcor_query* query, real unit, real x, real y, real z, mcor_tile* tile)
+{
+  const real ex = (real)(query->high[0] - query->low[0]) * unit * (real)0.5;
+  const real ey = (real)(query->high[1] - query->low[1]) * unit * (real)0.5;
+  const real ez = (real)(query->high[2] - query->low[2]) * unit * (real)0.5;
+  int count = 0;
+  for (int i = 0; i < wide->count; i += MCOR_LANES)
+  {
+    const realv px = MCOR_LOAD(i, wide->x) - x, py = MCOR_LOAD(i, wide->y) - y,
+                pz = MCOR_LOAD(i, wide->z) - z, inv_h = MCOR_LOAD(i, wide->inv_h);
+    const realv dx = fmax(fabs(px - ex) - ex, (realv)0);
+    const realv dy = fmax(fabs(py - ey) - ey, (realv)0);
+    const realv dz = fmax(fabs(pz - ez) - ez, (realv)0);
+    const mcor_mask mask = MCOR_MASK(
+      mcor_tile_near(dx, dy, dz, inv_h, -query->radius), min(MCOR_LANES, wide->count - i));
+    MCOR_PACK_REAL(mask, px, tile->x + count);
+    MCOR_PACK_REAL(mask, py, tile->y + count);
+    MCOR_PACK_REAL(mask, pz, tile->z + count);
+    MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
+    MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->weight), tile->weight + count);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  tile->count = count;
+  tile->complete = true;
+  mcor_tile_pad(tile);
+}

@@ -14,7 +14,7 @@ static mcor_status mcor_mark(mcor_context* context, double iso, int mark_cells)
   const int items = (groups + MCOR_PAIR_GROUPS - 1) / MCOR_PAIR_GROUPS;
   mcor_buffer* has_pairs = &context->scratch[3]; /* of groups, from one launch to the next */
   MCOR_TRY(mcor_reserve(context, has_pairs, (size_t)groups));
-  return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_LIGHT, items, MCOR_GRID_ARGS(context),
+  return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
     MCOR_BRICK_ARGS(context), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(has_pairs),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells));

@@ -47,36 +47,17 @@ realv mcor_sqrt(realv x)
 }
 #endif
 
-/* W / norm * h^3 at offset (dx, dy, dz), from what (dx, dy) give, which serves a column of points,
- * and what dz gives, which serves a plane. */
-realv mcor_planar(realv dx, realv dy, realv inv_h)
-{
-#if MCOR_TENSOR
-  return MCOR_W(fabs(dx) * inv_h) * MCOR_W(fabs(dy) * inv_h);
-#else
-  return dx * dx + dy * dy;
-#endif
-}
-
-realv mcor_height(realv dz, realv inv_h)
-{
-#if MCOR_TENSOR
-  return MCOR_W(fabs(dz) * inv_h);
-#else
-  return dz * dz;
-#endif
-}
-
-/* In two steps, to be made for MCOR_STEP particles in turn: as a chain, they take longer than a CPU
- * can look ahead. */
+/* W / norm * h^3 at offset (dx, dy, dz). In two steps, to be made for MCOR_STEP particles in turn: as a
+ * chain, they take longer than a CPU can look ahead. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
 
-realv mcor_distance(realv planar, realv height)
+/* Of a tensor kernel, the weight itself. */
+realv mcor_distance(realv dx, realv dy, realv dz, realv inv_h)
 {
 #if MCOR_TENSOR
-  return planar * height;
+  return MCOR_W(fabs(dx) * inv_h) * MCOR_W(fabs(dy) * inv_h) * MCOR_W(fabs(dz) * inv_h);
 #else
-  return mcor_sqrt(planar + height);
+  return mcor_sqrt(dx * dx + dy * dy + dz * dz);
 #endif
 }
 

@@ -230,8 +230,7 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, __global c
       const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
       const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
       const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
-      const realv q = mcor_distance(mcor_planar(qx, qy, (real)1), mcor_height(qz, (realv)1));
-      sum += mass[k] * mcor_weight(q, (real)1);
+      sum += mass[k] * mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1);
     }
   }
 #if MCOR_LANES == 1

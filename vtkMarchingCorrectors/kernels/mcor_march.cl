@@ -5,7 +5,7 @@
  * numbered by lattice edge. */
 
 /* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
- * are not yet known, rounded up to whole planes of 16; and which cells are new since the last
+ * are not yet known, rounded up to columns of 2 x 2 x 4; and which cells are new since the last
  * time, the cells then being kept in `examined`. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
   __global const ulong* cells, __global const ulong* known, __global ulong* need,
@@ -27,12 +27,13 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
     m[i] |= mcor_from_last_y(m[i], m[i + 2]);
   }
   m[0] |= mcor_from_last_z(m[0], m[4]);
-  ulong planes = 0;
-  for (int z = 0; z < 4; ++z)
+  ulong columns = 0;
+  for (int c = 0; c < 4; ++c)
   {
-    planes |= (m[0] >> (16 * z) & MCOR_LOW_Z) ? MCOR_LOW_Z << (16 * z) : 0;
+    const ulong column = 0x0033003300330033UL << (2 * (c & 1) + 8 * (c >> 1));
+    columns |= m[0] & column ? column : 0;
   }
-  need[slot] = planes & ~known[slot];
+  need[slot] = columns & ~known[slot];
   fresh[slot] = cells[slot] & ~examined[slot];
   examined[slot] = cells[slot];
 }
@@ -55,11 +56,11 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  mcor_query query = mcor_node_query(&grid, bricks[slot], first, wanted, 1);
+  mcor_query query = mcor_node_query(&grid, bricks[slot], first, 1);
   mcor_node_sums sums;
   mcor_tile tile;
   mcor_tile_init(&tile);
-  mcor_node_sum(&grid, &query, &tile, first, wanted, &sums);
+  mcor_node_sum(&grid, &query, &tile, wanted, &sums);
   mcor_node_store(&sums, wanted, node_value + first_node, node_weight + first_node);
 }
 

@@ -1,20 +1,36 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes, in groups of MCOR_LANES neighbouring nodes of a brick: with 16
- * lanes a plane, with 8 half a plane, with 1 a node. One work-item treats a whole brick where
+/* Evaluation of the field at nodes, in groups of MCOR_LANES nodes of a brick that are close together:
+ * with 16 lanes 2 x 2 x 4, with 8 2 x 2 x 2, with 1 a node. One work-item treats a whole brick where
  * particles are gathered for many lanes at once, else one node. */
 
 #if MCOR_LANES == 1
 #define MCOR_ITEM_NODES 1
-#define MCOR_GROUP_X 1
-#define MCOR_GROUP_Y 1
+#define MCOR_GROUP_XY 1
+#define MCOR_GROUP_Z 1
 #else
 #define MCOR_ITEM_NODES 64
-#define MCOR_GROUP_X 4
-#define MCOR_GROUP_Y (MCOR_LANES / 4)
+#define MCOR_GROUP_XY 2
+#define MCOR_GROUP_Z (MCOR_LANES / 4)
 #endif
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
+
+/* First node of group g. */
+int4 mcor_group_node(int g)
+{
+  return (int4)(2 * (g & 1), 2 * (g >> 1 & 1), MCOR_GROUP_Z * (g >> 2), 0);
+}
+
+/* Group and lane of node n of those of a work-item. */
+int mcor_group_of(int n)
+{
+  return MCOR_LANES == 1 ? 0 : (n >> 1 & 1) | (n >> 3 & 1) << 1 | (n >> 4) / MCOR_GROUP_Z << 2;
+}
+int mcor_lane_of(int n)
+{
+  return MCOR_LANES == 1 ? 0 : (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
+}
 
 /* Sums at the nodes of a work-item: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
 typedef struct
@@ -25,39 +41,94 @@ typedef struct
 #endif
 } mcor_node_sums;
 
-/* Places in the tile of the particles that reach a group, and what their distance in z gives;
- * (x, y, z) is the group's first node. */
-int mcor_node_list(
-  const mcor_tile* tile, real x, real y, real z, real share, int* list, real* height)
+/* Places in the tile of the particles that reach a group, whose first node is (x, y, z). */
+int mcor_node_list(const mcor_tile* tile, real x, real y, real z, real share, int* list)
 {
-  const real ex = (real)0.5 * (MCOR_GROUP_X - 1), ey = (real)0.5 * (MCOR_GROUP_Y - 1);
+  const real exy = (real)0.5 * (MCOR_GROUP_XY - 1), ez = (real)0.5 * (MCOR_GROUP_Z - 1);
   int count = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv dx = fmax(fabs(MCOR_LOAD(i, tile->x) - (x + ex)) - ex, (realv)0);
-    const realv dy = fmax(fabs(MCOR_LOAD(i, tile->y) - (y + ey)) - ey, (realv)0);
-    const realv dz = MCOR_LOAD(i, tile->z) - z;
-    const realv inv_h = MCOR_LOAD(i, tile->inv_h);
-    const fixv near = mcor_tile_near(dx, dy, fabs(dz), inv_h, share);
+    const realv dx = fmax(fabs(MCOR_LOAD(i, tile->x) - (x + exy)) - exy, (realv)0);
+    const realv dy = fmax(fabs(MCOR_LOAD(i, tile->y) - (y + exy)) - exy, (realv)0);
+    const realv dz = fmax(fabs(MCOR_LOAD(i, tile->z) - (z + ez)) - ez, (realv)0);
+    const fixv near = mcor_tile_near(dx, dy, dz, MCOR_LOAD(i, tile->inv_h), share);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
-    MCOR_PACK_REAL(mask, mcor_height(dz, inv_h), height + count);
     count += MCOR_MASK_COUNT(mask);
   }
   return count;
 }
+
+/* Nodes of a group from its query's low corner, and weights there in two steps, see
+ * mcor_distance. */
+#if MCOR_TENSOR && MCOR_LANES > 1
+/* A group has few different x, y and z, so that one evaluation of w serves them all: lanes 0 and 1
+ * are x, 2 and 3 y, from 4 on z. */
+typedef struct
+{
+  realv at;
+} mcor_group_nodes;
+
+mcor_group_nodes mcor_group_place(real x, real y, real z)
+{
+#if MCOR_LANES == 8
+  const mcor_group_nodes nodes = { (realv)(x, x + 1, y, y + 1, z, z + 1, z, z) };
+#else
+  const mcor_group_nodes nodes = {
+    (realv)(x, x + 1, y, y + 1, z, z + 1, z + 2, z + 3, z, z, z, z, z, z, z, z)
+  };
+#endif
+  return nodes;
+}
+
+realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z, real inv_h)
+{
+#if MCOR_LANES == 8
+  const realv from = (realv)(x, x, y, y, z, z, z, z);
+#else
+  const realv from = (realv)(x, x, y, y, z, z, z, z, z, z, z, z, z, z, z, z);
+#endif
+  return MCOR_W(fabs(from - nodes->at) * inv_h);
+}
+
+realv mcor_group_weight(realv w, real inv_h)
+{
+#if MCOR_LANES == 8
+  return w.s01010101 * w.s22332233 * w.s44445555;
+#else
+  return w.s0101010101010101 * w.s2233223322332233 * w.s4444555566667777;
+#endif
+}
+#else
+typedef struct
+{
+  realv x, y, z;
+} mcor_group_nodes;
+
+mcor_group_nodes mcor_group_place(real x, real y, real z)
+{
+  const fixv lane = mcor_lane_index();
+  const mcor_group_nodes nodes = { x + MCOR_CONVERT_REALV(lane & 1),
+    y + MCOR_CONVERT_REALV(lane >> 1 & 1), z + MCOR_CONVERT_REALV(lane >> 2) };
+  return nodes;
+}
+
+realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z, real inv_h)
+{
+  return mcor_distance(x - nodes->x, y - nodes->y, z - nodes->z, inv_h);
+}
+
+#define mcor_group_weight mcor_weight
+#endif
 
 /* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's low corner.
  * term: their weights times values. */
 void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real y, real z,
   real share, mcor_node_sums* sums)
 {
-  const fixv lane = mcor_lane_index();
-  const realv node_x = x + MCOR_CONVERT_REALV(lane & 3);
-  const realv node_y = y + MCOR_CONVERT_REALV(lane >> 2);
+  const mcor_group_nodes nodes = mcor_group_place(x, y, z);
   int list[MCOR_TILE + 16];
-  real height[MCOR_TILE + 16];
-  const int count = mcor_node_list(tile, x, y, z, share, list, height);
+  const int count = mcor_node_list(tile, x, y, z, share, list);
   realv s = sums->s[g], w = sums->w[g];
 #if MCOR_SOLIDS
   realv t = sums->t[g];
@@ -69,13 +140,13 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
     for (int k = begin; k < end; ++k)
     {
       const int i = list[k];
-      distance[k - begin] = mcor_distance(
-        mcor_planar(tile->x[i] - node_x, tile->y[i] - node_y, tile->inv_h[i]), height[k]);
+      distance[k - begin] =
+        mcor_group_distance(&nodes, tile->x[i], tile->y[i], tile->z[i], tile->inv_h[i]);
     }
     for (int k = begin; k < end; ++k)
     {
       const int i = list[k];
-      const realv v = mcor_weight(distance[k - begin], tile->inv_h[i]);
+      const realv v = mcor_group_weight(distance[k - begin], tile->inv_h[i]);
 #if MCOR_FIELD != 2
       s += term[i] * v;
 #endif
@@ -92,30 +163,26 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 #endif
 }
 
-/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on; only those that
- * `wanted` has need be in it. share: of each particle's support. */
-mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, ulong wanted, float share)
+/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on. share: of each
+ * particle's support. */
+mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float share)
 {
-  /* From the lowest plane, wanted or not: positions count from there, and those of particles that
-   * reach far are rounded, which no value may depend on. */
-  const int low = first / 16, high = (first + 63 - (int)clz(wanted)) / 16;
-  const int corner[3] = { brick.x * MCOR_BRICK + (MCOR_GROUP_X == 1 ? first & 3 : 0),
-    brick.y * MCOR_BRICK + (MCOR_GROUP_Y == 1 ? first >> 2 & 3 : 0), brick.z * MCOR_BRICK + low };
-  const int extent[3] = { MCOR_GROUP_X - 1, MCOR_GROUP_Y == 1 ? 0 : MCOR_BRICK - 1, high - low };
+  const int corner[3] = { brick.x * MCOR_BRICK + (first & 3),
+    brick.y * MCOR_BRICK + (first >> 2 & 3), brick.z * MCOR_BRICK + (first >> 4) };
   mcor_query query;
   query.radius = -share;
   for (int a = 0; a < 3; ++a)
   {
     query.low[a] = (fix)corner[a] << grid->fix_bits;
-    query.high[a] = query.low[a] + ((fix)extent[a] << grid->fix_bits);
+    query.high[a] = query.low[a] + ((fix)(MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1) << grid->fix_bits);
   }
   return query;
 }
 
-/* Sums at those nodes, for the groups that `wanted` has. The tile may hold the query's particles
- * already. */
-void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, int first,
-  ulong wanted, mcor_node_sums* sums)
+/* Sums at those nodes, for the groups of those that `wanted` has. The tile may hold the query's
+ * particles already. */
+void mcor_node_sum(
+  const mcor_grid* grid, mcor_query* query, mcor_tile* tile, ulong wanted, mcor_node_sums* sums)
 {
   const real share = -query->radius;
   for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
@@ -136,11 +203,10 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, in
 #endif
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
-      const int n = g * MCOR_LANES;
-      if (wanted >> n & 1)
+      const int4 node = mcor_group_node(g);
+      if (wanted >> (node.x + 4 * node.y + 16 * node.z) & 1)
       {
-        mcor_node_add(tile, term, g, (real)0, (real)(MCOR_GROUP_Y == 1 ? 0 : n >> 2 & 3),
-          (real)(n / 16), share, sums);
+        mcor_node_add(tile, term, g, (real)node.x, (real)node.y, (real)node.z, share, sums);
       }
     }
   }
@@ -158,7 +224,7 @@ void mcor_node_store(
 {
   for (ulong rest = wanted; rest; rest &= rest - 1)
   {
-    const int n = mcor_ctz(rest), g = n / MCOR_LANES, lane = n % MCOR_LANES;
+    const int n = mcor_ctz(rest), g = mcor_group_of(n), lane = mcor_lane_of(n);
     const real s = MCOR_GET(sums->s[g], lane), w = MCOR_GET(sums->w[g], lane);
 #if MCOR_SOLIDS
     const real t = MCOR_GET(sums->t[g], lane);

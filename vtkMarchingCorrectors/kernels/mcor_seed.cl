@@ -292,7 +292,7 @@ bool mcor_seed_is_inside(
   bool inside = true;
   for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
   {
-    mcor_query query = mcor_node_query(grid, brick, first, wanted, MCOR_INSIDE_SHARE);
+    mcor_query query = mcor_node_query(grid, brick, first, MCOR_INSIDE_SHARE);
     mcor_node_sums sums;
     mcor_tile tile;
     mcor_tile_init(&tile);
@@ -309,7 +309,7 @@ bool mcor_seed_is_inside(
     {
       return false;
     }
-    mcor_node_sum(grid, &query, &tile, first, wanted, &sums);
+    mcor_node_sum(grid, &query, &tile, wanted, &sums);
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
       inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
@@ -389,7 +389,7 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* s
     return 0;
   }
   mcor_node_sums sums;
-  mcor_node_sum(grid, &query, &tile, 0, ~0UL, &sums);
+  mcor_node_sum(grid, &query, &tile, ~0UL, &sums);
   mcor_node_store(&sums, ~0UL, value, weight);
   return ~0UL;
 }

@@ -15,7 +15,8 @@ The model counts what the method asks for, not what this implementation does:
   operations per particle of the formulas (cubic spline; +, -, *, max and a square root are one
   each). Particles in the support: volume of the support over the mean volume of a particle, inside
   the fluid; at the free surface there are fewer, so that this is a little too high.
-- Seeds: the bound over a brick of 4^3 nodes, for the bricks that remain.
+- Seeds: the bound over a brick of 4^3 nodes, for the bricks that remain, and the values of their
+  nodes.
 - Not counted: finding the particles in reach, sorting, Marching Cubes, bricks that the seeds' bound
   excludes. These are part of a phase's distance from its limit.
 """
@@ -77,10 +78,11 @@ def work(result, volume):
     return {
         "input": (n * (CALLER_ARRAYS + PARTICLE), 0),
         "search_grid": (n * 2 * PARTICLE, 0),
-        "seeds": (n * PARTICLE + s["bricks"], s["bricks"] * brick_particles * BOUND_OPERATIONS),
-        "extraction": (near * PARTICLE + s["nodes_evaluated"] * NODE + marched * VERTEX +
-                       marched_triangles * TRIANGLE,
-                       s["nodes_evaluated"] * neighbours * NODE_OPERATIONS),
+        "seeds": (n * PARTICLE + s["nodes_evaluated"] * NODE,
+                  s["bricks"] * brick_particles * BOUND_OPERATIONS +
+                  s["nodes_evaluated"] * neighbours * NODE_OPERATIONS),
+        "extraction": (s["nodes_evaluated"] * NODE + marched * VERTEX +
+                       marched_triangles * TRIANGLE, 0),
         "correction": (near * PARTICLE + n * ATTRIBUTES * FLOAT +
                        marched * (VERTEX + CORRECTED + ATTRIBUTES * FLOAT),
                        s["newton_evaluations"] * neighbours * GRADIENT_OPERATIONS +

@@ -121,6 +121,14 @@ mcor_input core_input(const core_set* set)
     .solid = set->has_solids ? set->solid : NULL };
 }
 
+mcor_input core_input_to_keep(const core_set* set)
+{
+  static uint64_t version = 0;
+  mcor_input input = core_input(set);
+  input.particles_version = input.scalar_version = ++version;
+  return input;
+}
+
 mcor_options core_options(const double* iso)
 {
   mcor_options options;

@@ -71,6 +71,8 @@ double core_slope(const double x[3]); /* linear */
 /* The set as input; borrowed. */
 mcor_array core_array(const double* data, int components);
 mcor_input core_input(const core_set* set);
+/* The same; what is on the device stays there after the extraction. */
+mcor_input core_input_to_keep(const core_set* set);
 mcor_options core_options(const double* iso);
 
 /* The set for the oracle; borrowed, not to be freed. */

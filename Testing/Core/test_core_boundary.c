@@ -115,7 +115,7 @@ static void load(
   mcor_context* context, const core_set* set, mcor_sph_kernel kernel, mcor_type precision)
 {
   const double iso = 0;
-  const mcor_input input = core_input(set);
+  const mcor_input input = core_input_to_keep(set);
   mcor_options options = core_options(&iso);
   options.sph_kernel = kernel;
   options.precision = precision;

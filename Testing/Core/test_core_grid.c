@@ -131,7 +131,7 @@ static void check_queries(
   const int tensor = kernel == MCOR_M_PRIME_4;
   core_set set = make_set(support, h_ratio);
   const double iso = 100; /* no surface: the grid is all that is wanted */
-  const mcor_input input = core_input(&set);
+  const mcor_input input = core_input_to_keep(&set);
   mcor_options options = core_options(&iso);
   options.seeds = MCOR_PAIRS;
   options.sph_kernel = kernel;

@@ -36,7 +36,7 @@ static void trim(mcor_context* context, flat_mesh* m)
   static mcor_options options;
   core_set set = core_make_block(3, 0, 1, core_slope);
   const double iso = 0;
-  const mcor_input input = core_input(&set);
+  const mcor_input input = core_input_to_keep(&set);
   options = core_options(&iso);
   options.preview = 1;
   mcor_surface surface = core_extract(context, &input, &options); /* for the search grid */

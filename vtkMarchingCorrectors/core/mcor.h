@@ -198,8 +198,8 @@ extern "C"
   {
     MCOR_PHASE_INPUT = 0,   /* checks, unit conversion, transfer to the device */
     MCOR_PHASE_SEARCH_GRID, /* search grid and volumes */
-    MCOR_PHASE_SEEDS,       /* seed selection and node evaluation that it needs */
-    MCOR_PHASE_EXTRACTION,  /* node evaluation, marching cubes */
+    MCOR_PHASE_SEEDS,       /* seed selection; complete seeds: node evaluation */
+    MCOR_PHASE_EXTRACTION,  /* the rest of the nodes, marching cubes */
     MCOR_PHASE_CORRECTION,  /* Newton iteration, normals, attributes */
     MCOR_PHASE_TRIMMING,
     MCOR_PHASE_OUTPUT, /* compaction and transfer to the host */

@@ -21,7 +21,8 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   uint8_t* particle_level = staging->level;
   bool occurs[MCOR_LEVEL_LIMIT] = { false };
   uint8_t number[MCOR_LEVEL_LIMIT];
-  for (int i = 0; i < staging->count; ++i)
+  const bool one = context->measure.support_min == context->measure.support_max;
+  for (int i = 0; i < (one ? 1 : staging->count); ++i)
   {
     occurs[particle_level[i]] = true;
   }
@@ -51,7 +52,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
     }
     base += cells;
   }
-  for (int i = 0; i < staging->count; ++i)
+  for (int i = 0; i < staging->count && !one; ++i)
   {
     particle_level[i] = number[particle_level[i]];
   }

@@ -424,17 +424,22 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, const int br
   }
 }
 
+/* A block and those left and right of it, or -1. */
+int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int x, int y, int z)
+{
+  return (int3)(mcor_find_block(MCOR_BLOCK_ARGS, x - 1, y, z),
+    mcor_find_block(MCOR_BLOCK_ARGS, x, y, z), mcor_find_block(MCOR_BLOCK_ARGS, x + 1, y, z));
+}
+
 /* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below
- * (from bit 16 on). m: mark of brick x = 0, whose position is `brick`, or -1 where it has no
- * block. */
-uint mcor_seed_row(MCOR_BLOCK_PARAMS, int m, int4 brick, __global const uchar* states)
+ * (from bit 16 on). row: place of the row in the blocks. */
+uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
 {
   uint sides = 0;
   for (int x = -1; x <= 8; ++x)
   {
-    const int other = (x & 7) == x ? m < 0 ? -1 : m + x
-                                   : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + x, brick.y, brick.z);
-    const int state = other < 0 ? MCOR_VOID : states[other];
+    const int block = x < 0 ? blocks.x : x < 8 ? blocks.y : blocks.z;
+    const int state = block < 0 ? MCOR_VOID : states[block * MCOR_BLOCK_BRICKS + row + (x & 7)];
     sides |= (uint)(state == MCOR_ABOVE) << (x + 1) | (uint)(state == MCOR_BELOW) << (x + 17);
   }
   return sides;
@@ -455,13 +460,19 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   {
     seen |= 1 << states[m + x];
   }
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
   uint beside = 0;
-  for (int d = 0; d < 9 && seen & (1 << MCOR_ABOVE | 1 << MCOR_BELOW); ++d)
+  if (seen & (1 << MCOR_ABOVE | 1 << MCOR_BELOW))
   {
-    const int4 row = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
-    beside |= mcor_seed_row(MCOR_BLOCK_ARGS,
-      mcor_find_mark(MCOR_BLOCK_ARGS, row.x, row.y, row.z), row, states);
+    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m), own = brick >> 3;
+    const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, own.y, own.z);
+    for (int d = 0; d < 9; ++d)
+    {
+      const int y = brick.y + d % 3 - 1, z = brick.z + d / 3 - 1;
+      const bool within = y >> 3 == own.y && z >> 3 == own.z;
+      beside |= mcor_seed_row(
+        within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, y >> 3, z >> 3),
+        (z & 7) * 64 + (y & 7) * 8, states);
+    }
   }
   for (int x = 0; x < 8; ++x)
   {

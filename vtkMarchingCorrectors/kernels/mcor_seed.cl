@@ -342,24 +342,28 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   mcor_tile tile;
   mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
     MCOR_REGION_CUBES - 1, fix_bits);
-  if (state == MCOR_EXAMINE)
-  {
-    state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
-  }
-  const bool prove = MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && state == MCOR_EXAMINE;
-  if (prove)
+  uint inside = 0; /* bricks */
+  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && state == MCOR_EXAMINE)
   {
     query.radius = -MCOR_INSIDE_SHARE;
     mcor_tile_init(&tile);
     mcor_tile_next(&grid, &query, &tile, true);
+    for (int b = 0; b < 8 && tile.count > 0; ++b)
+    {
+      const int x = b & 1, y = b >> 1 & 1, z = b >> 2;
+      inside |= (uint)mcor_seed_is_inside(&grid, brick + (int4)(x, y, z, 0), &tile,
+        x * MCOR_BRICK, y * MCOR_BRICK, z * MCOR_BRICK, iso) << b;
+    }
+    query.radius = -1;
+  }
+  if (state == MCOR_EXAMINE && inside == 0)
+  {
+    state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
   }
   for (int b = 0; b < 8; ++b)
   {
-    const int x = b & 1, y = b >> 1 & 1, z = b >> 2, m = mark + x + 8 * y + 64 * z;
-    const bool inside = prove &&
-      mcor_seed_is_inside(&grid, brick + (int4)(x, y, z, 0), &tile, x * MCOR_BRICK, y * MCOR_BRICK,
-        z * MCOR_BRICK, iso);
-    states[m] = (uchar)(inside ? MCOR_ABOVE : state);
+    const int m = mark + (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
+    states[m] = (uchar)(inside >> b & 1 ? MCOR_ABOVE : state);
     if (states[m] == MCOR_EXAMINE)
     {
       mcor_ask_brick(brick_bits, m);

@@ -79,28 +79,57 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* need,
   }
 }
 
-/* Per cell: whether some (all) of its 8 nodes are set. m: masks of a brick and its upper
- * neighbours; overwritten. */
-ulong mcor_cell_some(ulong* m)
+/* From node masks of a brick and its upper neighbours: mask c becomes that of each cell's corner c
+ * (bits x, y, z). */
+void mcor_cell_corners(ulong* m)
 {
   for (int i = 0; i < 8; i += 2)
   {
-    m[i] |= mcor_from_next_x(m[i], m[i + 1]);
+    m[i + 1] = mcor_from_next_x(m[i], m[i + 1]);
   }
-  for (int i = 0; i < 8; i += 4)
+  for (int i = 0; i < 4; ++i)
   {
-    m[i] |= mcor_from_next_y(m[i], m[i + 2]);
+    const int low = (i & 1) | (i & 2) << 1;
+    m[low | 2] = mcor_from_next_y(m[low], m[low | 2]);
   }
-  return m[0] | mcor_from_next_z(m[0], m[4]);
+  for (int i = 0; i < 4; ++i)
+  {
+    m[i + 4] = mcor_from_next_z(m[i], m[i + 4]);
+  }
 }
 
-ulong mcor_cell_all(ulong* m)
+/* Cells of which some corner is set, and those of which all are. */
+ulong mcor_cell_some(const ulong* corners)
 {
-  for (int i = 0; i < 8; ++i)
+  ulong some = 0;
+  for (int c = 0; c < 8; ++c)
   {
-    m[i] = ~m[i];
+    some |= corners[c];
   }
-  return ~mcor_cell_some(m);
+  return some;
+}
+
+ulong mcor_cell_all(const ulong* corners)
+{
+  ulong all = ~0UL;
+  for (int c = 0; c < 8; ++c)
+  {
+    all &= corners[c];
+  }
+  return all;
+}
+
+/* Cells that are valid at all nodes and have nodes on both sides. */
+ulong mcor_cell_crossed(__global const int* neighbours, __global const ulong* above,
+  __global const ulong* valid, int slot)
+{
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
+  const ulong mixed = mcor_cell_some(m) & ~mcor_cell_all(m);
+  mcor_brick_masks(valid, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
+  return mixed & mcor_cell_all(m);
 }
 
 /* One work-item = one brick. Reads the node masks. Writes the used cells: examined, valid at all
@@ -114,26 +143,16 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   {
     return;
   }
-  ulong m[8];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  const ulong some = mcor_cell_some(m);
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  const ulong all_above = mcor_cell_all(m);
-  mcor_brick_masks(valid, neighbours, slot, 0, m);
-  used[slot] = cells[slot] & some & ~all_above & mcor_cell_all(m);
+  used[slot] = cells[slot] & mcor_cell_crossed(neighbours, above, valid, slot);
 }
 
-/* Marching Cubes case of a cell: bit c is set where corner c (bits x, y, z) is above. m: node masks
- * of the brick and its upper neighbours. */
-int mcor_march_case(const ulong* m, int cell)
+/* Marching Cubes case of a cell: bit c is set where corner c is above. */
+int mcor_march_case(const ulong* corners, int cell)
 {
   int result = 0;
   for (int c = 0; c < 8; ++c)
   {
-    const int x = (cell & 3) + (c & 1), y = (cell >> 2 & 3) + (c >> 1 & 1),
-              z = (cell >> 4) + (c >> 2);
-    const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
-    result |= (int)(m[d] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1) << c;
+    result |= (int)(corners[c] >> cell & 1) << c;
   }
   return result;
 }
@@ -195,6 +214,7 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
   }
   vertex_count[slot] = vertices;
   int triangles = 0;
+  mcor_cell_corners(m);
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     triangles += case_table[mcor_march_case(m, mcor_ctz(rest)) * 16 + 15];
@@ -323,6 +343,7 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
   ulong m[8];
   int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
   mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
   __global int* to = triangles + triangle_base[slot] * 3L;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)

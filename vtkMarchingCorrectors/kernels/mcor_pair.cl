@@ -233,23 +233,17 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
   }
 }
 
-/* Per cell of a brick: whether its lower face across an axis is crossed, i.e. has nodes on both
- * sides. m: node masks of the brick and its upper neighbours; u, v: bits of the other two axes. */
-ulong mcor_pair_faces(const ulong* m, int first, int axis)
+/* Cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on both sides.
+ * corners: see mcor_cell_corners. */
+ulong mcor_pair_faces(const ulong* corners, int axis, int side)
 {
-  const int u = axis == 0 ? 2 : 1, v = axis == 2 ? 2 : 4;
-  ulong some[2], all[2];
-  for (int i = 0; i < 2; ++i)
+  ulong some = 0, all = ~0UL;
+  for (int c = 0; c < 8; ++c)
   {
-    const ulong own = m[first | (i ? v : 0)], next = m[first | u | (i ? v : 0)];
-    const ulong shifted =
-      axis == 0 ? mcor_from_next_y(own, next) : mcor_from_next_x(own, next);
-    some[i] = own | shifted;
-    all[i] = own & shifted;
+    some |= (c >> axis & 1) == side ? corners[c] : 0;
+    all &= (c >> axis & 1) == side ? corners[c] : ~0UL;
   }
-  return axis == 2
-    ? (some[0] | mcor_from_next_y(some[0], some[1])) & ~(all[0] & mcor_from_next_y(all[0], all[1]))
-    : (some[0] | mcor_from_next_z(some[0], some[1])) & ~(all[0] & mcor_from_next_z(all[0], all[1]));
+  return some & ~all;
 }
 
 /* Hands cells to a brick; false where it has no slot yet. flags: 1 a cell is new, 2 a brick must be
@@ -305,19 +299,13 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   const ulong before = examined[slot];
   ulong m[8], faces[3], upper[3];
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
   for (int a = 0; a < 3; ++a)
   {
-    const ulong next = mcor_pair_faces(m, 1 << a, a);
-    faces[a] = mcor_pair_faces(m, 0, a);
-    upper[a] = a == 0 ? mcor_from_next_x(faces[a], next)
-      : a == 1        ? mcor_from_next_y(faces[a], next)
-                      : mcor_from_next_z(faces[a], next);
+    faces[a] = mcor_pair_faces(m, a, 0);
+    upper[a] = mcor_pair_faces(m, a, 1);
   }
-  const ulong some = mcor_cell_some(m);
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  const ulong mixed = some & ~mcor_cell_all(m);
-  mcor_brick_masks(valid, neighbours, slot, 0, m);
-  const ulong crossed = mixed & mcor_cell_all(m);
+  const ulong crossed = mcor_cell_crossed(neighbours, above, valid, slot);
   ulong now = before;
   for (ulong last = 0; now != last;)
   {

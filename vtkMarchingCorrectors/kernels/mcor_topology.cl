@@ -21,12 +21,6 @@
 #define MCOR_SAMPLE_ABOVE 1
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
-ulong mcor_from_next(int axis, ulong m, ulong next)
-{
-  return axis == 0 ? mcor_from_next_x(m, next)
-                   : axis == 1 ? mcor_from_next_y(m, next) : mcor_from_next_z(m, next);
-}
-
 ulong mcor_from_last(int axis, ulong m, ulong last)
 {
   return axis == 0 ? mcor_from_last_x(m, last)
@@ -47,14 +41,13 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   ulong m[8], lower[8];
   mcor_brick_masks(used, neighbours, slot, 7, lower);
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
   int count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3, du = 1 << u, dv = 1 << v;
-    const ulong m10 = mcor_from_next(u, m[0], m[du]), m01 = mcor_from_next(v, m[0], m[dv]);
-    const ulong m11 = mcor_from_next(v, m10, mcor_from_next(u, m[dv], m[du | dv]));
+    const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
     const ulong reached = lower[0] | mcor_from_last(axis, lower[0], lower[1 << axis]);
-    const ulong ambiguous = reached & (m[0] ^ m10) & (m[0] ^ m01) & ~(m[0] ^ m11);
+    const ulong ambiguous = reached & (m[0] ^ m[du]) & (m[0] ^ m[dv]) & ~(m[0] ^ m[du | dv]);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
     count += (int)popcount(ambiguous);
   }
@@ -174,12 +167,12 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
   joined_count[slot] = count;
 }
 
-/* First row of a cell's case, plus that of its decisions on faces. above: node masks of the
- * brick and its upper neighbours. */
-int mcor_topology_row(const ulong* above, __global const int* neighbours,
+/* First row of a cell's case, plus that of its decisions on faces. corners: see
+ * mcor_cell_corners. */
+int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
-  const int entry = cases[mcor_march_case(above, cell)];
+  const int entry = cases[mcor_march_case(corners, cell)];
   int row = entry >> 6, bit = 1;
   for (int face = 0; face < 6; ++face)
   {
@@ -209,6 +202,7 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   }
   ulong m[8], cells = 0;
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     __global const uchar* row = rows +
@@ -355,13 +349,13 @@ __kernel void mcor_topology_agree(const int brick_count, __global const int* bas
 }
 
 /* The row of a cell with all that was decided. *tunnel: whether it has a tunnel. */
-__global const uchar* mcor_topology_cell(const ulong* above, __global const int* neighbours,
+__global const uchar* mcor_topology_cell(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, __global const uchar* rows, int slot,
   int cell, int* tunnel)
 {
   __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
-  const int first = cases[mcor_march_case(above, cell)] >> 6;
-  const int row = mcor_topology_row(above, neighbours, decisions, cases, slot, cell);
+  const int first = cases[mcor_march_case(corners, cell)] >> 6;
+  const int row = mcor_topology_row(corners, neighbours, decisions, cases, slot, cell);
   __global const uchar* choice = rows + row * MCOR_ROW + MCOR_ROW_TUNNEL;
   const int other =
     cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
@@ -383,6 +377,7 @@ __kernel void mcor_topology_count(const int brick_count, __global const int* nei
   }
   ulong m[8];
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
   int triangles = 0, tunnels = 0, tunnel;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
@@ -408,6 +403,7 @@ __kernel void mcor_topology_triangles(const int brick_count, __global const int*
   ulong m[8];
   int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
   mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
   __global int* to = triangles + triangle_base[slot] * 3L;
   int tunnel;

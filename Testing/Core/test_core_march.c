@@ -26,9 +26,8 @@ static const char source[] =
   "  o[3] = mcor_from_last_x(m[0], m[1]);\n"
   "  o[4] = mcor_from_last_y(m[0], m[2]);\n"
   "  o[5] = mcor_from_last_z(m[0], m[4]);\n"
+  "  mcor_cell_corners(m);\n"
   "  o[6] = mcor_cell_some(m);\n"
-  "  for (int d = 0; d < 8; ++d)\n"
-  "    m[d] = in[8 * i + d];\n"
   "  o[7] = mcor_cell_all(m);\n"
   "  o[8] = m[0] ? mcor_ctz(in[8 * i] | 1UL << (i & 63)) : 0;\n"
   "}\n";

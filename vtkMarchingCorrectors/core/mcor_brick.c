@@ -61,8 +61,8 @@ mcor_status mcor_find_neighbours(mcor_context* context)
     return MCOR_OK;
   }
   bricks->neighbours_valid = true;
-  MCOR_TRY(mcor_reserve(
-    context, &bricks->neighbours, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(
+    context, &bricks->neighbours, 0xff, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_LIGHT, count, MCOR_BRICK_ARGS(context),
     MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
 }

@@ -132,8 +132,8 @@ __kernel void mcor_brick_fill(MCOR_BRICK_PARAMS, __global int4* bricks)
   }
 }
 
-/* One work-item = one brick. Writes the slots of its 7 upper neighbours (offset bits 1 x, 2 y, 4 z:
- * entry offset - 1), then of the 7 lower ones; -1 where there is none. */
+/* One work-item = one brick. Finds its 7 upper neighbours (offset bits 1 x, 2 y, 4 z: entry
+ * offset - 1), and becomes their lower one (entry offset + 6). Entries are -1 before. */
 __kernel void mcor_brick_neighbours(
   MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
 {
@@ -146,11 +146,13 @@ __kernel void mcor_brick_neighbours(
   const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 1; d < 8; ++d)
   {
-    const int x = d & 1, y = d >> 1 & 1, z = d >> 2;
-    neighbours[slot * 14 + d - 1] = mcor_slot_of_mark(
-      brick_bits, brick_base, mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, x, y, z));
-    neighbours[slot * 14 + d + 6] = mcor_slot_of_mark(
-      brick_bits, brick_base, mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, -x, -y, -z));
+    const int other = mcor_slot_of_mark(brick_bits, brick_base,
+      mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2));
+    if (other >= 0)
+    {
+      neighbours[slot * 14 + d - 1] = other;
+      neighbours[other * 14 + d + 6] = slot;
+    }
   }
 }
 

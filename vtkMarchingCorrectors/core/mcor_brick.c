@@ -15,6 +15,8 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
   MCOR_TRY(mcor_fill(
     context, &data->cells, mcor_uses_pairs(context) ? 0 : 0xff, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &data->examined, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &data->above, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &data->valid, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &data->value, values));
   return mcor_reserve(context, &data->weight, values);
 }
@@ -22,7 +24,7 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
 void mcor_release_bricks(mcor_context* context, mcor_brick_data* data)
 {
   mcor_buffer* const buffers[] = { &data->bricks, &data->known, &data->cells, &data->examined,
-    &data->value, &data->weight };
+    &data->value, &data->weight, &data->above, &data->valid };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
@@ -43,8 +45,10 @@ static mcor_status mcor_fill_bricks(
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_move", MCOR_LIGHT, last->count,
       MCOR_BRICK_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&last->bricks),
       MCOR_BUFFER(&last->known), MCOR_BUFFER(&last->cells), MCOR_BUFFER(&last->examined),
-      MCOR_BUFFER(&last->value), MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known),
+      MCOR_BUFFER(&last->above), MCOR_BUFFER(&last->valid), MCOR_BUFFER(&last->value),
+      MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known),
       MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(&bricks->now.examined),
+      MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
       MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
   }
   bricks->neighbours_valid = false;

@@ -89,6 +89,7 @@ typedef struct mcor_brick_data
   mcor_buffer cells;  /* ulong: cells to examine for this iso value */
   mcor_buffer examined; /* ulong: those whose nodes have been asked for */
   mcor_buffer value, weight; /* real [64] */
+  mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
 } mcor_brick_data;
 
 /* [III-B] Blocks where there may be surface, and the bricks that exist in them. */
@@ -108,7 +109,7 @@ typedef struct mcor_bricks
 /* [III-D] One iso value's surface while it is made. */
 typedef struct mcor_mesh
 {
-  mcor_buffer above, valid, used, edges, vertex_base, triangle_base;
+  mcor_buffer used, edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges */
   int vertex_count; /* the same and those of the trim boundary */
   int triangle_count;

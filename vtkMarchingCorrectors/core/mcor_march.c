@@ -23,18 +23,16 @@ static mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-static mcor_status mcor_sign_nodes(mcor_context* context, double iso)
+/* Signs of the nodes just evaluated; of all, where others may be known from another iso value. */
+static mcor_status mcor_sign_nodes(mcor_context* context, double iso, bool all)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t bytes = (size_t)bricks->now.count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_reserve(context, &mesh->above, bytes));
-  MCOR_TRY(mcor_reserve(context, &mesh->valid, bytes));
   return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_LIGHT, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
-    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&mesh->above),
-    MCOR_BUFFER(&mesh->valid));
+    MCOR_INT(bricks->now.count), MCOR_INT(all), MCOR_BUFFER(&bricks->need),
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid));
 }
 
 /* Number of bits set in an array of masks. */
@@ -57,7 +55,7 @@ static mcor_status mcor_classify_cells(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_march_classify", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid), MCOR_BUFFER(&mesh->used));
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used));
 }
 
 /* Evaluates and grows until nothing is new. Ends with the used cells. */
@@ -74,7 +72,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   {
     MCOR_TRY(mcor_find_neighbours(context));
     MCOR_TRY(mcor_evaluate_nodes(context));
-    MCOR_TRY(mcor_sign_nodes(context, iso));
+    MCOR_TRY(mcor_sign_nodes(context, iso, pairs && first));
     if (first)
     {
       MCOR_TRY(mcor_classify_cells(context));
@@ -103,7 +101,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base)));
   if (resolved)
@@ -128,7 +126,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
     return mcor_emit_resolved(context);
   }
   return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->above),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }

@@ -42,14 +42,13 @@ mcor_status mcor_mark_pair_cells(mcor_context* context, double iso)
 mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
   mcor_buffer* flags = &context->scratch[1];
   cl_int flag;
   MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.examined),
-    MCOR_BUFFER(&bricks->fresh), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
+    MCOR_BUFFER(&bricks->fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
   *grown = flag != 0;

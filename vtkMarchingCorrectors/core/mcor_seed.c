@@ -11,12 +11,11 @@
 static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
   mcor_buffer* grown = &context->scratch[1];
   MCOR_TRY(mcor_fill(context, grown, 0, sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(fresh), MCOR_BUFFER(&mesh->above), MCOR_BUFFER(&mesh->valid),
+    MCOR_BUFFER(fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
 }
 
@@ -34,7 +33,6 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
 static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
   const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
   const double node_threshold = context->options->node_threshold;
   MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)count));
@@ -44,15 +42,12 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_place_bricks(context));
-  const size_t masks = (size_t)bricks->now.count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_reserve(context, &mesh->above, masks));
-  MCOR_TRY(mcor_reserve(context, &mesh->valid, masks));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, bricks->now.count,
     MCOR_GRID_ARGS(context), MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&mesh->above),
-    MCOR_BUFFER(&mesh->valid)));
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid)));
   MCOR_TRY(mcor_keep_bricks(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, count / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));

@@ -160,9 +160,11 @@ __kernel void mcor_brick_neighbours(
  * it has one. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
-  __global const ulong* old_examined, __global const real* old_value,
+  __global const ulong* old_examined, __global const ulong* old_above,
+  __global const ulong* old_valid, __global const real* old_value,
   __global const real* old_weight, __global ulong* known, __global ulong* cells,
-  __global ulong* examined, __global real* node_value, __global real* node_weight)
+  __global ulong* examined, __global ulong* above, __global ulong* valid,
+  __global real* node_value, __global real* node_weight)
 {
   const int old = get_global_id(0);
   if (old >= old_count)
@@ -178,6 +180,8 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   known[slot] = old_known[old];
   cells[slot] = old_cells[old];
   examined[slot] = old_examined[old];
+  above[slot] = old_above[old];
+  valid[slot] = old_valid[old];
   for (int n = 0; n < 64; ++n)
   {
     node_value[slot * 64 + n] = old_value[old * 64 + n];

@@ -65,13 +65,13 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
 }
 
 /* One work-item = one brick. Reads node values, those needed being known by now. Writes which nodes
- * are above the iso value, and which are valid. */
-__kernel void mcor_march_sign(const int brick_count, __global const ulong* need,
+ * are above the iso value, and which are valid: where nodes are new, or of all bricks. */
+__kernel void mcor_march_sign(const int brick_count, const int all, __global const ulong* need,
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)
 {
   const int slot = get_global_id(0);
-  if (slot < brick_count)
+  if (slot < brick_count && (all || need[slot]))
   {
     known[slot] |= need[slot];
     mcor_node_signs(known[slot], node_value + slot * 64L, node_weight + slot * 64L, iso,

@@ -70,7 +70,7 @@ def isosurface(benchmark):
     out = benchmark.report
     out.heading("a. Isosurface of a scalar against vtkSPHInterpolator + vtkFlyingEdges3D")
     out.text("Swirl = 0. marching-correctors: complete seeds, corrected vertices, normals, "
-             "trimmed, the 4 other arrays interpolated.")
+             "trimmed, the 4 other arrays interpolated (three are constant).")
     out.text("VTK: this scalar alone, linear vertices, no normals, not trimmed.")
     out.text()
     return compare(benchmark, "vtk",

@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Other particle arrays at the surface's points [III-D.4]. Of the components that vary, the first
- * MCOR_ATTRIBUTE_LIMIT are evaluated along with the correction, where each vertex's particles are at
- * hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values, often
- * masses or smoothing lengths, is that value. */
+ * MCOR_ATTRIBUTE_LIMIT are evaluated along with the correction, where each vertex's particles are
+ * at hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values,
+ * often masses or smoothing lengths, is that value. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"

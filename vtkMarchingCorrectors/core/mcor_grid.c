@@ -22,7 +22,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   bool occurs[MCOR_LEVEL_LIMIT] = { false };
   uint8_t number[MCOR_LEVEL_LIMIT];
   const bool one = context->measure.support_min == context->measure.support_max;
-  for (int i = 0; i < (one ? 1 : staging->count); ++i)
+  for (int i = 0; i < (one && staging->count > 0 ? 1 : staging->count); ++i)
   {
     occurs[particle_level[i]] = true;
   }

@@ -36,11 +36,16 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
   *b = c;
 }
 
-/* Bits that one round of sorting treats: as few rounds as can be, of about the same size. */
-static int mcor_digit_bits(const mcor_context* context, uint64_t key_limit)
+/* Bits that one round of sorting treats: as few rounds as can be, of about the same size, with a
+ * histogram no larger than what is sorted. */
+static int mcor_digit_bits(const mcor_context* context, int count, uint64_t key_limit)
 {
-  const int most = context->cl.lanes == 1 ? 8 : 11; /* MCOR_DIGIT_BITS of mcor_scan.cl */
+  int most = context->cl.lanes == 1 ? 8 : 11; /* MCOR_DIGIT_BITS of mcor_scan.cl */
   int bits = 1;
+  while (most > 8 && context->cl.chunks << most > count)
+  {
+    --most;
+  }
   while (bits < 64 && (key_limit - 1) >> bits)
   {
     ++bits;
@@ -53,7 +58,7 @@ static int mcor_digit_bits(const mcor_context* context, uint64_t key_limit)
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
-  const int chunks = context->cl.chunks, bits = mcor_digit_bits(context, key_limit);
+  const int chunks = context->cl.chunks, bits = mcor_digit_bits(context, count, key_limit);
   const size_t n = (size_t)count;
   int total;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));

@@ -46,7 +46,8 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_GRID_ARGS(context), MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight),
+    MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
   MCOR_TRY(mcor_keep_bricks(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, count / 8, MCOR_BLOCK_ARGS(context),

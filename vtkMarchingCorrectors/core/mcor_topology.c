@@ -61,7 +61,8 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   mcor_buffer* counts = &context->scratch[1];
   int faces, joined;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above),
     MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->sample_base)));
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
@@ -80,7 +81,8 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
   const int count = context->bricks.now.count;
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above),
     MCOR_BUFFER(&context->topology_cases), MCOR_BUFFER(&context->topology_rows),
     MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->sample_base)));
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_middles", iso, &samples));
@@ -112,7 +114,8 @@ mcor_status mcor_count_resolved(mcor_context* context)
   int tunnels;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above),
     MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&context->topology_cases),
     MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &tunnels));
@@ -125,7 +128,8 @@ mcor_status mcor_emit_resolved(mcor_context* context)
   mcor_mesh* mesh = &context->mesh;
   const int count = context->bricks.now.count;
   return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above),
     MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->topology_cases),
     MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));

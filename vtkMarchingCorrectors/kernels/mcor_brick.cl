@@ -156,8 +156,8 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set, if
- * it has one. */
+/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,
+ * if it has one. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
   __global const ulong* old_examined, __global const ulong* old_above,

@@ -47,8 +47,8 @@ realv mcor_sqrt(realv x)
 }
 #endif
 
-/* W / norm * h^3 at offset (dx, dy, dz). In two steps, to be made for MCOR_STEP particles in turn: as a
- * chain, they take longer than a CPU can look ahead. */
+/* W / norm * h^3 at offset (dx, dy, dz). In two steps, to be made for MCOR_STEP particles in turn:
+ * as a chain, they take longer than a CPU can look ahead. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
 
 /* Of a tensor kernel, the weight itself. */

@@ -278,8 +278,8 @@ int mcor_march_rank(__global const ulong* e, int n)
   return rank;
 }
 
-/* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched edge,
- * -1 less the first of the two. */
+/* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched
+ * edge, -1 less the first of the two. */
 void mcor_march_numbers(__global const int* neighbours, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes, in groups of MCOR_LANES nodes of a brick that are close together:
- * with 16 lanes 2 x 2 x 4, with 8 2 x 2 x 2, with 1 a node. One work-item treats a whole brick where
- * particles are gathered for many lanes at once, else one node. */
+/* Evaluation of the field at nodes, in groups of MCOR_LANES nodes of a brick that are close
+ * together: with 16 lanes 2 x 2 x 4, with 8 2 x 2 x 2, with 1 a node. One work-item treats a whole
+ * brick where particles are gathered for many lanes at once, else one node. */
 
 #if MCOR_LANES == 1
 #define MCOR_ITEM_NODES 1
@@ -163,18 +163,19 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 #endif
 }
 
-/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on. share: of each
- * particle's support. */
+/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on. share: of
+ * each particle's support. */
 mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float share)
 {
   const int corner[3] = { brick.x * MCOR_BRICK + (first & 3),
     brick.y * MCOR_BRICK + (first >> 2 & 3), brick.z * MCOR_BRICK + (first >> 4) };
+  const fix extent = (fix)(MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1) << grid->fix_bits;
   mcor_query query;
   query.radius = -share;
   for (int a = 0; a < 3; ++a)
   {
     query.low[a] = (fix)corner[a] << grid->fix_bits;
-    query.high[a] = query.low[a] + ((fix)(MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1) << grid->fix_bits);
+    query.high[a] = query.low[a] + extent;
   }
   return query;
 }

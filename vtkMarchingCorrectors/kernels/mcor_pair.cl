@@ -205,9 +205,9 @@ bool mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BRICK_PARAMS, int begi
  * from the surface. */
 #define MCOR_PAIR_GROUPS 8
 
-/* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles. Reads the particles within
- * the smoothing length of each. mark_cells 0: asks for bricks for pairs that straddle the iso value,
- * and writes of each group whether there are any; 1: marks cells. */
+/* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles. Reads the particles
+ * within the smoothing length of each. mark_cells 0: asks for bricks for pairs that straddle the
+ * iso value, and writes of each group whether there are any; 1: marks cells. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
   const real iso, const real h_scale, const int mark_cells, __global uchar* has_pairs,
   __global uint* asked, __global uint* cells)
@@ -283,9 +283,9 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   return slot >= 0;
 }
 
-/* One work-item = one brick with cells new to this round. Reads node masks. Grows the cells examined
- * by now through crossed faces of used cells, within the brick to the end, and one step into its
- * neighbours. */
+/* One work-item = one brick with cells new to this round. Reads node masks. Grows the cells
+ * examined by now through crossed faces of used cells, within the brick to the end, and one step
+ * into its neighbours. */
 __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const int* neighbours, __global ulong* examined,
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,

@@ -267,8 +267,9 @@ typedef struct
   mcor_tile tile;
   realv w[MCOR_TILE]; /* as above */
   mcor_reach_masks masks;
-  MCOR_ALIGNED real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE], inv_h[MCOR_REACH_SIZE];
-  real weight[MCOR_REACH_SIZE], term[MCOR_REACH_SIZE]; /* term: weight * MCOR_FIELD_TERM */
+  MCOR_ALIGNED real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE];
+  real inv_h[MCOR_REACH_SIZE], weight[MCOR_REACH_SIZE];
+  real term[MCOR_REACH_SIZE]; /* weight * MCOR_FIELD_TERM */
 #if MCOR_SOLIDS
   real trim_weight[MCOR_REACH_SIZE];
 #endif

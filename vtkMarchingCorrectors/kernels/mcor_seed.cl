@@ -7,7 +7,9 @@
  * regions (8^3) and bricks (4^3). A crossed edge has nodes on both sides. If both were left out,
  * two neighbouring bricks would be certain of different sides: those are evaluated after all
  * (mcor_seed_ask). If one was, an evaluated brick would have a node on the other side than its
- * neighbour: that is evaluated then (mcor_seed_grow). */
+ * neighbour: that is evaluated then (mcor_seed_grow). All bricks of regions that are not certain
+ * have slots while they are tested, so that the particles gathered for the bound serve the nodes'
+ * values, too (mcor_seed_bricks). */
 
 /* What is known of a region's nodes. */
 #define MCOR_VOID 0    /* below the node threshold: no cell there is valid */
@@ -254,8 +256,8 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
 }
 
-/* Edge of the cubes of nodes of which states are kept besides those of bricks, and their number in a
- * block. */
+/* Edge of the cubes of nodes of which states are kept besides those of bricks, and their number in
+ * a block. */
 #define MCOR_REGION_CUBES 8
 #define MCOR_BLOCK_REGIONS 64
 
@@ -318,7 +320,8 @@ bool mcor_seed_is_inside(
   return inside;
 }
 
-/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by bricks. */
+/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by
+ * bricks. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
 
 /* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
@@ -328,7 +331,8 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   __global const uchar* sides, const real iso, const real node_threshold, __global uchar* states,
   __global uint* brick_bits)
 {
-  const int block = get_global_id(0) / MCOR_BLOCK_REGIONS, r = get_global_id(0) % MCOR_BLOCK_REGIONS;
+  const int region = get_global_id(0);
+  const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
   if (block >= block_count)
   {
     return;
@@ -371,8 +375,8 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   }
 }
 
-/* State of a brick whose region is not certain. As its particles are at hand, its nodes are evaluated
- * if they are to be, where a work-item evaluates whole bricks; returns the known ones. */
+/* State of a brick whose region is not certain. As its particles are at hand, its nodes are
+ * evaluated if they are to be, where a work-item evaluates whole bricks; returns the known ones. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* sides, real iso,
   real node_threshold, __global uchar* state, __global real* value, __global real* weight)
 {
@@ -399,8 +403,8 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* s
 }
 
 /* One work-item = one brick whose region is not certain, or that was evaluated for another iso
- * value. Reads the particles that reach it. Writes its state if it was not; which nodes are known by
- * now, and their values and signs. */
+ * value. Reads the particles that reach it. Writes its state if it was not; which nodes are known
+ * by now, and their values and signs. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const uchar* sides, const real iso,
   const real node_threshold, __global uchar* states, __global ulong* known,
@@ -489,9 +493,9 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   }
 }
 
-/* One work-item = one brick; those without `fresh` nodes have been looked at before. Reads its nodes'
- * sides, and the states of bricks around it that are not evaluated. Asks for those certain of another
- * side than a valid node next to them. */
+/* One work-item = one brick; those without `fresh` nodes have been looked at before. Reads its
+ * nodes' sides, and the states of bricks around it that are not evaluated. Asks for those certain
+ * of another side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* fresh,
   __global const ulong* above, __global const ulong* valid, __global const uchar* states,

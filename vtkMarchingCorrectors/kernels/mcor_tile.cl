@@ -161,8 +161,8 @@ fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h, realv share)
 #endif
 }
 
-/* Tests the particles that are left of the query's row, and puts those that reach its box behind the
- * tile's first `count`, while there is room. Returns the new count. */
+/* Tests the particles that are left of the query's row, and puts those that reach its box behind
+ * the tile's first `count`, while there is room. Returns the new count. */
 int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
 {
   const real unit = grid->unit;
@@ -257,8 +257,8 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 /* Fills a tile's positions and weights from a complete one, whose box holds the query's at
  * (x, y, z). */
-void mcor_tile_narrow(
-  const mcor_tile* wide, const mcor_query* query, real unit, real x, real y, real z, mcor_tile* tile)
+void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, real unit, real x, real y,
+  real z, mcor_tile* tile)
 {
   const real ex = (real)(query->high[0] - query->low[0]) * unit * (real)0.5;
   const real ey = (real)(query->high[1] - query->low[1]) * unit * (real)0.5;

@@ -52,6 +52,8 @@ static mcor_status mcor_fill_bricks(
       MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
   }
   bricks->neighbours_valid = false;
+  mcor_release(context, &bricks->placed);
+  mcor_release(context, &bricks->slot_of);
   return MCOR_OK;
 }
 
@@ -86,4 +88,68 @@ mcor_status mcor_place_bricks(mcor_context* context)
   const mcor_status status = mcor_fill_bricks(context, &last, count, words);
   mcor_release_bricks(context, &last);
   return status;
+}
+
+static mcor_status mcor_index_bricks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &bricks->placed, 0, words * sizeof(cl_uint)));
+  MCOR_TRY(mcor_fill(context, &bricks->slot_of, 0xff, words * 32 * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_brick_index", MCOR_LIGHT, bricks->now.count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->placed), MCOR_BUFFER(&bricks->slot_of));
+}
+
+/* Room for `count` bricks, and for half as many more where that takes larger buffers. */
+static mcor_status mcor_extend_bricks(mcor_context* context, size_t count)
+{
+  mcor_brick_data* data = &context->bricks.now;
+  const size_t old = (size_t)data->count, mask = sizeof(cl_ulong);
+  const size_t values = 64 * context->cl.real_size;
+  const struct
+  {
+    mcor_buffer* buffer;
+    size_t size;
+  } parts[] = { { &data->bricks, 4 * sizeof(cl_int) }, { &data->known, mask },
+    { &data->cells, mask }, { &data->examined, mask }, { &data->above, mask },
+    { &data->valid, mask }, { &data->value, values }, { &data->weight, values },
+    { &context->bricks.neighbours, MCOR_NEIGHBOURS * sizeof(cl_int) } };
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; ++i)
+  {
+    const size_t bytes = count * parts[i].size;
+    if (parts[i].buffer->size < bytes)
+    {
+      MCOR_TRY(
+        mcor_extend(context, parts[i].buffer, old * parts[i].size, bytes + bytes / 2));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Gives slots behind the others to bricks that were asked for; mcor_place_bricks puts all in
+ * order. */
+mcor_status mcor_append_bricks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_brick_data* now = &bricks->now;
+  const int words = bricks->block_count * MCOR_BLOCK_WORDS, first = now->count;
+  int added;
+  if (!bricks->slot_of.mem)
+  {
+    MCOR_TRY(mcor_index_bricks(context));
+  }
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count_new", MCOR_LIGHT, words, MCOR_INT(words),
+    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->placed), MCOR_BUFFER(&bricks->base)));
+  MCOR_TRY(mcor_scan(context, &bricks->base, words, &added));
+  MCOR_TRY(mcor_extend_bricks(context, (size_t)first + (size_t)added));
+  now->count += added;
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_append", MCOR_LIGHT, words, MCOR_BLOCK_ARGS(context),
+    MCOR_INT(first), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->base),
+    MCOR_BUFFER(&bricks->placed), MCOR_BUFFER(&bricks->slot_of), MCOR_BUFFER(&now->bricks),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->cells),
+    MCOR_BUFFER(&now->examined), MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
+  return MCOR_LAUNCH(context, "mcor_brick_join", MCOR_LIGHT, added, MCOR_BLOCK_ARGS(context),
+    MCOR_INT(first), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks),
+    MCOR_BUFFER(&bricks->slot_of), MCOR_BUFFER(&bricks->neighbours));
 }

@@ -440,6 +440,20 @@ mcor_status mcor_copy(mcor_context* context, const mcor_buffer* from, mcor_buffe
   return MCOR_OK;
 }
 
+mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes)
+{
+  if (buffer->size >= bytes)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer bigger = { 0 };
+  MCOR_TRY(mcor_reserve(context, &bigger, bytes));
+  MCOR_TRY(mcor_copy(context, buffer, &bigger, 0, old));
+  mcor_release(context, buffer);
+  *buffer = bigger;
+  return MCOR_OK;
+}
+
 static mcor_status mcor_find_kernel(mcor_context* context, const char* name, cl_kernel* kernel)
 {
   mcor_cl* cl = &context->cl;

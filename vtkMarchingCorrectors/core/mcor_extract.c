@@ -73,7 +73,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
     &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides,
     &b->block_keys, &b->block_buckets, &b->block_states, &b->quiet, &b->states, &b->bits, &b->base,
-    &b->neighbours, &b->need, &b->fresh, &m->used, &m->edges,
+    &b->neighbours, &b->placed, &b->slot_of, &b->need, &b->fresh, &m->used, &m->edges,
     &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
     &m->field_value, &m->gradient, &m->vertex_weight, &m->means, &m->flag, &m->evaluations,
     &m->boundary, &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys,

@@ -103,6 +103,7 @@ typedef struct mcor_bricks
   mcor_brick_data now;
   mcor_buffer neighbours; /* see mcor_brick_neighbours */
   bool neighbours_valid;
+  mcor_buffer placed, slot_of; /* of mcor_append_bricks, see mcor_brick.cl */
   mcor_buffer need, fresh; /* fresh: see mcor_march_need */
 } mcor_bricks;
 
@@ -227,6 +228,7 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
+mcor_status mcor_append_bricks(mcor_context* context);
 mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);

@@ -82,6 +82,11 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
     ++statistics->march_rounds;
     MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
   }
+  if (bricks->slot_of.mem) /* some were appended */
+  {
+    MCOR_TRY(mcor_place_bricks(context));
+    MCOR_TRY(mcor_find_neighbours(context));
+  }
   MCOR_TRY(mcor_classify_cells(context));
   MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &used));
   statistics->cells_used += used;

@@ -52,5 +52,5 @@ mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
   *grown = flag != 0;
-  return flag & 2 ? mcor_place_bricks(context) : MCOR_OK;
+  return flag & 2 ? mcor_append_bricks(context) : MCOR_OK;
 }

@@ -30,21 +30,6 @@ static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int
   return mcor_scan(context, &mesh->cuts, mesh->triangle_count, cuts);
 }
 
-/* Grows a buffer, keeping its content. */
-static mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes)
-{
-  if (buffer->size >= bytes)
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer bigger = { 0 };
-  MCOR_TRY(mcor_reserve(context, &bigger, bytes));
-  MCOR_TRY(mcor_copy(context, buffer, &bigger, 0, old));
-  mcor_release(context, buffer);
-  *buffer = bigger;
-  return MCOR_OK;
-}
-
 static mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
 {
   mcor_mesh* mesh = &context->mesh;

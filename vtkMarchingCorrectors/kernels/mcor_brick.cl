@@ -156,6 +156,92 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
+/* While pairs grow, bricks keep their slots, and those that are asked for get slots behind them:
+ * `placed` has the bits of bricks with slots, slot_of the slot of each mark, or -1. */
+
+/* One work-item = one brick. Writes its slot to its mark. */
+__kernel void mcor_brick_index(MCOR_BLOCK_PARAMS, const int brick_count,
+  __global const int4* bricks, __global uint* placed, __global int* slot_of)
+{
+  const int slot = get_global_id(0);
+  if (slot < brick_count)
+  {
+    const int4 brick = bricks[slot];
+    const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+    mcor_ask_brick(placed, m);
+    slot_of[m] = slot;
+  }
+}
+
+/* One work-item = one word of 32 bricks. Counts those without slots. */
+__kernel void mcor_brick_count_new(const int word_count, __global const uint* brick_bits,
+  __global const uint* placed, __global int* counts)
+{
+  const int word = get_global_id(0);
+  if (word < word_count)
+  {
+    counts[word] = (int)popcount(brick_bits[word] & ~placed[word]);
+  }
+}
+
+/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Gives slots from `first` on
+ * to those without, of which nothing is known. */
+__kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first,
+  __global const uint* brick_bits, __global const int* scanned, __global uint* placed,
+  __global int* slot_of, __global int4* bricks, __global int* neighbours, __global ulong* known,
+  __global ulong* cells, __global ulong* examined, __global ulong* above, __global ulong* valid)
+{
+  const int word = get_global_id(0);
+  if (word >= block_count * MCOR_BLOCK_WORDS)
+  {
+    return;
+  }
+  int slot = first + scanned[word];
+  for (uint bits = brick_bits[word] & ~placed[word]; bits; bits &= bits - 1, ++slot)
+  {
+    const int m = word * 32 + 31 - (int)clz(bits & -bits);
+    bricks[slot] = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+    slot_of[m] = slot;
+    known[slot] = cells[slot] = examined[slot] = above[slot] = valid[slot] = 0;
+    for (int n = 0; n < 14; ++n)
+    {
+      neighbours[slot * 14 + n] = -1;
+    }
+  }
+  placed[word] |= brick_bits[word];
+}
+
+/* One work-item = one brick with a slot from `first` on. Enters it and its neighbours into each
+ * other's lists. */
+__kernel void mcor_brick_join(MCOR_BLOCK_PARAMS, const int first, const int brick_count,
+  __global const int4* bricks, __global const int* slot_of, __global int* neighbours)
+{
+  const int slot = first + get_global_id(0);
+  if (slot >= brick_count)
+  {
+    return;
+  }
+  const int4 brick = bricks[slot];
+  const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  for (int d = 1; d < 8; ++d)
+  {
+    const int x = d & 1, y = d >> 1 & 1, z = d >> 2;
+    const int up = mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, x, y, z);
+    const int down = mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, -x, -y, -z);
+    const int upper = up < 0 ? -1 : slot_of[up], lower = down < 0 ? -1 : slot_of[down];
+    if (upper >= 0)
+    {
+      neighbours[slot * 14 + d - 1] = upper;
+      neighbours[upper * 14 + d + 6] = slot;
+    }
+    if (lower >= 0 && lower < first) /* a new one enters both */
+    {
+      neighbours[slot * 14 + d + 6] = lower;
+      neighbours[lower * 14 + d - 1] = slot;
+    }
+  }
+}
+
 /* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,
  * if it has one. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,

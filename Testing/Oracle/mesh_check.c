@@ -94,9 +94,8 @@ static void mesh_measure_triangle(
   const double area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   report->area += area;
   report->volume += (corner[0][0] * n[0] + corner[0][1] * n[1] + corner[0][2] * n[2]) / 6.0;
-  /* Above rounding: in double precision triangles may be 1e-9 edges wide, and trimming cuts such
-   * slivers near their tips, too. */
-  if (!(area > 1e-14 * longest))
+  report->slimmest = t == 0 ? area / longest : fmin(report->slimmest, area / longest);
+  if (!(area > 1e-12 * longest))
   {
     mesh_add_fault(report, MESH_ZERO_AREA, "triangle %" PRId64 " (%d, %d, %d)", t, (int)triangle[0],
       (int)triangle[1], (int)triangle[2]);

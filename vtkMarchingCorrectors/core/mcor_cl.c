@@ -410,10 +410,10 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
 
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes)
 {
-  return mcor_fill_end(context, buffer, byte, 0, bytes);
+  return mcor_fill_range(context, buffer, byte, 0, bytes);
 }
 
-mcor_status mcor_fill_end(
+mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last)
 {
   MCOR_TRY(mcor_reserve(context, buffer, last));

@@ -110,7 +110,7 @@ mcor_status mcor_map(
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
 /* The same for bytes [first, last). */
-mcor_status mcor_fill_end(
+mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
 /* Makes room for `bytes`, keeping the first `old`. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);

@@ -61,37 +61,46 @@ static void mcor_release_scratch(mcor_context* context)
   mcor_release(context, &context->sort_histogram);
 }
 
+static void mcor_release_particles(mcor_context* context)
+{
+  mcor_grid* g = &context->grid;
+  mcor_buffer* const buffers[] = { &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py, &g->pz,
+    &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+}
+
 void mcor_release_memory(mcor_context* context)
 {
   if (!context)
   {
     return;
   }
-  mcor_grid* g = &context->grid;
   mcor_bricks* b = &context->bricks;
   mcor_mesh* m = &context->mesh;
-  mcor_buffer* const buffers[] = { &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px,
-    &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides,
-    &b->block_keys, &b->block_buckets, &b->block_states, &b->quiet, &b->states, &b->bits, &b->base,
-    &b->neighbours, &b->placed, &b->slot_of, &b->need, &b->fresh, &m->used, &m->edges,
-    &m->vertex_base, &m->triangle_base, &m->node, &m->ends, &m->offset, &m->linear,
-    &m->field_value, &m->gradient, &m->vertex_weight, &m->means, &m->flag, &m->evaluations,
-    &m->boundary, &m->triangles, &m->trimmed, &m->remaining, &m->cuts, &m->cut_keys,
-    &m->cut_distinct, &m->cut_index, &m->scanned, &m->decisions, &m->sample_base, &m->sample_node,
-    &m->sample_offset, &m->sample_side, &context->scan_sums, &context->attributes.sorted,
-    &context->groups };
+  mcor_buffer* const buffers[] = { &context->grid.level_buffer, &b->block_keys, &b->block_buckets,
+    &b->block_states, &b->quiet, &b->states, &b->bits, &b->base, &b->neighbours, &b->placed,
+    &b->slot_of, &b->need, &b->fresh, &m->used, &m->edges, &m->vertex_base, &m->triangle_base,
+    &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight,
+    &m->means, &m->flag, &m->evaluations, &m->boundary, &m->triangles, &m->trimmed, &m->remaining,
+    &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index, &m->scanned, &m->decisions,
+    &m->sample_base, &m->sample_node, &m->sample_offset, &m->sample_side, &context->scan_sums,
+    &context->attributes.sorted, &context->groups };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);
   }
   mcor_release_scratch(context);
+  mcor_release_particles(context);
   mcor_release_bricks(context, &b->now);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);
   context->attributes.varying = NULL;
   context->attributes.varying_count = 0;
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
 }
 
 void mcor_free_context(mcor_context* context)
@@ -217,18 +226,6 @@ static void mcor_release_nodes(mcor_context* context)
   mcor_release(context, &context->bricks.now.value);
   mcor_release(context, &context->bricks.now.weight);
   context->nodes_valid = false;
-}
-
-static void mcor_release_particles(mcor_context* context)
-{
-  mcor_grid* g = &context->grid;
-  mcor_buffer* const buffers[] = { &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py, &g->pz,
-    &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides };
-  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
 }
 
 static mcor_status mcor_extract_iso(

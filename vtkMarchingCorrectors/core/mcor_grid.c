@@ -64,7 +64,7 @@ static mcor_status mcor_reserve_padded(
   mcor_context* context, mcor_buffer* buffer, int count, size_t size)
 {
   const size_t end = (size_t)count * size;
-  return mcor_fill_end(context, buffer, 0, end, end + MCOR_PADDING * size);
+  return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
 static mcor_status mcor_reserve_particles(mcor_context* context, int count)

@@ -187,7 +187,7 @@ static void check_index(mcor_context* context, int kind, int count)
   CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
   CORE_OK(context, mcor_index_keys(context, &buffer, count, kinds[kind].limit, &buckets, &shift));
   const uint64_t bucket_count = (kinds[kind].limit >> shift) + 2;
-  CORE_CHECK(bucket_count <= 4 * (uint64_t)count + 65536 + 2, "%s, size %d: %llu buckets",
+  CORE_CHECK(bucket_count <= 4 * (uint64_t)count + (1 << 20) + 2, "%s, size %d: %llu buckets",
     kinds[kind].name, count, (unsigned long long)bucket_count);
   int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
   int expected = 0;

@@ -323,6 +323,19 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer)
   buffer->size = 0;
 }
 
+/* A CPU's buffers are the host's memory. */
+static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* buffer)
+{
+  void* memory;
+  if (!context->cl.is_cpu || buffer->size < MCOR_LARGE_ARRAY)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_map(context, buffer, buffer->size, true, &memory));
+  mcor_use_large_pages(memory, buffer->size);
+  return mcor_unmap(context, buffer, &memory);
+}
+
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes)
 {
   mcor_cl* cl = &context->cl;
@@ -351,7 +364,7 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   buffer->size = size;
   cl->bytes += (int64_t)size;
   cl->bytes_peak = cl->bytes > cl->bytes_peak ? cl->bytes : cl->bytes_peak;
-  return MCOR_OK;
+  return mcor_enlarge_pages(context, buffer);
 }
 
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes)

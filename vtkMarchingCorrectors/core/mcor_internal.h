@@ -176,6 +176,10 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
   ;
 double mcor_seconds(void);
 
+/* mcor_pages.c. Before an array of the host, or of a device that shares its memory, is touched. */
+#define MCOR_LARGE_ARRAY ((size_t)4 << 20)
+void mcor_use_large_pages(void* memory, size_t bytes);
+
 /* Element i of an array of the device's real type. */
 static inline double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
 {

@@ -100,9 +100,11 @@ static mcor_status mcor_unmap_vertices(mcor_context* context, mcor_download* d)
 static mcor_status mcor_grow(
   mcor_context* context, void** array, int64_t old, int64_t count, size_t width)
 {
-  void* grown = realloc(*array, (size_t)(old + count) * width + 1);
+  const size_t bytes = (size_t)(old + count) * width + 1;
+  void* grown = realloc(*array, bytes);
   MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for a surface of %lld points could not be allocated.", (long long)(old + count));
+  mcor_use_large_pages(grown, bytes);
   *array = grown;
   return MCOR_OK;
 }

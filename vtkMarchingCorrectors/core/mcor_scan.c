@@ -107,12 +107,12 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Index into sorted keys: bucket b begins at the first key >= b << shift. About 4 buckets per key
- * at most, so that memory stays linear however sparse the keys are. */
+/* Index into sorted keys: bucket b begins at the first key >= b << shift. 4 buckets per key and a
+ * million more at most, so that memory stays linear however sparse the keys are. */
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift)
 {
-  const uint64_t most = 4 * (uint64_t)count + 65536;
+  const uint64_t most = 4 * (uint64_t)count + (1 << 20);
   *shift = 0;
   while (key_limit >> *shift > most)
   {

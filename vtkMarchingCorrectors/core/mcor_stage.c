@@ -285,6 +285,7 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
   context->source = malloc((size_t)input->count * sizeof(int32_t));
   MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for %lld particles could not be allocated.", (long long)input->count);
+  mcor_use_large_pages(context->source, (size_t)input->count * sizeof(int32_t));
   MCOR_TRY(mcor_map_staging(context, input->count, staging));
   mcor_stage_job job = { .context = context, .input = input, .staging = staging };
   const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_count_slice, &job);

@@ -56,9 +56,7 @@ static void mcor_release_scratch(mcor_context* context)
   {
     mcor_release(context, &context->scratch[i]);
   }
-  mcor_release(context, &context->sort_keys);
-  mcor_release(context, &context->sort_values);
-  mcor_release(context, &context->sort_histogram);
+  mcor_release_sort(context);
 }
 
 static void mcor_release_particles(mcor_context* context)

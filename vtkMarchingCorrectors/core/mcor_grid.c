@@ -102,9 +102,14 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(level), MCOR_BUFFER(xyz),
     MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
+  mcor_release_sort(context);
+  MCOR_TRY(mcor_reserve_particles(context, count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size),
-    MCOR_BUFFER(solid), MCOR_BUFFER(&grid->order)));
+    MCOR_BUFFER(solid), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py),
+    MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h),
+    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+    MCOR_BUFFER(&grid->trim_weight)));
   MCOR_TRY(mcor_index_keys(
     context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
@@ -113,13 +118,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     mcor_release(context, &grid->cell_keys);
     MCOR_TRY(mcor_reserve(context, &grid->cell_keys, sizeof(cl_ulong)));
   }
-  MCOR_TRY(mcor_reserve_particles(context, count));
-  return MCOR_LAUNCH(context, "mcor_grid_gather", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size),
-    MCOR_BUFFER(solid), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
-    MCOR_BUFFER(&grid->inv_h),
-    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-    MCOR_BUFFER(&grid->trim_weight));
+  return MCOR_OK;
 }
 
 /* V = m / sum_k m_k W(x_j - x_k, h_j), own and unscaled h; m = 1 where no mass is known. */

@@ -212,6 +212,7 @@ mcor_status mcor_measure_input(
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total);
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit);
+void mcor_release_sort(mcor_context* context);
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count);
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,

@@ -84,6 +84,14 @@ mcor_status mcor_sort(
   return MCOR_OK;
 }
 
+/* What sorting needs is as large as the particles. */
+void mcor_release_sort(mcor_context* context)
+{
+  mcor_release(context, &context->sort_keys);
+  mcor_release(context, &context->sort_values);
+  mcor_release(context, &context->sort_histogram);
+}
+
 /* Distinct keys in order; index_of[i] is the index of key i among them. Sorts `keys`. */
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)

@@ -16,7 +16,7 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   ulong cell[3];
   for (int a = 0; a < 3; ++a)
   {
-    cell[a] = clamp(mcor_cell_of(xyz[3 * i + a], level.inv_cell), 0, level.cells[a] - 1);
+    cell[a] = clamp(mcor_cell_of(xyz[3L * i + a], level.inv_cell), 0, level.cells[a] - 1);
   }
   keys[i] = level.base + (cell[2] * level.cells[1] + cell[1]) * level.cells[0] + cell[0];
 }
@@ -28,9 +28,9 @@ bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
 {
   for (int a = 0; a < 3; ++a)
   {
-    if (xyz[3 * i + a] != xyz[3 * j + a])
+    if (xyz[3L * i + a] != xyz[3L * j + a])
     {
-      return xyz[3 * i + a] < xyz[3 * j + a];
+      return xyz[3L * i + a] < xyz[3L * j + a];
     }
   }
   if (inv_h[i] != inv_h[j])
@@ -50,7 +50,7 @@ void mcor_grid_insert(__global const fix* xyz, __global const real* inv_h,
   for (int i = 0; i < count; ++i)
   {
     const int item = order[i];
-    const fix item_x = xyz[3 * item];
+    const fix item_x = xyz[3L * item];
     int to = i;
     for (; to > 0 && (item_x < x[to - 1] || (item_x == x[to - 1] &&
       mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1]))); --to)
@@ -90,11 +90,35 @@ void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
   order[root] = item;
 }
 
-/* One work-item = one particle, the first of its cell. Reads the particles. Writes their order in
- * the cell, which then no longer depends on the order of the input. */
+/* Sorts the particles of a cell, so that their order no longer depends on that of the input. */
+void mcor_grid_sort_cell(__global const fix* xyz, __global const real* inv_h,
+  __global const real* volume, __global const uchar* solid, __global int* order, int count)
+{
+  if (count <= MCOR_INSERTION_LIMIT)
+  {
+    mcor_grid_insert(xyz, inv_h, volume, solid, order, count);
+    return;
+  }
+  for (int i = count / 2 - 1; i >= 0; --i)
+  {
+    mcor_grid_sift(xyz, inv_h, volume, solid, order, i, count);
+  }
+  for (int last = count - 1; last > 0; --last)
+  {
+    const int item = order[last];
+    order[last] = order[0];
+    order[0] = item;
+    mcor_grid_sift(xyz, inv_h, volume, solid, order, 0, last);
+  }
+}
+
+/* One work-item = one particle, the first of its cell. Reads the input arrays. Writes the order of
+ * the particles in the cell, and the arrays in that order, as they are at hand. `volume` is 0 where
+ * it is still to be computed. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys,
-  __global const fix* xyz, __global const real* inv_h, __global const real* volume,
-  __global const uchar* solid, __global int* order)
+  __global const fix* xyz, __global const real* inv_h_in, __global const real* volume,
+  __global const uchar* solid, __global int* order, __global fix* px, __global fix* py,
+  __global fix* pz, __global real* inv_h_out, __global real* weight, __global real* trim_weight)
 {
   const int begin = get_global_id(0);
   if (begin >= count || (begin > 0 && keys[begin] == keys[begin - 1]))
@@ -106,49 +130,21 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   {
     ++end;
   }
-  __global int* cell = order + begin;
-  const int size = end - begin;
-  if (size <= MCOR_INSERTION_LIMIT)
+  mcor_grid_sort_cell(xyz, inv_h_in, volume, solid, order + begin, end - begin);
+  for (int i = begin; i < end; ++i)
   {
-    mcor_grid_insert(xyz, inv_h, volume, solid, cell, size);
-    return;
-  }
-  for (int i = size / 2 - 1; i >= 0; --i)
-  {
-    mcor_grid_sift(xyz, inv_h, volume, solid, cell, i, size);
-  }
-  for (int last = size - 1; last > 0; --last)
-  {
-    const int item = cell[last];
-    cell[last] = cell[0];
-    cell[0] = item;
-    mcor_grid_sift(xyz, inv_h, volume, solid, cell, 0, last);
-  }
-}
-
-/* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order.
- * `volume` is 0 where it is still to be computed. */
-__kernel void mcor_grid_gather(const int count, __global const int* order,
-  __global const fix* xyz, __global const real* inv_h_in, __global const real* volume,
-  __global const uchar* solid, __global fix* px, __global fix* py, __global fix* pz,
-  __global real* inv_h_out, __global real* weight, __global real* trim_weight)
-{
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
-  const int j = order[i];
-  px[i] = xyz[3 * j];
-  py[i] = xyz[3 * j + 1];
-  pz[i] = xyz[3 * j + 2];
-  const real inv_h = inv_h_in[j];
-  inv_h_out[i] = inv_h;
-  const real w = volume[j] * (real)MCOR_NORM * inv_h * inv_h * inv_h;
-  trim_weight[i] = w;
+    const int j = order[i];
+    px[i] = xyz[3L * j];
+    py[i] = xyz[3L * j + 1];
+    pz[i] = xyz[3L * j + 2];
+    const real inv_h = inv_h_in[j];
+    inv_h_out[i] = inv_h;
+    const real w = volume[j] * (real)MCOR_NORM * inv_h * inv_h * inv_h;
+    trim_weight[i] = w;
 #if MCOR_SOLIDS
-  weight[i] = solid[j] ? (real)0 : w;
+    weight[i] = solid[j] ? (real)0 : w;
 #endif
+  }
 }
 
 /* One work-item = one sorted particle. Reads an array in input order. Writes it in sorted order. */

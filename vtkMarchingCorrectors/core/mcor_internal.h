@@ -230,7 +230,6 @@ mcor_status mcor_keep_bricks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);
-mcor_status mcor_mark_pair_cells(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
 mcor_status mcor_append_bricks(mcor_context* context);

@@ -7,35 +7,28 @@
 
 #define MCOR_PAIR_GROUPS 8 /* as in mcor_pair.cl */
 
-static mcor_status mcor_mark(mcor_context* context, double iso, int mark_cells)
-{
-  mcor_bricks* bricks = &context->bricks;
-  const int lanes = context->cl.lanes, groups = (context->grid.count + lanes - 1) / lanes;
-  const int items = (groups + MCOR_PAIR_GROUPS - 1) / MCOR_PAIR_GROUPS;
-  mcor_buffer* has_pairs = &context->scratch[3]; /* of groups, from one launch to the next */
-  MCOR_TRY(mcor_reserve(context, has_pairs, (size_t)groups));
-  return MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_BRICK_ARGS(context), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(context->options->h_scale), MCOR_INT(mark_cells), MCOR_BUFFER(has_pairs),
-    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells));
-}
-
-/* The bricks in which cells will be marked. iso: relative to A0. */
+/* Places the bricks that have nodes of cells between pairs, and marks these cells. iso: relative to
+ * A0. */
 mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_reserve(context, &bricks->base, sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &bricks->now.cells, sizeof(cl_ulong)));
-  return mcor_mark(context, iso, 0);
-}
-
-mcor_status mcor_mark_pair_cells(mcor_context* context, double iso)
-{
-  mcor_bricks* bricks = &context->bricks;
-  const size_t bytes = (size_t)bricks->now.count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_fill(context, &bricks->now.cells, 0, bytes));
-  MCOR_TRY(mcor_fill(context, &bricks->now.examined, 0, bytes));
-  return mcor_mark(context, iso, 1);
+  const int work = context->cl.lanes * MCOR_PAIR_GROUPS, items = (context->grid.count + work - 1) / work;
+  const size_t marks = (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
+  mcor_buffer* marked = &context->scratch[3];
+  MCOR_TRY(mcor_fill(context, marked, 0, marks * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
+    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(marked)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_ask", MCOR_LIGHT, marks, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(marked), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_place_bricks(context));
+  MCOR_TRY(mcor_fill(
+    context, &bricks->now.examined, 0, (size_t)bricks->now.count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_take", MCOR_LIGHT, bricks->now.count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(marked), MCOR_BUFFER(&bricks->now.cells)));
+  mcor_release(context, marked);
+  return MCOR_OK;
 }
 
 /* One round of growth; *grown is false when no cell was added. */

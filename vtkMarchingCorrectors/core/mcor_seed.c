@@ -77,9 +77,7 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
   MCOR_TRY(mcor_make_blocks(context, iso));
   if (mcor_uses_pairs(context))
   {
-    MCOR_TRY(mcor_mark_pairs(context, iso));
-    MCOR_TRY(mcor_place_bricks(context));
-    return mcor_mark_pair_cells(context, iso);
+    return mcor_mark_pairs(context, iso);
   }
   MCOR_TRY(mcor_place_complete(context, iso));
   return mcor_fill(

@@ -5,33 +5,14 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
-/* Asks for the bricks that have nodes of the cells in a box. */
-void mcor_pair_ask_bricks(
-  MCOR_BLOCK_PARAMS, const int* low, const int* high, __global uint* asked)
+/* Cells are marked before their bricks have slots: `cells` has 64 bits, in two words, for each brick
+ * of each block. */
+void mcor_pair_mark_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* cells)
 {
-  for (int z = low[2] >> 2; z <= (high[2] + 1) >> 2; ++z)
+  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
+  if (m >= 0)
   {
-    for (int y = low[1] >> 2; y <= (high[1] + 1) >> 2; ++y)
-    {
-      for (int x = low[0] >> 2; x <= (high[0] + 1) >> 2; ++x)
-      {
-        const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z);
-        if (m >= 0)
-        {
-          mcor_ask_brick(asked, m);
-        }
-      }
-    }
-  }
-}
-
-void mcor_pair_mark_cell(MCOR_BRICK_PARAMS, int x, int y, int z, __global uint* cells)
-{
-  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, x >> 2, y >> 2, z >> 2);
-  if (slot >= 0)
-  {
-    atomic_or(cells + 2 * slot + (z >> 1 & 1),
-      1u << ((x & 3) | (y & 3) << 2 | (z & 1) << 4));
+    atomic_or(cells + 2 * m + (z >> 1 & 1), 1u << ((x & 3) | (y & 3) << 2 | (z & 1) << 4));
   }
 }
 
@@ -39,7 +20,7 @@ void mcor_pair_mark_cell(MCOR_BRICK_PARAMS, int x, int y, int z, __global uint* 
  * line passes an edge or a corner of a cell to within rounding, the cells on both sides are
  * marked. */
 void mcor_pair_mark_line(
-  MCOR_BRICK_PARAMS, const real* p, const real* q, int* c, const int* end, __global uint* cells)
+  MCOR_BLOCK_PARAMS, const real* p, const real* q, int* c, const int* end, __global uint* cells)
 {
   real next[3], gap[3];
   int step[3], steps = 0;
@@ -51,7 +32,7 @@ void mcor_pair_mark_line(
     next[a] = (d < 0 ? p[a] : 1 - p[a]) * gap[a];
     steps += abs(end[a] - c[a]);
   }
-  mcor_pair_mark_cell(MCOR_BRICK_ARGS, c[0], c[1], c[2], cells);
+  mcor_pair_mark_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
   for (; steps > 0; --steps)
   {
     int axis = next[1] < next[0] ? 1 : 0;
@@ -60,13 +41,13 @@ void mcor_pair_mark_line(
     {
       if (a != axis && next[a] - next[axis] < (real)1e-5f)
       {
-        mcor_pair_mark_cell(MCOR_BRICK_ARGS, c[0] + (a == 0 ? step[0] : 0),
+        mcor_pair_mark_cell(MCOR_BLOCK_ARGS, c[0] + (a == 0 ? step[0] : 0),
           c[1] + (a == 1 ? step[1] : 0), c[2] + (a == 2 ? step[2] : 0), cells);
       }
     }
     c[axis] += step[axis];
     next[axis] += gap[axis];
-    mcor_pair_mark_cell(MCOR_BRICK_ARGS, c[0], c[1], c[2], cells);
+    mcor_pair_mark_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
   }
 }
 
@@ -102,46 +83,29 @@ int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_ti
   return count;
 }
 
-/* Marks for particle j and the particles of the tile that pair with it: the cells on the lines, or
- * the bricks of the box around these. Returns whether there are any. */
-bool mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BRICK_PARAMS, const mcor_query* query,
-  const mcor_tile* tile, int j, real iso, real h_scale, int mark_cells,
-  __global uint* asked, __global uint* cells)
+/* Marks the cells between particle j and the particles of the tile that pair with it. */
+void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mcor_query* query,
+  const mcor_tile* tile, int j, real iso, real h_scale, __global uint* cells)
 {
   int list[MCOR_TILE + 16];
   const int count = mcor_pair_list(grid, query, tile, j, iso, h_scale, list);
   const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
-  int a[3], low[3], high[3];
-  for (int c = 0; c < 3; ++c)
-  {
-    a[c] = low[c] = high[c] = (int)(own[c] >> grid->fix_bits);
-  }
   for (int i = 0; i < count; ++i)
   {
     const int k = tile->list[list[i]];
     const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
     real p[3], q[3];
-    int b[3], cell[3];
+    int cell[3], end[3];
     for (int c = 0; c < 3; ++c)
     {
-      /* Relative to cell a, so that single precision suffices. */
-      p[c] = (real)(own[c] - ((fix)a[c] << grid->fix_bits)) * grid->unit;
+      /* Relative to the first cell, so that single precision suffices. */
+      cell[c] = (int)(own[c] >> grid->fix_bits);
+      end[c] = (int)(other[c] >> grid->fix_bits);
+      p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
       q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
-      b[c] = (int)(other[c] >> grid->fix_bits);
-      cell[c] = a[c];
-      low[c] = min(low[c], b[c]);
-      high[c] = max(high[c], b[c]);
     }
-    if (mark_cells)
-    {
-      mcor_pair_mark_line(MCOR_BRICK_ARGS, p, q, cell, b, cells);
-    }
+    mcor_pair_mark_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
   }
-  if (count > 0 && !mark_cells)
-  {
-    mcor_pair_ask_bricks(MCOR_BLOCK_ARGS, low, high, asked);
-  }
-  return count > 0;
 }
 
 /* Fits the query to particles [begin, end) and what may pair with them. Returns whether there are
@@ -170,16 +134,14 @@ real mcor_pair_finest(const mcor_tile* tile)
   return finest;
 }
 
-/* Marks for particles [begin, end), of which there are no more than MCOR_LANES. */
-bool mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BRICK_PARAMS, int begin, int end,
-  __global const uchar* sides, real iso, real h_scale, int mark_cells, __global uint* asked,
-  __global uint* cells)
+/* Marks cells for particles [begin, end), of which there are no more than MCOR_LANES. */
+void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, int begin, int end,
+  __global const uchar* sides, real iso, real h_scale, __global uint* cells)
 {
-  bool some = false;
   mcor_query query;
   if (!mcor_pair_query(grid, begin, end, h_scale, sides, &query))
   {
-    return false;
+    return;
   }
   mcor_tile tile;
   mcor_tile_init(&tile);
@@ -193,12 +155,11 @@ bool mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BRICK_PARAMS, int begi
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
-        some |= mcor_pair_mark_particle(
-          grid, MCOR_BRICK_ARGS, &query, &tile, j, iso, h_scale, mark_cells, asked, cells);
+        mcor_pair_mark_particle(
+          grid, MCOR_BLOCK_ARGS, &query, &tile, j, iso, h_scale, cells);
       }
     }
   }
-  return some;
 }
 
 /* Groups of MCOR_LANES particles that one work-item looks at together first: most particles are far
@@ -206,13 +167,12 @@ bool mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BRICK_PARAMS, int begi
 #define MCOR_PAIR_GROUPS 8
 
 /* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles. Reads the particles
- * within the smoothing length of each. mark_cells 0: asks for bricks for pairs that straddle the
- * iso value, and writes of each group whether there are any; 1: marks cells. */
-__kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const uchar* sides,
-  const real iso, const real h_scale, const int mark_cells, __global uchar* has_pairs,
-  __global uint* asked, __global uint* cells)
+ * within the smoothing length of each. Marks the cells between pairs that straddle the iso
+ * value. */
+__kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* sides,
+  const real iso, const real h_scale, __global uint* cells)
 {
-  const int first = get_global_id(0) * MCOR_PAIR_GROUPS, begin = first * MCOR_LANES;
+  const int begin = get_global_id(0) * MCOR_PAIR_GROUPS * MCOR_LANES;
   if (begin >= particle_count)
   {
     return;
@@ -220,16 +180,57 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, __global const
   const mcor_grid grid = MCOR_GRID;
   const int end = min(begin + MCOR_PAIR_GROUPS * MCOR_LANES, particle_count);
   mcor_query query;
-  const bool some =
-    mark_cells || mcor_pair_query(&grid, begin, end, h_scale, sides, &query);
-  for (int group = first, i = begin; i < end; ++group, i += MCOR_LANES)
+  if (!mcor_pair_query(&grid, begin, end, h_scale, sides, &query))
   {
-    if (!mark_cells || has_pairs[group])
+    return;
+  }
+  for (int i = begin; i < end; i += MCOR_LANES)
+  {
+    mcor_pair_mark_particles(
+      &grid, MCOR_BLOCK_ARGS, i, min(i + MCOR_LANES, end), sides, iso, h_scale, cells);
+  }
+}
+
+/* Upper neighbours of a brick (bits x, y, z) that have nodes of these of its cells; 0 is itself. */
+bool mcor_pair_reaches(ulong cells, int d)
+{
+  const ulong beside = (d & 1 ? MCOR_LOW_X << 3 : ~0UL) & (d & 2 ? MCOR_LOW_Y << 12 : ~0UL) &
+    (d & 4 ? MCOR_LOW_Z << 48 : ~0UL);
+  return (cells & beside) != 0;
+}
+
+/* One work-item = one brick of a block. Reads its marked cells. Asks for the bricks that have their
+ * nodes. */
+__kernel void mcor_pair_ask(
+  MCOR_BLOCK_PARAMS, __global const ulong* cells, __global uint* brick_bits)
+{
+  const int own = get_global_id(0);
+  if (own >= block_count * MCOR_BLOCK_BRICKS || cells[own] == 0)
+  {
+    return;
+  }
+  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, own);
+  for (int d = 0; d < 8; ++d)
+  {
+    const int m = mcor_pair_reaches(cells[own], d)
+      ? mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
+      : -1;
+    if (m >= 0)
     {
-      has_pairs[group] = some &&
-        mcor_pair_mark_particles(&grid, MCOR_BRICK_ARGS, i, min(i + MCOR_LANES, end), sides, iso,
-          h_scale, mark_cells, asked, cells);
+      mcor_ask_brick(brick_bits, m);
     }
+  }
+}
+
+/* One work-item = one brick that has a slot. Writes its marked cells there. */
+__kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int brick_count,
+  __global const int4* bricks, __global const ulong* marked, __global ulong* cells)
+{
+  const int slot = get_global_id(0);
+  if (slot < brick_count)
+  {
+    const int4 brick = bricks[slot];
+    cells[slot] = marked[mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
   }
 }
 
@@ -269,10 +270,7 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   for (int d = 0; d < 8; ++d)
   {
-    /* Upper neighbours have nodes of the cells on the side towards them. */
-    const ulong beside = (d & 1 ? MCOR_LOW_X << 3 : ~0UL) & (d & 2 ? MCOR_LOW_Y << 12 : ~0UL) &
-      (d & 4 ? MCOR_LOW_Z << 48 : ~0UL);
-    const int m = pushed & beside ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
+    const int m = mcor_pair_reaches(pushed, d) ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
                                       brick.y + (d >> 1 & 1), brick.z + (d >> 2))
                                   : -1;
     if (m >= 0 && mcor_ask_brick(asked, m))

@@ -20,6 +20,7 @@ class Program:
         self.device = device
         self.runs = runs
         self.folder = folder
+        self.surface = folder / "surface.vtp"  # of the last run
         self.known = {}
 
     def run(self, path, options, runs=None):
@@ -51,7 +52,7 @@ class Program:
         device = ["--device", self.device] if self.device else []
         begin = time.perf_counter()
         process = subprocess.run(
-            [self.path, path, self.folder / "surface.vtp", *map(str, options), *device, "--quiet",
+            [self.path, path, self.surface, *map(str, options), *device, "--quiet",
              "--repeat", str(repeat), "--stats", report],
             stderr=subprocess.PIPE, text=True, env={**os.environ, **(environment or {})})
         seconds = time.perf_counter() - begin

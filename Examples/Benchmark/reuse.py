@@ -46,12 +46,28 @@ def exponent(sizes, values):
     return float(numpy.polyfit(numpy.log(sizes), numpy.log(values), 1)[0])
 
 
+def array_bytes(path):
+    """Points, point arrays and triangles of a file, in memory."""
+    data = sets.read(path)
+    points = data.GetPointData()
+    parts = [data.GetPoints().GetData(), data.GetPolys(),
+             *(points.GetAbstractArray(i) for i in range(points.GetNumberOfArrays()))]
+    return 1024 * sum(part.GetActualMemorySize() for part in parts)
+
+
+def memory_limit(benchmark, path):
+    """3 x input + 2 x output, in bytes."""
+    benchmark.program.start(path, ISOSURFACE, 1)
+    return 3 * array_bytes(path) + 2 * array_bytes(benchmark.program.surface)
+
+
 def growth(benchmark):
     out = benchmark.report
     out.text("### Growth with the number of particles")
     out.text()
     out.text("The tank, Swirl = 0. Device memory without a surface is that of a run whose iso "
-             "value no particle has; peak memory is that of the process.")
+             "value no particle has. Peak memory is that of the process, libraries and all "
+             "(some 130 MiB); input are the particles' arrays, output is the surface.")
     out.text()
     rows, results = [], []
     for count in benchmark.sizes:
@@ -65,14 +81,16 @@ def growth(benchmark):
                "rest_seconds": sum_of(full, *PHASES_OF_SURFACE),
                "particle_bytes": empty["statistics"]["device_bytes_peak"],
                "surface_bytes": s["device_bytes_peak"] - empty["statistics"]["device_bytes_peak"],
-               "bytes": full["bytes"]}
+               "bytes": full["bytes"], "limit_bytes": memory_limit(benchmark, path)}
         results.append(row)
         rows.append([f"{row['particles']:,}", f"{row['cells']:,}",
                      report.seconds(row["input_seconds"]), report.seconds(row["grid_seconds"]),
                      report.seconds(row["rest_seconds"]), report.mebibytes(row["particle_bytes"]),
-                     report.mebibytes(row["surface_bytes"]), report.mebibytes(row["bytes"])])
+                     report.mebibytes(row["surface_bytes"]), report.mebibytes(row["bytes"]),
+                     report.mebibytes(row["limit_bytes"])])
     header = ["particles", "cells used", "input", "search grid", "other phases",
-              "device memory, no surface", "more with the surface", "peak memory"]
+              "device memory, no surface", "more with the surface", "peak memory",
+              "3 x input + 2 x output"]
     exponents = {}
     if len(results) > 1:
         fits = (("input_seconds", "particles"), ("grid_seconds", "particles"),
@@ -83,7 +101,7 @@ def growth(benchmark):
             exponents[f"{value} in {size}"] = slope
         rows.append(["exponent", ""] + [
             "-" if slope is None else f"{slope:.2f} in {name.split()[-1]}"
-            for name, slope in exponents.items()])
+            for name, slope in exponents.items()] + [""])
     out.table(header, rows)
     return {"sizes": results, "exponents": exponents}
 

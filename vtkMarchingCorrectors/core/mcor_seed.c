@@ -6,6 +6,7 @@
 #include "mcor_internal.h"
 
 #define MCOR_CHUNK_PARTICLES 16 /* MCOR_CHUNK of mcor_seed.cl */
+#define MCOR_BLOCK_REGIONS 64   /* as there */
 
 /* Asks for bricks beside those with `fresh` nodes, which these show to be needed. */
 static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
@@ -29,28 +30,51 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
+/* Places the bricks that the regions leave uncertain; lists these regions. */
+static mcor_status mcor_test_regions(
+  mcor_context* context, double iso, mcor_buffer* list, int* listed)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int regions = bricks->block_count * MCOR_BLOCK_REGIONS;
+  mcor_buffer* list_count = &context->scratch[1];
+  MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
+  MCOR_TRY(mcor_reserve(context, list, (size_t)regions * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, list_count, 0, sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
+    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->states),
+    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
+  cl_int count;
+  MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
+  *listed = count;
+  return mcor_place_bricks(context);
+}
+
 /* Places every brick whose nodes must be evaluated, and evaluates most of them. */
 static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int count = bricks->block_count * MCOR_BLOCK_BRICKS;
   const double node_threshold = context->options->node_threshold;
-  MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, count / 8,
-    MCOR_GRID_ARGS(context), MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
-    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
-  MCOR_TRY(mcor_place_bricks(context));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, bricks->now.count,
-    MCOR_GRID_ARGS(context), MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count),
-    MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(node_threshold), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
+  mcor_buffer* list = &context->scratch[3];
+  int listed;
+  MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_signs", MCOR_LIGHT, bricks->now.count,
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso), MCOR_REAL(node_threshold),
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid)));
+  /* One item per region where one gathers for many lanes, else one per brick. */
+  const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
+    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list),
+    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso), MCOR_REAL(node_threshold),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight),
-    MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&bricks->now.valid)));
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid)));
   MCOR_TRY(mcor_keep_bricks(context));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, count / 8, MCOR_BLOCK_ARGS(context),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
+    bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_ask_beside(context, &bricks->now.known));
   return mcor_place_bricks(context);

@@ -30,10 +30,10 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y) * size;
-  mcor_query query;
+  const int4 brick = mcor_block_of_key(keys[i], cubes_x, cubes_y) * (size / MCOR_BRICK);
+  mcor_query query = mcor_seed_query(&grid, brick, size - 1);
   mcor_tile tile;
-  mcor_seed_box(&query, cube.x, cube.y, cube.z, size - 1, fix_bits);
+  mcor_tile_init(&tile);
   states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, sides, iso, node_threshold);
 }
 

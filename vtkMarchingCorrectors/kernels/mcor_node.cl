@@ -59,7 +59,7 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, real share, in
   return count;
 }
 
-/* Nodes of a group from its query's low corner, and weights there in two steps, see
+/* Nodes of a group from its query's origin, and weights there in two steps, see
  * mcor_distance. */
 #if MCOR_TENSOR && MCOR_LANES > 1
 /* A group has few different x, y and z, so that one evaluation of w serves them all: lanes 0 and 1
@@ -121,7 +121,7 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 #define mcor_group_weight mcor_weight
 #endif
 
-/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's low corner.
+/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's origin.
  * term: their weights times values. */
 void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real y, real z,
   real share, mcor_node_sums* sums)
@@ -163,6 +163,16 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
 #endif
 }
 
+/* Completes the query for nodes of a brick. All bricks of a region count positions from its first
+ * node, so that a node's value is the same whichever of its tiles is at hand. */
+void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
+{
+  const int4 first = brick / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS * MCOR_BRICK;
+  const fix origin[3] = { (fix)first.x << grid->fix_bits, (fix)first.y << grid->fix_bits,
+    (fix)first.z << grid->fix_bits };
+  mcor_query_place(grid, query, origin);
+}
+
 /* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on. share: of
  * each particle's support. */
 mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float share)
@@ -177,6 +187,7 @@ mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float s
     query.low[a] = (fix)corner[a] << grid->fix_bits;
     query.high[a] = query.low[a] + extent;
   }
+  mcor_query_in_region(grid, brick, &query);
   return query;
 }
 
@@ -186,6 +197,11 @@ void mcor_node_sum(
   const mcor_grid* grid, mcor_query* query, mcor_tile* tile, ulong wanted, mcor_node_sums* sums)
 {
   const real share = -query->radius;
+  real first[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    first[a] = (real)(query->low[a] - query->origin[a]) * grid->unit;
+  }
   for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
   {
     sums->s[g] = sums->w[g] = 0;
@@ -207,7 +223,8 @@ void mcor_node_sum(
       const int4 node = mcor_group_node(g);
       if (wanted >> (node.x + 4 * node.y + 16 * node.z) & 1)
       {
-        mcor_node_add(tile, term, g, (real)node.x, (real)node.y, (real)node.z, share, sums);
+        mcor_node_add(tile, term, g, first[0] + (real)node.x, first[1] + (real)node.y,
+          first[2] + (real)node.z, share, sums);
       }
     }
   }

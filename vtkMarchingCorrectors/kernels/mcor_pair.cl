@@ -61,9 +61,9 @@ void mcor_pair_mark_line(
 int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int j,
   real iso, real h_scale, int* list)
 {
-  const real x = (real)(grid->px[j] - query->low[0]) * grid->unit;
-  const real y = (real)(grid->py[j] - query->low[1]) * grid->unit;
-  const real z = (real)(grid->pz[j] - query->low[2]) * grid->unit;
+  const real x = (real)(grid->px[j] - query->origin[0]) * grid->unit;
+  const real y = (real)(grid->py[j] - query->origin[1]) * grid->unit;
+  const real z = (real)(grid->pz[j] - query->origin[2]) * grid->unit;
   const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
   const bool is_above = grid->value[j] >= iso;
   const fixv above = is_above ? (fixv)MCOR_TRUE : (fixv)0;

@@ -25,7 +25,7 @@ typedef struct
   int index[MCOR_LANES]; /* of each lane's point; -1 where a lane repeats another one */
   fixv x, y, z;
   realv ox, oy, oz;
-  /* The box of each part, in cubes from the query's low corner. */
+  /* The box of each part, in cubes from the query's origin. */
   real center[3][MCOR_PARTS], half_size[3][MCOR_PARTS];
 } mcor_points;
 
@@ -181,6 +181,7 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
       points->center[a][part] -= (real)corner * grid->unit;
     }
   }
+  mcor_query_place(grid, query, query->low);
 }
 
 /* Loads the group of points from begin to before end and their offsets, and fits the query to them,
@@ -203,13 +204,13 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   mcor_points_bound(grid, low, high, points, query);
 }
 
-/* The points' nodes from the query's low corner, as particles are in a tile. */
+/* The points' nodes from the query's origin, as particles are in a tile. */
 void mcor_points_relative(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
 {
-  at[0] = MCOR_CONVERT_REALV(points->x - query->low[0]) * grid->unit;
-  at[1] = MCOR_CONVERT_REALV(points->y - query->low[1]) * grid->unit;
-  at[2] = MCOR_CONVERT_REALV(points->z - query->low[2]) * grid->unit;
+  at[0] = MCOR_CONVERT_REALV(points->x - query->origin[0]) * grid->unit;
+  at[1] = MCOR_CONVERT_REALV(points->y - query->origin[1]) * grid->unit;
+  at[2] = MCOR_CONVERT_REALV(points->z - query->origin[2]) * grid->unit;
 }
 
 /* Where the points are from a particle at (x, y, z); `at` is of mcor_points_relative. */

@@ -88,6 +88,9 @@ real mcor_lane_sum(realv v)
 /* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest node they are. Node or cell
  * (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
 #define MCOR_BRICK 4
+
+/* A region is 2 x 2 x 2 bricks. */
+#define MCOR_REGION_BRICKS 2
 #define MCOR_LOW_X 0x1111111111111111UL
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL

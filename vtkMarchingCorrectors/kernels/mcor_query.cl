@@ -80,7 +80,8 @@ int mcor_first_particle(const mcor_grid* grid, ulong key)
 typedef struct
 {
   fix low[3], high[3];
-  real center[3], half_size[3]; /* cubes, relative to low */
+  fix origin[3]; /* in a tile, positions count from here */
+  real center[3], half_size[3]; /* of the box, in cubes from the origin */
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
   float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
   int level, first[3], last[3], y, z;
@@ -148,14 +149,16 @@ bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int level)
   return false;
 }
 
-void mcor_query_begin(const mcor_grid* grid, mcor_query* query)
+/* Completes a query that has its box. */
+void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin[3])
 {
   for (int a = 0; a < 3; ++a)
   {
+    query->origin[a] = origin[a];
     query->half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
-    query->center[a] = query->half_size[a];
+    query->center[a] =
+      (real)(query->low[a] - origin[a]) * grid->unit + query->half_size[a];
   }
-  mcor_query_next_level(grid, query, 0);
 }
 
 /* Square of the distance between the box and a cell along an axis, less what rounding may have
@@ -242,5 +245,6 @@ real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, i
       coarsest = min(coarsest, grid->inv_h[i]);
     }
   }
+  mcor_query_place(grid, query, query->low);
   return coarsest;
 }

@@ -83,7 +83,7 @@ __kernel void mcor_seed_sides(const int particle_count, __global const real* wei
 int mcor_query_sides(const mcor_grid* grid, mcor_query* query, __global const uchar* sides)
 {
   int seen = 0;
-  mcor_query_begin(grid, query);
+  mcor_query_next_level(grid, query, 0);
   while (seen != 3 && (query->begin < query->end || mcor_query_next_row(grid, query)))
   {
     for (int c = query->begin / MCOR_CHUNK; c <= (query->end - 1) / MCOR_CHUNK && seen != 3; ++c)
@@ -95,16 +95,20 @@ int mcor_query_sides(const mcor_grid* grid, mcor_query* query, __global const uc
   return seen;
 }
 
-void mcor_seed_box(mcor_query* query, int x, int y, int z, int size, int fix_bits)
+/* The query for a cube of nodes, `cubes` long, from the first one of a brick on. */
+mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
 {
-  query->radius = -1;
-  query->low[0] = (fix)x << fix_bits;
-  query->low[1] = (fix)y << fix_bits;
-  query->low[2] = (fix)z << fix_bits;
+  mcor_query query;
+  query.radius = -1;
+  query.low[0] = (fix)(brick.x * MCOR_BRICK) << grid->fix_bits;
+  query.low[1] = (fix)(brick.y * MCOR_BRICK) << grid->fix_bits;
+  query.low[2] = (fix)(brick.z * MCOR_BRICK) << grid->fix_bits;
   for (int a = 0; a < 3; ++a)
   {
-    query->high[a] = query->low[a] + ((fix)size << fix_bits);
+    query.high[a] = query.low[a] + ((fix)cubes << grid->fix_bits);
   }
+  mcor_query_in_region(grid, brick, &query);
+  return query;
 }
 
 /* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum),
@@ -208,8 +212,8 @@ int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, re
 /* A coarse cube that more particles reach is divided without a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
-/* State of a cube of nodes, the query's box, whose particles are left in the tile. Of a coarse one,
- * less is asked: it may be taken for certain where a part is void, and for undecided. */
+/* State of a cube of nodes, the query's box, whose particles are left in the tile; it may hold them
+ * before. Of a coarse one, less is asked: it may be taken for certain where a part is void, and for undecided. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   __global const uchar* sides, real iso, real node_threshold)
 {
@@ -225,7 +229,6 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   mcor_bound bound = { 0, 0, 0 };
   bool from_below = false;
   int seen = 0, found = 0;
-  mcor_tile_init(tile);
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
     found += tile->count;
@@ -256,10 +259,19 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
 }
 
-/* Edge of the cubes of nodes of which states are kept besides those of bricks, and their number in
- * a block. */
-#define MCOR_REGION_CUBES 8
+#define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 #define MCOR_BLOCK_REGIONS 64
+
+/* Mark of a region's first brick, and offsets of the marks of all of them. */
+int mcor_region_mark(int region)
+{
+  const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
+  return block * MCOR_BLOCK_BRICKS + 2 * (r & 3) + 16 * (r >> 2 & 3) + 128 * (r >> 4);
+}
+int mcor_region_offset(int b)
+{
+  return (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
+}
 
 /* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
@@ -286,9 +298,8 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
  * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
  * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
- * evaluated. wide: if it is complete, those of a box that holds the brick at (x, y, z). */
-bool mcor_seed_is_inside(
-  const mcor_grid* grid, int4 brick, const mcor_tile* wide, int x, int y, int z, real iso)
+ * evaluated. wide: those of the brick's region, if it is complete. */
+bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wide, real iso)
 {
   const ulong wanted = MCOR_ITEM_NODES == 64 ? ~0UL : 1UL;
   bool inside = true;
@@ -300,7 +311,7 @@ bool mcor_seed_is_inside(
     mcor_tile_init(&tile);
     if (wide->complete)
     {
-      mcor_tile_narrow(wide, &query, grid->unit, x, y, z, &tile);
+      mcor_tile_narrow(wide, &query, &tile);
     }
     else
     {
@@ -325,40 +336,37 @@ bool mcor_seed_is_inside(
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
 
 /* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
- * the states of its bricks as far as the region tells; asks for those that are not certain. */
+ * the states of its bricks as far as the region tells; asks for those that are not certain, and
+ * lists the regions that have such, in any order. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
   __global const uchar* sides, const real iso, const real node_threshold, __global uchar* states,
-  __global uint* brick_bits)
+  __global uint* brick_bits, __global int* list, __global int* list_count)
 {
-  const int region = get_global_id(0);
-  const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
+  const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
   if (block >= block_count)
   {
     return;
   }
-  /* The region's first brick. */
-  const int mark = block * MCOR_BLOCK_BRICKS + 2 * (r & 3) + 16 * (r >> 2 & 3) + 128 * (r >> 4);
+  const int mark = mcor_region_mark(region);
   int state = block_states[block];
   const mcor_grid grid = MCOR_GRID;
   const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
-  mcor_query query;
+  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1);
   mcor_tile tile;
-  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-    MCOR_REGION_CUBES - 1, fix_bits);
+  mcor_tile_init(&tile);
   uint inside = 0; /* bricks */
   if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && state == MCOR_EXAMINE)
   {
     query.radius = -MCOR_INSIDE_SHARE;
-    mcor_tile_init(&tile);
     mcor_tile_next(&grid, &query, &tile, true);
     for (int b = 0; b < 8 && tile.count > 0; ++b)
     {
-      const int x = b & 1, y = b >> 1 & 1, z = b >> 2;
-      inside |= (uint)mcor_seed_is_inside(&grid, brick + (int4)(x, y, z, 0), &tile,
-        x * MCOR_BRICK, y * MCOR_BRICK, z * MCOR_BRICK, iso) << b;
+      const int4 own = brick + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
+      inside |= (uint)mcor_seed_is_inside(&grid, own, &tile, iso) << b;
     }
     query.radius = -1;
+    mcor_tile_init(&tile);
   }
   if (state == MCOR_EXAMINE && inside == 0)
   {
@@ -366,31 +374,38 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   }
   for (int b = 0; b < 8; ++b)
   {
-    const int m = mark + (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
+    const int m = mark + mcor_region_offset(b);
     states[m] = (uchar)(inside >> b & 1 ? MCOR_ABOVE : state);
     if (states[m] == MCOR_EXAMINE)
     {
       mcor_ask_brick(brick_bits, m);
     }
   }
+  if (state == MCOR_EXAMINE && inside != 0xff)
+  {
+    list[atomic_inc(list_count)] = region;
+  }
 }
 
-/* State of a brick whose region is not certain. As its particles are at hand, its nodes are
- * evaluated if they are to be, where a work-item evaluates whole bricks; returns the known ones. */
-ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* sides, real iso,
-  real node_threshold, __global uchar* state, __global real* value, __global real* weight)
+/* State of a brick whose region is not certain; wide: the particles of the region, if it is
+ * complete. As the brick's particles are at hand, its nodes are evaluated if they are to be, where a
+ * work-item evaluates whole bricks; returns the known ones. */
+ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
+  __global const uchar* sides, real iso, real node_threshold, __global uchar* state,
+  __global real* value, __global real* weight)
 {
-  mcor_query query;
   mcor_tile tile;
-  mcor_tile_init(&tile);
-  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64 &&
-    mcor_seed_is_inside(grid, brick, &tile, 0, 0, 0, iso))
+  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64 && mcor_seed_is_inside(grid, brick, wide, iso))
   {
     *state = MCOR_ABOVE;
     return 0;
   }
-  mcor_seed_box(&query, brick.x * MCOR_BRICK, brick.y * MCOR_BRICK, brick.z * MCOR_BRICK,
-    MCOR_BRICK - 1, grid->fix_bits);
+  mcor_query query = mcor_seed_query(grid, brick, MCOR_BRICK - 1);
+  mcor_tile_init(&tile);
+  if (wide->complete)
+  {
+    mcor_tile_narrow(wide, &query, &tile);
+  }
   *state = (uchar)mcor_seed_state(grid, &query, &tile, false, sides, iso, node_threshold);
   if (*state != MCOR_EXAMINE || MCOR_ITEM_NODES != 64)
   {
@@ -402,33 +417,63 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, __global const uchar* s
   return ~0UL;
 }
 
-/* One work-item = one brick whose region is not certain, or that was evaluated for another iso
- * value. Reads the particles that reach it. Writes its state if it was not; which nodes are known
- * by now, and their values and signs. */
-__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const uchar* sides, const real iso,
+/* Bricks of a region that a work-item treats. */
+#define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
+
+/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list. Reads the particles that reach
+ * it. Writes the states of bricks of which nothing is known; which nodes are known by now, and their
+ * values and signs. */
+__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int list_count,
+  __global const int* list, __global const uchar* sides, const real iso,
   const real node_threshold, __global uchar* states, __global ulong* known,
   __global real* node_value, __global real* node_weight, __global ulong* above,
   __global ulong* valid)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
+  const int i = get_global_id(0) / (8 / MCOR_ITEM_BRICKS);
+  if (i >= list_count)
   {
     return;
   }
-  __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
-  if (!known[slot])
+  const mcor_grid grid = MCOR_GRID;
+  const int mark = mcor_region_mark(list[i]);
+  const int4 region = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
+  mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1);
+  mcor_tile wide;
+  mcor_tile_init(&wide);
+  if (MCOR_ITEM_BRICKS > 1)
   {
-    const mcor_grid grid = MCOR_GRID;
-    const int4 brick = bricks[slot];
-    const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-    known[slot] =
-      mcor_seed_brick(&grid, brick, sides, iso, node_threshold, states + m, value, weight);
+    mcor_tile_next(&grid, &query, &wide, true);
   }
-  above[slot] = valid[slot] = 0;
-  if (known[slot])
+  const int first = get_global_id(0) % (8 / MCOR_ITEM_BRICKS) * MCOR_ITEM_BRICKS;
+  for (int b = first; b < first + MCOR_ITEM_BRICKS; ++b)
   {
-    mcor_node_signs(known[slot], value, weight, iso, node_threshold, above + slot, valid + slot);
+    const int m = mark + mcor_region_offset(b);
+    const int slot = mcor_slot_of_mark(brick_bits, brick_base, m);
+    if (slot >= 0 && !known[slot])
+    {
+      const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
+      __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
+      known[slot] =
+        mcor_seed_brick(&grid, brick, &wide, sides, iso, node_threshold, states + m, value, weight);
+      if (known[slot])
+      {
+        mcor_node_signs(
+          known[slot], value, weight, iso, node_threshold, above + slot, valid + slot);
+      }
+    }
+  }
+}
+
+/* One work-item = one brick. Writes the signs of nodes known from another iso value. */
+__kernel void mcor_seed_signs(const int brick_count, __global const ulong* known,
+  __global const real* node_value, __global const real* node_weight, const real iso,
+  const real node_threshold, __global ulong* above, __global ulong* valid)
+{
+  const int slot = get_global_id(0);
+  if (slot < brick_count && known[slot])
+  {
+    mcor_node_signs(known[slot], node_value + slot * 64L, node_weight + slot * 64L, iso,
+      node_threshold, above + slot, valid + slot);
   }
 }
 

@@ -32,8 +32,8 @@ typedef struct
   bool complete;  /* the tile holds everything */
   bool delivered; /* nothing is left for this loop */
   MCOR_ALIGNED int list[MCOR_TILE + 16];
-  /* Position from the query's low corner, in cubes: exact in single precision while the support is
-   * below 8 cubes, so that results do not depend on the box. */
+  /* Position from the query's origin, in cubes: exact in single precision while it is below 16
+   * cubes. */
   MCOR_ALIGNED real x[MCOR_TILE + 16], y[MCOR_TILE + 16], z[MCOR_TILE + 16];
   real inv_h[MCOR_TILE + 16], weight[MCOR_TILE + 16], value[MCOR_TILE + 16];
 #if MCOR_SOLIDS
@@ -166,7 +166,7 @@ fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h, realv share)
 int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
 {
   const real unit = grid->unit;
-  const fix lx = query->low[0], ly = query->low[1], lz = query->low[2];
+  const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
   const realv cx = query->center[0], cy = query->center[1], cz = query->center[2];
   const realv hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
   /* Within their own support, or within the query's radius. */
@@ -176,9 +176,9 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
   int j = query->begin;
   for (; j < query->end && count <= MCOR_TILE - MCOR_LANES; j += MCOR_LANES)
   {
-    const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - lx) * unit;
-    const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - ly) * unit;
-    const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - lz) * unit;
+    const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - ox) * unit;
+    const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - oy) * unit;
+    const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - oz) * unit;
     const realv inv_h = MCOR_LOAD(j, grid->inv_h);
     /* Distance to the box, per axis. */
     const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
@@ -248,36 +248,40 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   }
   if (first)
   {
-    mcor_query_begin(grid, query);
+    mcor_query_next_level(grid, query, 0);
   }
   mcor_tile_fill(grid, query, tile);
   tile->complete = first && tile->delivered;
   return true;
 }
 
-/* Fills a tile's positions and weights from a complete one, whose box holds the query's at
- * (x, y, z). */
-void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, real unit, real x, real y,
-  real z, mcor_tile* tile)
+/* Fills a tile, but for its list, from a complete one of a query with the same origin and a box
+ * that holds this one's. */
+void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
-  const real ex = (real)(query->high[0] - query->low[0]) * unit * (real)0.5;
-  const real ey = (real)(query->high[1] - query->low[1]) * unit * (real)0.5;
-  const real ez = (real)(query->high[2] - query->low[2]) * unit * (real)0.5;
+  const realv cx = query->center[0], cy = query->center[1], cz = query->center[2];
+  const realv hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
   int count = 0;
   for (int i = 0; i < wide->count; i += MCOR_LANES)
   {
-    const realv px = MCOR_LOAD(i, wide->x) - x, py = MCOR_LOAD(i, wide->y) - y,
-                pz = MCOR_LOAD(i, wide->z) - z, inv_h = MCOR_LOAD(i, wide->inv_h);
-    const realv dx = fmax(fabs(px - ex) - ex, (realv)0);
-    const realv dy = fmax(fabs(py - ey) - ey, (realv)0);
-    const realv dz = fmax(fabs(pz - ez) - ez, (realv)0);
+    const realv x = MCOR_LOAD(i, wide->x), y = MCOR_LOAD(i, wide->y), z = MCOR_LOAD(i, wide->z),
+                inv_h = MCOR_LOAD(i, wide->inv_h);
+    const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
+    const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
+    const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
     const mcor_mask mask = MCOR_MASK(
       mcor_tile_near(dx, dy, dz, inv_h, -query->radius), min(MCOR_LANES, wide->count - i));
-    MCOR_PACK_REAL(mask, px, tile->x + count);
-    MCOR_PACK_REAL(mask, py, tile->y + count);
-    MCOR_PACK_REAL(mask, pz, tile->z + count);
+    MCOR_PACK_REAL(mask, x, tile->x + count);
+    MCOR_PACK_REAL(mask, y, tile->y + count);
+    MCOR_PACK_REAL(mask, z, tile->z + count);
     MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
     MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->weight), tile->weight + count);
+#if MCOR_FIELD != 2
+    MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->value), tile->value + count);
+#endif
+#if MCOR_SOLIDS
+    MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->trim_weight), tile->trim_weight + count);
+#endif
     count += MCOR_MASK_COUNT(mask);
   }
   tile->count = count;

@@ -27,6 +27,7 @@ static const char source[] =
   "    query.low[a] = boxes[6 * i + a];\n"
   "    query.high[a] = boxes[6 * i + 3 + a];\n"
   "  }\n"
+  "  mcor_query_place(&grid, &query, query.low);\n"
   "  int count = 0;\n"
   "  mcor_tile tile;\n"
   "  mcor_tile_init(&tile);\n"

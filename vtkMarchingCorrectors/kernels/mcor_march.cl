@@ -119,17 +119,14 @@ ulong mcor_cell_all(const ulong* corners)
   return all;
 }
 
-/* Cells that are valid at all nodes and have nodes on both sides. */
-ulong mcor_cell_crossed(__global const int* neighbours, __global const ulong* above,
-  __global const ulong* valid, int slot)
+/* Cells that are valid at all nodes and have nodes on both sides. above: of their corners. */
+ulong mcor_cell_crossed(
+  const ulong* above, __global const int* neighbours, __global const ulong* valid, int slot)
 {
   ulong m[8];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  const ulong mixed = mcor_cell_some(m) & ~mcor_cell_all(m);
   mcor_brick_masks(valid, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  return mixed & mcor_cell_all(m);
+  return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(m);
 }
 
 /* One work-item = one brick. Reads the node masks. Writes the used cells: examined, valid at all
@@ -143,7 +140,10 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   {
     return;
   }
-  used[slot] = cells[slot] & mcor_cell_crossed(neighbours, above, valid, slot);
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
+  used[slot] = cells[slot] & mcor_cell_crossed(m, neighbours, valid, slot);
 }
 
 /* Marching Cubes case of a cell: bit c is set where corner c is above. */

@@ -48,10 +48,9 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, real share, in
   int count = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv dx = fmax(fabs(MCOR_LOAD(i, tile->x) - (x + exy)) - exy, (realv)0);
-    const realv dy = fmax(fabs(MCOR_LOAD(i, tile->y) - (y + exy)) - exy, (realv)0);
-    const realv dz = fmax(fabs(MCOR_LOAD(i, tile->z) - (z + ez)) - ez, (realv)0);
-    const fixv near = mcor_tile_near(dx, dy, dz, MCOR_LOAD(i, tile->inv_h), share);
+    const fixv near = mcor_tile_near(MCOR_LOAD(i, tile->x), MCOR_LOAD(i, tile->y),
+      MCOR_LOAD(i, tile->z), MCOR_LOAD(i, tile->inv_h), x + exy, y + exy, z + ez, exy, exy, ez,
+      share);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
     count += MCOR_MASK_COUNT(mask);

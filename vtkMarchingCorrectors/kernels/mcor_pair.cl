@@ -303,7 +303,7 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
     faces[a] = mcor_pair_faces(m, a, 0);
     upper[a] = mcor_pair_faces(m, a, 1);
   }
-  const ulong crossed = mcor_cell_crossed(neighbours, above, valid, slot);
+  const ulong crossed = mcor_cell_crossed(m, neighbours, valid, slot);
   ulong now = before;
   for (ulong last = 0; now != last;)
   {

@@ -296,18 +296,17 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
   masks->longest = 0;
   for (int part = 0; part < MCOR_PARTS; ++part)
   {
+    const real cx = points->center[0][part], cy = points->center[1][part],
+               cz = points->center[2][part];
+    const real hx = points->half_size[0][part], hy = points->half_size[1][part],
+               hz = points->half_size[2][part];
     int count = 0;
     for (int j = 0; j < masks->chunks; ++j)
     {
       const int i = j * MCOR_LANES;
-      const realv dx = fmax(fabs(MCOR_LOAD(i, tile->x) - points->center[0][part]) -
-          points->half_size[0][part], (realv)0);
-      const realv dy = fmax(fabs(MCOR_LOAD(i, tile->y) - points->center[1][part]) -
-          points->half_size[1][part], (realv)0);
-      const realv dz = fmax(fabs(MCOR_LOAD(i, tile->z) - points->center[2][part]) -
-          points->half_size[2][part], (realv)0);
-      const mcor_mask mask = MCOR_MASK(
-        mcor_tile_near(dx, dy, dz, MCOR_LOAD(i, tile->inv_h), 1), min(MCOR_LANES, tile->count - i));
+      const fixv near = mcor_tile_near(MCOR_LOAD(i, tile->x), MCOR_LOAD(i, tile->y),
+        MCOR_LOAD(i, tile->z), MCOR_LOAD(i, tile->inv_h), cx, cy, cz, hx, hy, hz, 1);
+      const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
       masks->mask[part][j] = mask;
       count += MCOR_MASK_COUNT(mask);
     }

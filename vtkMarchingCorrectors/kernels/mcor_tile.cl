@@ -149,10 +149,15 @@ int mcor_mask_count(const mcor_mask* mask)
 #define MCOR_PARTS 1
 #endif
 
-/* Whether particles at this distance from a box, per axis, are within `share` of their support. The
- * margin covers rounding: a particle kept in vain adds exactly 0. */
-fixv mcor_tile_near(realv dx, realv dy, realv dz, realv inv_h, realv share)
+/* Whether particles at (x, y, z) are within `share` of their support from a box with its middle at
+ * (cx, cy, cz) and half as long as (hx, hy, hz). The margin covers rounding: a particle kept in vain
+ * adds exactly 0. */
+fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, real cz, real hx,
+  real hy, real hz, realv share)
 {
+  const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
+  const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
+  const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
 #if MCOR_TENSOR
   return fmax(dx, fmax(dy, dz)) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
 #else
@@ -167,8 +172,8 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
 {
   const real unit = grid->unit;
   const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
-  const realv cx = query->center[0], cy = query->center[1], cz = query->center[2];
-  const realv hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
+  const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
+  const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
   /* Within their own support, or within the query's radius. */
   const bool own = query->radius < 0;
   const realv reach = own ? -query->radius : (real)1;
@@ -180,12 +185,9 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
     const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - oy) * unit;
     const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - oz) * unit;
     const realv inv_h = MCOR_LOAD(j, grid->inv_h);
-    /* Distance to the box, per axis. */
-    const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
-    const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
-    const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
-    const mcor_mask mask = MCOR_MASK(
-      mcor_tile_near(dx, dy, dz, own ? inv_h : inv_radius, reach), min(MCOR_LANES, query->end - j));
+    const fixv near =
+      mcor_tile_near(x, y, z, own ? inv_h : inv_radius, cx, cy, cz, hx, hy, hz, reach);
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, query->end - j));
     MCOR_PACK_INDEX(mask, j, tile->list + count);
     MCOR_PACK_REAL(mask, x, tile->x + count);
     MCOR_PACK_REAL(mask, y, tile->y + count);
@@ -259,18 +261,15 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
  * that holds this one's. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
-  const realv cx = query->center[0], cy = query->center[1], cz = query->center[2];
-  const realv hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
+  const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
+  const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
   int count = 0;
   for (int i = 0; i < wide->count; i += MCOR_LANES)
   {
     const realv x = MCOR_LOAD(i, wide->x), y = MCOR_LOAD(i, wide->y), z = MCOR_LOAD(i, wide->z),
                 inv_h = MCOR_LOAD(i, wide->inv_h);
-    const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
-    const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
-    const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
-    const mcor_mask mask = MCOR_MASK(
-      mcor_tile_near(dx, dy, dz, inv_h, -query->radius), min(MCOR_LANES, wide->count - i));
+    const fixv near = mcor_tile_near(x, y, z, inv_h, cx, cy, cz, hx, hy, hz, -query->radius);
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, wide->count - i));
     MCOR_PACK_REAL(mask, x, tile->x + count);
     MCOR_PACK_REAL(mask, y, tile->y + count);
     MCOR_PACK_REAL(mask, z, tile->z + count);

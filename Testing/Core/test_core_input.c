@@ -254,23 +254,70 @@ static void test_empty_results(void** state)
   expect_good(*state);
 }
 
-/* Scalars whose range is no finite number: whatever becomes of the surface, nothing breaks. */
+/* Scalars that reach farther than the precision does. */
 static void test_endless_range(void** state)
 {
-  for (int precision = MCOR_FLOAT32; precision <= MCOR_FLOAT64; ++precision)
+  static const struct
+  {
+    double most;
+    mcor_type precision;
+    bool is_good;
+  } cases[] = { { 1.7e308, MCOR_FLOAT32, false }, { 1.7e308, MCOR_FLOAT64, false },
+    { 1e200, MCOR_FLOAT32, false }, { 1e200, MCOR_FLOAT64, true }, { 1e30, MCOR_FLOAT32, true } };
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k)
   {
     bad_call call = make_call();
     call.options.iso_values = call.iso;
-    call.options.precision = (mcor_type)precision;
+    call.options.precision = cases[k].precision;
     for (int64_t i = 0; i < call.set.count; ++i)
     {
-      call.set.scalar[i] = i % 2 ? 1.7e308 : -1.7e308;
+      call.set.scalar[i] = i % 2 ? cases[k].most : -cases[k].most;
+    }
+    if (!cases[k].is_good)
+    {
+      expect(*state, &call, MCOR_INVALID_DATA, "reach too far|precision");
+      free_call(&call);
+      continue;
     }
     mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_CHECK(surface.triangle_count > 0, "no surface with %g", cases[k].most);
+    for (int64_t i = 0; i < 3 * surface.point_count; ++i)
+    {
+      CORE_CHECK(isfinite(surface.normals[i]), "a normal with %g is not finite", cases[k].most);
+    }
     mcor_free_surface(&surface);
     free_call(&call);
   }
   expect_good(*state);
+}
+
+/* The scalars of solids play no part. */
+static void test_scalars_of_solids(void** state)
+{
+  mcor_surface surfaces[2];
+  for (int k = 0; k < 2; ++k)
+  {
+    bad_call call = make_call();
+    uint8_t* solid = calloc((size_t)call.set.count, 1);
+    assert_non_null(solid);
+    for (int64_t i = 0; i < call.set.count; i += 3)
+    {
+      solid[i] = 1;
+      call.set.scalar[i] = k ? 1e300 : 0.5;
+    }
+    call.input.solid = solid;
+    call.options.iso_values = call.iso;
+    surfaces[k] = core_extract(*state, &call.input, &call.options);
+    free(solid);
+    free_call(&call);
+  }
+  const size_t n = (size_t)surfaces[0].point_count;
+  CORE_CHECK(n > 0 && surfaces[1].point_count == (int64_t)n, "%zu and %lld points", n,
+    (long long)surfaces[1].point_count);
+  assert_memory_equal(surfaces[0].points, surfaces[1].points, 3 * n * sizeof(double));
+  assert_memory_equal(surfaces[0].normals, surfaces[1].normals, 3 * n * sizeof(float));
+  mcor_free_surface(&surfaces[0]);
+  mcor_free_surface(&surfaces[1]);
 }
 
 int main(void)
@@ -280,6 +327,6 @@ int main(void)
     cmocka_unit_test(test_components), cmocka_unit_test(test_bad_elements),
     cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
     cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results),
-    cmocka_unit_test(test_endless_range) };
+    cmocka_unit_test(test_endless_range), cmocka_unit_test(test_scalars_of_solids) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

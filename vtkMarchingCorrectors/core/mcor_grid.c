@@ -177,6 +177,14 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   {
     return MCOR_OK;
   }
+  const bool single = context->cl.real_size == sizeof(float);
+  const double low = context->measure.scalar_min, high = context->measure.scalar_max;
+  const double most = fmax(high - context->value_shift, context->value_shift - low);
+  MCOR_RETURN_IF(!(most * fmax(context->heaviest, 1) < (single ? 1e33 : 1e290)), context,
+    MCOR_INVALID_DATA,
+    "The scalar's values, from %g to %g, reach too far for %s precision. %s remove the particles "
+    "with the outermost values.", low, high, single ? "single" : "double",
+    single ? "Use double precision, or" : "Use another unit, or");
   MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, &grid->value, 0));
   return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),

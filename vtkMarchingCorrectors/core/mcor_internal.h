@@ -157,6 +157,7 @@ struct mcor_context
   mcor_buffer groups; /* see mcor_make_groups */
   int32_t* source; /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift; /* A0 */
+  double heaviest; /* no particle has a greater V / (scaled h)^3 */
   bool nodes_valid;   /* bricks hold node values of the current scalar */
   mcor_input last_input; /* what grid and value were made from */
   mcor_options last_options;

@@ -161,17 +161,20 @@ static double mcor_stage_weight(const mcor_context* context, const mcor_stage_ch
   return chunk->size[i] * inv_h * inv_h * inv_h;
 }
 
-/* Input index of the first particle of a chunk whose weight is too large; -1 if there is none. */
-static int64_t mcor_find_heavy(
-  const mcor_context* context, const mcor_input* input, const mcor_stage_chunk* chunk)
+/* Input index of the first particle of a chunk whose weight is too large; -1 if there is none. The
+ * largest one is kept. */
+static int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
+  const mcor_stage_chunk* chunk, double* heaviest)
 {
   const double limit = context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
   for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
   {
-    if (!(mcor_stage_weight(context, chunk, i) < limit))
+    const double weight = mcor_stage_weight(context, chunk, i);
+    if (!(weight < limit))
     {
       return chunk->source[i];
     }
+    *heaviest = weight > *heaviest ? weight : *heaviest;
   }
   return -1;
 }
@@ -230,6 +233,7 @@ typedef struct mcor_stage_job
   int64_t used[MCOR_SLICES];  /* particles in each slice */
   int64_t to[MCOR_SLICES];    /* where the first of them goes */
   int64_t heavy[MCOR_SLICES]; /* see mcor_find_heavy */
+  double heaviest[MCOR_SLICES];
 } mcor_stage_job;
 
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
@@ -256,7 +260,7 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
     {
       mcor_pack_stage_chunk(job->context, job->input, &chunk);
     }
-    heavy = mcor_find_heavy(job->context, job->input, &chunk);
+    heavy = mcor_find_heavy(job->context, job->input, &chunk, &job->heaviest[slice]);
     if (heavy < 0)
     {
       mcor_put_stage_chunk(job->context, job->input, &chunk, job->staging, to);
@@ -295,12 +299,15 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
     staging->count += (int)job.used[s];
   }
   mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, &job);
+  /* A computed volume is at most h^3 / norm: a particle's own share in the density. */
+  context->heaviest = mcor_needs_density(input) ? pow(context->options->h_scale, -3) : 0;
   for (int s = 0; s < slices; ++s)
   {
     if (job.heavy[s] >= 0)
     {
       return mcor_refuse_heavy(context, input, staging, job.heavy[s]);
     }
+    context->heaviest = fmax(context->heaviest, job.heaviest[s]);
   }
   return MCOR_OK;
 }
@@ -332,6 +339,11 @@ static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t l
     for (n = 0; begin + n < last && source[begin + n] < from + count; ++n)
     {
       used[n] = (chunk[source[begin + n] - from] - shift) * scale;
+    }
+    /* Those of solids play no part, whatever they are. */
+    for (int i = 0; i < n && !job->array && input->solid; ++i)
+    {
+      used[i] = input->solid[source[begin + i]] ? 0 : used[i];
     }
     mcor_put_reals(job->context, job->values, begin, used, n);
   }

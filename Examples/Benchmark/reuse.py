@@ -31,11 +31,13 @@ def second_surface(benchmark):
     rows = []
     for step in found["steps"]:
         # The first repetition loads the OpenCL program.
-        reused, fresh = (statistics.median(step[key][1:]) for key in ("reused", "fresh"))
-        rows.append([step["name"], report.seconds(reused), report.seconds(fresh),
-                     report.ratio(fresh / reused),
-                     report.seconds(statistics.median(step["reused_grid"][1:]))])
-    out.table(["", "one filter", "new filter", "times as fast", "search grid, one filter"], rows)
+        reused, fresh = ({name: statistics.median(times[1:]) for name, times in step[key].items()}
+                         for key in ("reused", "fresh"))
+        rows.append([step["name"], report.seconds(reused["all"]), report.seconds(fresh["all"]),
+                     report.ratio(fresh["all"] / reused["all"]), report.seconds(reused["grid"]),
+                     report.seconds(reused["seeds"]), report.seconds(fresh["seeds"])])
+    out.table(["", "one filter", "new filter", "times as fast", "search grid, one filter",
+               "seeds, one filter", "seeds, new filter"], rows)
     return found
 
 

@@ -6,8 +6,8 @@
 //   benchmark-reuse PARTICLES.vtp REPETITIONS DEVICE SCALAR ISO ISO SCALAR ISO
 //
 // First scalar with its two iso values, second scalar with one; DEVICE may be "". Writes JSON: for
-// each step the seconds of all repetitions with one filter and with a new one, and those of the
-// search grid with one filter. Fails if reuse changes the surface.
+// each step the seconds of all repetitions with one filter and with a new one, and of these the
+// search grid and the seeds. Fails if reuse changes the surface.
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectors.h"
@@ -25,25 +25,50 @@
 namespace
 {
 
+/// Seconds of all repetitions: of Update(), and of two phases.
+struct Times
+{
+  std::vector<double> All, Grid, Seeds;
+};
+
 struct Step
 {
   const char* Name;
   const char* Scalar;
   double Iso;
-  std::vector<double> Reused, Fresh, ReusedGrid;
+  Times Reused, Fresh;
 };
 
-/// Seconds of Update(); below 0 where it fails.
-double Extract(vtkMarchingCorrectors* filter, const Step& step)
+double PhaseSeconds(vtkMarchingCorrectors* filter, const char* phase)
+{
+  vtkDataArray* seconds = filter->GetOutput()->GetFieldData()->GetArray("Seconds");
+  for (int i = 0; i < seconds->GetNumberOfComponents(); ++i)
+  {
+    if (std::strcmp(seconds->GetComponentName(i), phase) == 0)
+    {
+      return seconds->GetComponent(0, i);
+    }
+  }
+  return 0.0;
+}
+
+/// Updates and adds the seconds; false where that fails.
+bool Extract(vtkMarchingCorrectors* filter, const Step& step, Times& times)
 {
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, step.Scalar);
   filter->SetValue(0, step.Iso);
   const auto begin = std::chrono::steady_clock::now();
   filter->Update();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  const bool good =
-    std::strlen(filter->GetErrorMessage()) == 0 && filter->GetOutput()->GetNumberOfCells() > 0;
-  return good ? seconds.count() : -1.0;
+  if (std::strlen(filter->GetErrorMessage()) > 0 || filter->GetOutput()->GetNumberOfCells() == 0)
+  {
+    std::fprintf(stderr, "benchmark-reuse: no surface: %s\n", filter->GetErrorMessage());
+    return false;
+  }
+  times.All.push_back(seconds.count());
+  times.Grid.push_back(PhaseSeconds(filter, "search grid"));
+  times.Seeds.push_back(PhaseSeconds(filter, "seeds"));
+  return true;
 }
 
 bool SamePoints(vtkPolyData* a, vtkPolyData* b)
@@ -77,20 +102,9 @@ bool RunSteps(std::vector<Step>& steps, vtkPolyData* particles, const char* devi
     vtkNew<vtkMarchingCorrectors> fresh;
     fresh->SetDevice(device);
     fresh->SetInputData(particles);
-    step.Reused.push_back(Extract(reused, step));
-    step.Fresh.push_back(Extract(fresh, step));
-    if (step.Reused.back() < 0.0 || step.Fresh.back() < 0.0)
+    if (!Extract(reused, step, step.Reused) || !Extract(fresh, step, step.Fresh))
     {
-      std::fprintf(stderr, "benchmark-reuse: no surface: %s\n", reused->GetErrorMessage());
       return false;
-    }
-    vtkDataArray* seconds = reused->GetOutput()->GetFieldData()->GetArray("Seconds");
-    for (int i = 0; i < seconds->GetNumberOfComponents(); ++i)
-    {
-      if (std::strcmp(seconds->GetComponentName(i), "search grid") == 0)
-      {
-        step.ReusedGrid.push_back(seconds->GetComponent(0, i));
-      }
     }
     if (!SamePoints(reused->GetOutput(), fresh->GetOutput()))
     {
@@ -111,6 +125,15 @@ void WriteList(const char* name, const std::vector<double>& values, const char* 
   std::printf("]%s", end);
 }
 
+void WriteTimes(const char* name, const Times& times, const char* end)
+{
+  std::printf("\"%s\": {", name);
+  WriteList("all", times.All, ", ");
+  WriteList("grid", times.Grid, ", ");
+  WriteList("seeds", times.Seeds, "}");
+  std::printf("%s", end);
+}
+
 }
 
 int main(int argc, char* argv[])
@@ -124,10 +147,10 @@ int main(int argc, char* argv[])
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(argv[1]);
   reader->Update();
-  std::vector<Step> steps = { { "first run", argv[4], std::atof(argv[5]), {}, {}, {} },
-    { "other iso value", argv[4], std::atof(argv[6]), {}, {}, {} },
-    { "other scalar", argv[7], std::atof(argv[8]), {}, {}, {} },
-    { "first scalar and iso value again", argv[4], std::atof(argv[5]), {}, {}, {} } };
+  std::vector<Step> steps = { { "first run", argv[4], std::atof(argv[5]), {}, {} },
+    { "other iso value", argv[4], std::atof(argv[6]), {}, {} },
+    { "first iso value again", argv[4], std::atof(argv[5]), {}, {} },
+    { "other scalar", argv[7], std::atof(argv[8]), {}, {} } };
   for (int i = 0; i < std::atoi(argv[2]); ++i)
   {
     if (!RunSteps(steps, reader->GetOutput(), argv[3]))
@@ -139,9 +162,8 @@ int main(int argc, char* argv[])
   for (std::size_t i = 0; i < steps.size(); ++i)
   {
     std::printf("%s{\"name\": \"%s\", ", i ? ", " : "", steps[i].Name);
-    WriteList("reused", steps[i].Reused, ", ");
-    WriteList("fresh", steps[i].Fresh, ", ");
-    WriteList("reused_grid", steps[i].ReusedGrid, "}");
+    WriteTimes("reused", steps[i].Reused, ", ");
+    WriteTimes("fresh", steps[i].Fresh, "}");
   }
   std::printf("]}\n");
   return 0;

@@ -12,7 +12,8 @@
 mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int work = context->cl.lanes * MCOR_PAIR_GROUPS, items = (context->grid.count + work - 1) / work;
+  const int particles = context->cl.lanes * MCOR_PAIR_GROUPS; /* of an item */
+  const int items = (context->grid.count + particles - 1) / particles;
   const size_t marks = (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
   mcor_buffer* marked = &context->scratch[3];
   MCOR_TRY(mcor_fill(context, marked, 0, marks * sizeof(cl_ulong)));

@@ -5,14 +5,14 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
-/* Cells are marked before their bricks have slots: `cells` has 64 bits, in two words, for each brick
+/* Cells are marked before their bricks have slots: `cells` has two words, 64 bits, for each brick
  * of each block. */
 void mcor_pair_mark_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* cells)
 {
   const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
   if (m >= 0)
   {
-    atomic_or(cells + 2 * m + (z >> 1 & 1), 1u << ((x & 3) | (y & 3) << 2 | (z & 1) << 4));
+    atomic_or(cells + 2L * m + (z >> 1 & 1), 1u << ((x & 3) | (y & 3) << 2 | (z & 1) << 4));
   }
 }
 

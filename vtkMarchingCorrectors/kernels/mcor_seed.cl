@@ -213,7 +213,8 @@ realv mcor_seed_heaviest(const mcor_tile* tile, const real* center, const real* 
 #define MCOR_COARSE_PARTICLES 1024
 
 /* State of a cube of nodes, the query's box, whose particles are left in the tile; it may hold them
- * before. Of a coarse one, less is asked: it may be taken for certain where a part is void, and for undecided. */
+ * before. Of a coarse one, less is asked: it may be taken for certain where a part is void, and for
+ * undecided. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   __global const uchar* sides, real iso, real node_threshold)
 {
@@ -396,7 +397,7 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
 }
 
 /* State of a brick whose region is not certain; wide: the particles of the region, if it is
- * complete. As the brick's particles are at hand, its nodes are evaluated if they are to be, where a
+ * complete. As the brick's are at hand, its nodes are evaluated if they are to be, where a
  * work-item evaluates whole bricks; returns the known ones. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
   __global const uchar* sides, real iso, real node_threshold, __global uchar* state,
@@ -429,7 +430,7 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
 #define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
 
 /* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list. Reads the particles that reach
- * it. Writes the states of bricks of which nothing is known; which nodes are known by now, and their
+ * it. Of bricks of which nothing is known, writes the states, and the nodes known by now with their
  * values and signs. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int list_count,
   __global const int* list, __global const uchar* sides, const real iso,

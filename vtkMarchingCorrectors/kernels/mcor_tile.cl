@@ -149,9 +149,9 @@ int mcor_mask_count(const mcor_mask* mask)
 #define MCOR_PARTS 1
 #endif
 
-/* Whether particles at (x, y, z) are within `share` of their support from a box with its middle at
- * (cx, cy, cz) and half as long as (hx, hy, hz). The margin covers rounding: a particle kept in vain
- * adds exactly 0. */
+/* Whether particles at (x, y, z) are within `share` of their support from a box of half size
+ * (hx, hy, hz) around (cx, cy, cz). The margin covers rounding: a particle kept in vain adds
+ * exactly 0. */
 fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, real cz, real hx,
   real hy, real hz, realv share)
 {

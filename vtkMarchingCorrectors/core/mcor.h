@@ -137,7 +137,8 @@ extern "C"
 
     /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. With 2 or more components,
      * scalar_component selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not
-     * NULL, A is the dot product of the two vectors. */
+     * NULL, A is the dot product of the two vectors. Values of more than about 1e30 need double
+     * precision, of more than 1e290 another unit. */
     mcor_array scalar;
     int scalar_component;
     mcor_array scalar_dot;

@@ -27,30 +27,29 @@ void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Greatest (side -1) or least (side 1) w over a box of half size `half_size` around
- * (dx, dy, dz). */
-realv mcor_seed_weight(
-  realv dx, realv dy, realv dz, const real* half_size, realv side, realv inv_h)
+/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz). */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
 {
-  const real ex = half_size[0], ey = half_size[1], ez = half_size[2];
   realv xl, xh, yl, yh, zl, zh;
-  mcor_seed_interval(fmax(fabs(dx) - ex, (realv)0) * inv_h, (fabs(dx) + ex) * inv_h, &xl, &xh);
-  mcor_seed_interval(fmax(fabs(dy) - ey, (realv)0) * inv_h, (fabs(dy) + ey) * inv_h, &yl, &yh);
-  mcor_seed_interval(fmax(fabs(dz) - ez, (realv)0) * inv_h, (fabs(dz) + ez) * inv_h, &zl, &zh);
+  mcor_seed_interval(fmax(fabs(dx) - e, (realv)0) * inv_h,
+    (fabs(dx) + e) * inv_h, &xl, &xh);
+  mcor_seed_interval(fmax(fabs(dy) - e, (realv)0) * inv_h,
+    (fabs(dy) + e) * inv_h, &yl, &yh);
+  mcor_seed_interval(fmax(fabs(dz) - e, (realv)0) * inv_h,
+    (fabs(dz) + e) * inv_h, &zl, &zh);
   const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
   const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
   return side > 0 ? fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh))
                   : fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* Greatest (side -1) or least (side 1) w over a box of half size `half_size` around (dx, dy, dz): w
- * falls with the distance, so that of the nearest or farthest point. */
-realv mcor_seed_weight(
-  realv dx, realv dy, realv dz, const real* half_size, realv side, realv inv_h)
+/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz): w falls
+ * with the distance, so that of the nearest or farthest point. */
+realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
 {
-  const realv x = fmax(fabs(dx) + side * half_size[0], (realv)0);
-  const realv y = fmax(fabs(dy) + side * half_size[1], (realv)0);
-  const realv z = fmax(fabs(dz) + side * half_size[2], (realv)0);
+  const realv x = fmax(fabs(dx) + side * e, (realv)0);
+  const realv y = fmax(fabs(dy) + side * e, (realv)0);
+  const realv z = fmax(fabs(dz) + side * e, (realv)0);
   return MCOR_W(mcor_sqrt(x * x + y * y + z * z) * inv_h);
 }
 #endif
@@ -168,45 +167,46 @@ int mcor_tile_sides(const mcor_tile* tile, real iso)
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
 
-/* Adds the tile's particles to the bound of a box: `sum` is the bound + level, `size` the absolute
- * terms. */
-void mcor_seed_bound(const mcor_tile* tile, const real* center, const real* half_size, real iso,
-  bool from_below, realv* sum, realv* size)
+/* Sums of the bound over the particles of a box. */
+typedef struct
 {
+  realv sum, size; /* the bound + level, and the absolute terms */
+  realv weight;    /* of the greatest weights */
+} mcor_bound;
+
+void mcor_seed_bound(const mcor_query* query, const mcor_tile* tile, real iso, bool from_below,
+  mcor_bound* bound)
+{
+  const real e = query->half_size[0];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv x = MCOR_LOAD(i, tile->x) - center[0];
-    const realv y = MCOR_LOAD(i, tile->y) - center[1];
-    const realv z = MCOR_LOAD(i, tile->z) - center[2];
-    const realv c = mcor_seed_coefficients(tile, i, iso);
+    const realv x = MCOR_LOAD(i, tile->x) - query->center[0];
+    const realv y = MCOR_LOAD(i, tile->y) - query->center[1];
+    const realv z = MCOR_LOAD(i, tile->z) - query->center[2];
+    const realv inv_h = MCOR_LOAD(i, tile->inv_h), c = mcor_seed_coefficients(tile, i, iso);
     const realv side = (c > 0) == (fixv)(from_below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
-    const realv w = mcor_seed_weight(x, y, z, half_size, side, MCOR_LOAD(i, tile->inv_h));
-    *sum += c * w;
-    *size += fabs(c) * fabs(w);
+    const realv w = mcor_seed_weight(x, y, z, e, side, inv_h);
+    bound->sum += c * w;
+    bound->size += fabs(c) * fabs(w);
+#if MCOR_FIELD != 2
+    bound->weight +=
+      MCOR_LOAD(i, MCOR_TILE_TRIM(tile)) * mcor_seed_weight(x, y, z, e, (realv)-1, inv_h);
+#endif
   }
 }
 
-/* Whether F is certain to be on that side. */
-bool mcor_seed_is_certain(realv sum, realv size, bool from_below, real iso)
+/* What the sums say. */
+int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, real node_threshold)
 {
   const real level = MCOR_FIELD == 0 ? (real)0 : iso;
-  const real margin = (real)1e-5f * (mcor_lane_sum(size) + fabs(level));
-  return from_below ? mcor_lane_sum(sum) > level + margin : mcor_lane_sum(sum) < level - margin;
-}
-
-/* Upper bound of the trimming weight in a box, from the tile's particles. */
-realv mcor_seed_heaviest(const mcor_tile* tile, const real* center, const real* half_size)
-{
-  realv sum = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  const real sum = mcor_lane_sum(bound->sum);
+  const real margin = (real)1e-5f * (mcor_lane_sum(bound->size) + fabs(level));
+  if (MCOR_FIELD != 2 && mcor_lane_sum(bound->weight) < node_threshold * (real)0.9999)
   {
-    const realv x = MCOR_LOAD(i, tile->x) - center[0];
-    const realv y = MCOR_LOAD(i, tile->y) - center[1];
-    const realv z = MCOR_LOAD(i, tile->z) - center[2];
-    sum += MCOR_LOAD(i, MCOR_TILE_TRIM(tile)) *
-      mcor_seed_weight(x, y, z, half_size, (realv)-1, MCOR_LOAD(i, tile->inv_h));
+    return MCOR_VOID;
   }
-  return sum;
+  const bool certain = from_below ? sum > level + margin : sum < level - margin;
+  return !certain ? MCOR_EXAMINE : from_below ? MCOR_ABOVE : MCOR_BELOW;
 }
 
 /* A coarse cube that more particles reach is divided without a bound. */
@@ -227,7 +227,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
       return of_sides[seen];
     }
   }
-  realv sum = 0, size = 0, heaviest = 0;
+  mcor_bound bound = { 0, 0, 0 };
   bool from_below = false;
   int seen = 0, found = 0;
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
@@ -246,9 +246,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
     {
       from_below = mcor_seed_middle(query, tile, iso) > (MCOR_FIELD == 0 ? (real)0 : iso);
     }
-    mcor_seed_bound(tile, query->center, query->half_size, iso, from_below, &sum, &size);
-    heaviest += MCOR_FIELD == 2 ? (realv)0
-                                : mcor_seed_heaviest(tile, query->center, query->half_size);
+    mcor_seed_bound(query, tile, iso, from_below, &bound);
   }
   if (found == 0)
   {
@@ -259,13 +257,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   {
     return of_sides[seen];
   }
-  if (MCOR_FIELD != 2 && mcor_lane_sum(heaviest) < node_threshold * (real)0.9999)
-  {
-    return MCOR_VOID;
-  }
-  return !mcor_seed_is_certain(sum, size, from_below, iso) ? MCOR_EXAMINE
-    : from_below                                           ? MCOR_ABOVE
-                                                           : MCOR_BELOW;
+  return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
 }
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)

@@ -166,6 +166,23 @@ fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, re
 #endif
 }
 
+/* Puts the particles of a mask behind the tile's first `count`, but for the list. */
+void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_h, realv weight,
+  realv value, realv trim_weight, int count, mcor_tile* tile)
+{
+  MCOR_PACK_REAL(*mask, x, tile->x + count);
+  MCOR_PACK_REAL(*mask, y, tile->y + count);
+  MCOR_PACK_REAL(*mask, z, tile->z + count);
+  MCOR_PACK_REAL(*mask, inv_h, tile->inv_h + count);
+  MCOR_PACK_REAL(*mask, weight, tile->weight + count);
+#if MCOR_FIELD != 2
+  MCOR_PACK_REAL(*mask, value, tile->value + count);
+#endif
+#if MCOR_SOLIDS
+  MCOR_PACK_REAL(*mask, trim_weight, tile->trim_weight + count);
+#endif
+}
+
 /* Tests the particles that are left of the query's row, and puts those that reach its box behind
  * the tile's first `count`, while there is room. Returns the new count. */
 int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
@@ -189,17 +206,8 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
       mcor_tile_near(x, y, z, own ? inv_h : inv_radius, cx, cy, cz, hx, hy, hz, reach);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, query->end - j));
     MCOR_PACK_INDEX(mask, j, tile->list + count);
-    MCOR_PACK_REAL(mask, x, tile->x + count);
-    MCOR_PACK_REAL(mask, y, tile->y + count);
-    MCOR_PACK_REAL(mask, z, tile->z + count);
-    MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
-    MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->weight), tile->weight + count);
-#if MCOR_FIELD != 2
-    MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->value), tile->value + count);
-#endif
-#if MCOR_SOLIDS
-    MCOR_PACK_REAL(mask, MCOR_LOAD(j, grid->trim_weight), tile->trim_weight + count);
-#endif
+    mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_LOAD(j, grid->weight), MCOR_LOAD(j, grid->value),
+      MCOR_LOAD(j, grid->trim_weight), count, tile);
     count += MCOR_MASK_COUNT(mask);
   }
   query->begin = min(j, query->end);
@@ -270,17 +278,8 @@ void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile*
                 inv_h = MCOR_LOAD(i, wide->inv_h);
     const fixv near = mcor_tile_near(x, y, z, inv_h, cx, cy, cz, hx, hy, hz, -query->radius);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, wide->count - i));
-    MCOR_PACK_REAL(mask, x, tile->x + count);
-    MCOR_PACK_REAL(mask, y, tile->y + count);
-    MCOR_PACK_REAL(mask, z, tile->z + count);
-    MCOR_PACK_REAL(mask, inv_h, tile->inv_h + count);
-    MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->weight), tile->weight + count);
-#if MCOR_FIELD != 2
-    MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->value), tile->value + count);
-#endif
-#if MCOR_SOLIDS
-    MCOR_PACK_REAL(mask, MCOR_LOAD(i, wide->trim_weight), tile->trim_weight + count);
-#endif
+    mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_LOAD(i, wide->weight), MCOR_LOAD(i, wide->value),
+      MCOR_LOAD(i, MCOR_TILE_TRIM(wide)), count, tile);
     count += MCOR_MASK_COUNT(mask);
   }
   tile->count = count;

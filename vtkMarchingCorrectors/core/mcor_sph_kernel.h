@@ -22,18 +22,20 @@
 
 /* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps it has the value of one side. */
 
+/* With a = 2 - q and b = 1 - q where positive, 1/4 a^3 - b^3; as a - b = 1 where b is not 0, this is
+ * a c + b^2 with c = 1/4 a^2 - b^2, of which the derivative is -3 c. */
 realv mcor_w_cubic(realv q)
 {
   const realv d = (real)2 - q;
-  const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0);
-  return (real)0.25 * (a * a * a) - b * b * b;
+  const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0), b2 = b * b;
+  return a * ((real)0.25 * (a * a) - b2) + b2;
 }
 
 realv mcor_dw_cubic(realv q)
 {
   const realv d = (real)2 - q;
   const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0);
-  return (real)3 * (b * b) - (real)0.75 * (a * a);
+  return (real)-3 * ((real)0.25 * (a * a) - b * b);
 }
 
 realv mcor_ddw_cubic(realv q)

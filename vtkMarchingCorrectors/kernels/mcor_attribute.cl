@@ -70,14 +70,15 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
 void mcor_reach_evaluate(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, mcor_reach* reach)
 {
-  realv at[3], d[3], gx, gy, gz;
+  realv at[3], d[3], along[3], slope;
   mcor_points_relative(grid, query, points, at);
   for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
     mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
       MCOR_REACH(reach, z, i), d);
-    const mcor_offset offset = mcor_offset_of(d);
-    reach->w[i] = mcor_weight_gradient(&offset, MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
+    const mcor_length length = mcor_length_of(d);
+    reach->w[i] =
+      mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
   }
 }
 

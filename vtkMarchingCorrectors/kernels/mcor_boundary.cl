@@ -113,7 +113,7 @@ realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
 void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, mcor_symmetric* m)
 {
-  realv at[3], u[3], gx, gy, gz;
+  realv at[3], u[3], along[3], slope;
   m->xx = m->yy = m->zz = m->xy = m->yz = m->zx = 0;
   mcor_points_relative(grid, query, points, at);
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
@@ -121,15 +121,15 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
     for (int i = 0; i < tile->count; ++i)
     {
       mcor_points_from(at, points, tile->x[i], tile->y[i], tile->z[i], u);
-      const mcor_offset offset = mcor_offset_of(u);
-      mcor_weight_gradient(&offset, tile->inv_h[i], &gx, &gy, &gz);
-      const real v = MCOR_TILE_TRIM(tile)[i], half_v = (real)0.5 * v;
-      m->xx -= v * (u[0] * gx);
-      m->yy -= v * (u[1] * gy);
-      m->zz -= v * (u[2] * gz);
-      m->xy -= half_v * (u[0] * gy + u[1] * gx);
-      m->yz -= half_v * (u[1] * gz + u[2] * gy);
-      m->zx -= half_v * (u[2] * gx + u[0] * gz);
+      const mcor_length length = mcor_length_of(u);
+      mcor_weight_gradient(u, &length, tile->inv_h[i], &slope, along);
+      const realv v = MCOR_TILE_TRIM(tile)[i] * slope, half_v = (real)0.5 * v;
+      m->xx -= v * (u[0] * along[0]);
+      m->yy -= v * (u[1] * along[1]);
+      m->zz -= v * (u[2] * along[2]);
+      m->xy -= half_v * (u[0] * along[1] + u[1] * along[0]);
+      m->yz -= half_v * (u[1] * along[2] + u[2] * along[1]);
+      m->zx -= half_v * (u[2] * along[0] + u[0] * along[2]);
     }
   }
 }

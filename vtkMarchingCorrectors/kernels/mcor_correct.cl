@@ -19,43 +19,45 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
 #if MCOR_SOLIDS
   realv t = 0, tx = 0, ty = 0, tz = 0;
 #endif
-  realv at_node[3], d[3], gx, gy, gz;
+  realv at_node[3], d[3], along[3], slope;
   mcor_points_relative(grid, query, points, at_node);
   for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
   {
     for (int begin = 0; begin < MCOR_REACH_COUNT(reach); begin += MCOR_STEP)
     {
-      mcor_offset offset[MCOR_STEP];
+      mcor_length length[MCOR_STEP];
       const int end = min(begin + MCOR_STEP, MCOR_REACH_COUNT(reach));
       for (int i = begin; i < end; ++i)
       {
         mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
           MCOR_REACH(reach, z, i), d);
-        offset[i - begin] = mcor_offset_of(d);
+        length[i - begin] = mcor_length_of(d);
       }
       for (int i = begin; i < end; ++i)
       {
-        const realv k =
-          mcor_weight_gradient(offset + (i - begin), MCOR_REACH(reach, inv_h, i), &gx, &gy, &gz);
-        const realv m = MCOR_REACH(reach, weight, i);
+        mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+          MCOR_REACH(reach, z, i), d);
+        const realv k = mcor_weight_gradient(
+          d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
+        const realv m = MCOR_REACH(reach, weight, i), ms = m * slope;
         reach->w[i] = k;
 #if MCOR_FIELD != 2
-        const realv c = MCOR_REACH_TERM(reach, i, iso);
+        const realv c = MCOR_REACH_TERM(reach, i, iso), cs = c * slope;
         s += c * k;
-        sx += c * gx;
-        sy += c * gy;
-        sz += c * gz;
+        sx += cs * along[0];
+        sy += cs * along[1];
+        sz += cs * along[2];
 #endif
         w += m * k;
-        wx += m * gx;
-        wy += m * gy;
-        wz += m * gz;
+        wx += ms * along[0];
+        wy += ms * along[1];
+        wz += ms * along[2];
 #if MCOR_SOLIDS
-        const realv mt = MCOR_REACH_TRIM(reach, i);
+        const realv mt = MCOR_REACH_TRIM(reach, i), ts = mt * slope;
         t += mt * k;
-        tx += mt * gx;
-        ty += mt * gy;
-        tz += mt * gz;
+        tx += ts * along[0];
+        ty += ts * along[1];
+        tz += ts * along[2];
 #endif
       }
     }

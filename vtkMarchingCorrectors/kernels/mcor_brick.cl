@@ -286,3 +286,12 @@ void mcor_brick_masks(
     out[d] = other < 0 ? 0 : masks[other];
   }
 }
+
+/* Whether these of a brick's cells have nodes of its upper neighbour d (bits x, y, z; 0 is
+ * itself). */
+bool mcor_cells_reach(ulong cells, int d)
+{
+  const ulong beside = (d & 1 ? MCOR_LOW_X << 3 : ~0UL) & (d & 2 ? MCOR_LOW_Y << 12 : ~0UL) &
+    (d & 4 ? MCOR_LOW_Z << 48 : ~0UL);
+  return (cells & beside) != 0;
+}

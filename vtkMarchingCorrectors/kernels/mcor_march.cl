@@ -4,9 +4,10 @@
 /* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices
  * numbered by lattice edge. */
 
-/* One work-item = one brick. Reads the cells to examine. Writes the nodes that they need and that
- * are not yet known, rounded up to columns of 2 x 2 x 4; and which cells are new since the last
- * time, the cells then being kept in `examined`. */
+/* One work-item = one brick. Reads the cells to examine. Writes the nodes that are not yet known, of
+ * a brick with any that they need: where a surface grows it mostly needs the others next, and the
+ * particles are gathered once. Writes which cells are new since the last time, too; they are then
+ * kept in `examined`. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
   __global const ulong* cells, __global const ulong* known, __global ulong* need,
   __global ulong* examined, __global ulong* fresh)
@@ -18,22 +19,12 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   }
   ulong m[8];
   mcor_brick_masks(cells, neighbours, slot, 7, m);
-  for (int i = 0; i < 8; i += 2)
+  bool some = false;
+  for (int d = 0; d < 8; ++d)
   {
-    m[i] |= mcor_from_last_x(m[i], m[i + 1]);
+    some |= mcor_cells_reach(m[d], d);
   }
-  for (int i = 0; i < 8; i += 4)
-  {
-    m[i] |= mcor_from_last_y(m[i], m[i + 2]);
-  }
-  m[0] |= mcor_from_last_z(m[0], m[4]);
-  ulong columns = 0;
-  for (int c = 0; c < 4; ++c)
-  {
-    const ulong column = 0x0033003300330033UL << (2 * (c & 1) + 8 * (c >> 1));
-    columns |= m[0] & column ? column : 0;
-  }
-  need[slot] = columns & ~known[slot];
+  need[slot] = some ? ~known[slot] : 0;
   fresh[slot] = cells[slot] & ~examined[slot];
   examined[slot] = cells[slot];
 }

@@ -191,14 +191,6 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const
   }
 }
 
-/* Upper neighbours of a brick (bits x, y, z) that have nodes of these of its cells; 0 is itself. */
-bool mcor_pair_reaches(ulong cells, int d)
-{
-  const ulong beside = (d & 1 ? MCOR_LOW_X << 3 : ~0UL) & (d & 2 ? MCOR_LOW_Y << 12 : ~0UL) &
-    (d & 4 ? MCOR_LOW_Z << 48 : ~0UL);
-  return (cells & beside) != 0;
-}
-
 /* One work-item = one brick of a block. Reads its marked cells. Asks for the bricks that have their
  * nodes. */
 __kernel void mcor_pair_ask(
@@ -212,7 +204,7 @@ __kernel void mcor_pair_ask(
   const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, own);
   for (int d = 0; d < 8; ++d)
   {
-    const int m = mcor_pair_reaches(cells[own], d)
+    const int m = mcor_cells_reach(cells[own], d)
       ? mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
       : -1;
     if (m >= 0)
@@ -270,7 +262,7 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   for (int d = 0; d < 8; ++d)
   {
-    const int m = mcor_pair_reaches(pushed, d) ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
+    const int m = mcor_cells_reach(pushed, d) ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
                                       brick.y + (d >> 1 & 1), brick.z + (d >> 2))
                                   : -1;
     if (m >= 0 && mcor_ask_brick(asked, m))

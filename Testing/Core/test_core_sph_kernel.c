@@ -18,15 +18,16 @@ static const char source[] =
   "    return;\n"
   "  const realv x = offset[3 * i], y = offset[3 * i + 1], z = offset[3 * i + 2];\n"
   "  const realv d[3] = { x, y, z };\n"
-  "  const mcor_offset from = mcor_offset_of(d);\n"
-  "  realv gx, gy, gz;\n"
-  "  const realv w = mcor_weight_gradient(&from, inv_h, &gx, &gy, &gz);\n"
+  "  const mcor_length length = mcor_length_of(d);\n"
+  "  realv slope, along[3];\n"
+  "  const realv w = mcor_weight_gradient(d, &length, inv_h, &slope, along);\n"
+  "  const realv gradient[3] = { slope * along[0], slope * along[1], slope * along[2] };\n"
   "  const realv plain = mcor_weight(mcor_distance(x, y, z, inv_h), inv_h);\n"
   "  out[5 * i] = MCOR_GET(w, MCOR_LANES - 1) * MCOR_NORM;\n"
   "  out[5 * i + 1] = MCOR_GET(plain, 0) * MCOR_NORM;\n"
-  "  out[5 * i + 2] = MCOR_GET(gx, 0) * MCOR_NORM;\n"
-  "  out[5 * i + 3] = MCOR_GET(gy, 0) * MCOR_NORM;\n"
-  "  out[5 * i + 4] = MCOR_GET(gz, MCOR_LANES - 1) * MCOR_NORM;\n"
+  "  out[5 * i + 2] = MCOR_GET(gradient[0], 0) * MCOR_NORM;\n"
+  "  out[5 * i + 3] = MCOR_GET(gradient[1], 0) * MCOR_NORM;\n"
+  "  out[5 * i + 4] = MCOR_GET(gradient[2], MCOR_LANES - 1) * MCOR_NORM;\n"
   "}\n";
 
 /* Evaluates W (h = 1 / inv_h, without the factor 1 / h^3) in double precision. Free the result. */

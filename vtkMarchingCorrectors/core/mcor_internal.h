@@ -85,7 +85,7 @@ typedef struct mcor_brick_data
 {
   int count;
   mcor_buffer bricks; /* int4: position in bricks */
-  mcor_buffer known;  /* ulong: nodes evaluated */
+  mcor_buffer known;  /* ulong: nodes evaluated, all or none of a brick */
   mcor_buffer cells;  /* ulong: cells to examine for this iso value */
   mcor_buffer examined; /* ulong: those whose nodes have been asked for */
   mcor_buffer value, weight; /* real [64] */
@@ -240,6 +240,7 @@ mcor_status mcor_make_groups(
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_count_bits(
   mcor_context* context, const mcor_buffer* masks, int count, int* total);
+mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
 mcor_status mcor_count_resolved(mcor_context* context);

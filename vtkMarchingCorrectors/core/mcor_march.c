@@ -23,12 +23,12 @@ static mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-/* Signs of the nodes just evaluated; of all, where others may be known from another iso value. */
-static mcor_status mcor_sign_nodes(mcor_context* context, double iso, bool all)
+/* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */
+mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated)
 {
   mcor_bricks* bricks = &context->bricks;
   return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_LIGHT, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_INT(all), MCOR_BUFFER(&bricks->need),
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
     MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->now.above),
@@ -72,7 +72,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   {
     MCOR_TRY(mcor_find_neighbours(context));
     MCOR_TRY(mcor_evaluate_nodes(context));
-    MCOR_TRY(mcor_sign_nodes(context, iso, pairs && first));
+    MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
     if (first)
     {
       MCOR_TRY(mcor_classify_cells(context));

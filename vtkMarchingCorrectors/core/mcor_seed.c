@@ -60,10 +60,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   mcor_buffer* list = &context->scratch[3];
   int listed;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_signs", MCOR_LIGHT, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
-    MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso), MCOR_REAL(node_threshold),
-    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid)));
+  MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
   /* One item per region where one gathers for many lanes, else one per brick. */
   const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),

@@ -29,44 +29,38 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   examined[slot] = cells[slot];
 }
 
-/* One work-item = MCOR_ITEM_NODES nodes of a brick. Reads the particles that reach those needed.
- * Writes their values and weights. */
+/* One work-item = MCOR_ITEM_NODES nodes of a brick. Where they are needed, reads the particles that
+ * reach them. Writes their values and weights. */
 __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)
 {
   const int first_node = get_global_id(0) * MCOR_ITEM_NODES, slot = first_node / 64;
-  if (slot >= brick_count)
-  {
-    return;
-  }
-  const int first = first_node % 64;
-  const ulong wanted = MCOR_ITEM_NODES == 64 ? need[slot] : need[slot] >> first & 1;
-  if (wanted == 0)
+  if (slot >= brick_count || need[slot] == 0)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  mcor_query query = mcor_node_query(&grid, bricks[slot], first, 1);
+  mcor_query query = mcor_node_query(&grid, bricks[slot], first_node % 64, 1);
   mcor_node_sums sums;
   mcor_tile tile;
   mcor_tile_init(&tile);
-  mcor_node_sum(&grid, &query, &tile, wanted, &sums);
-  mcor_node_store(&sums, wanted, node_value + first_node, node_weight + first_node);
+  mcor_node_sum(&grid, &query, &tile, &sums);
+  mcor_node_store(&sums, node_value + first_node, node_weight + first_node);
 }
 
-/* One work-item = one brick. Reads node values, those needed being known by now. Writes which nodes
- * are above the iso value, and which are valid: where nodes are new, or of all bricks. */
-__kernel void mcor_march_sign(const int brick_count, const int all, __global const ulong* need,
+/* One work-item = one brick. Reads the values of its nodes where these are `evaluated`: they are known
+ * from now on. Writes which are above the iso value, and which are valid. */
+__kernel void mcor_march_sign(const int brick_count, __global const ulong* evaluated,
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)
 {
   const int slot = get_global_id(0);
-  if (slot < brick_count && (all || need[slot]))
+  if (slot < brick_count && evaluated[slot])
   {
-    known[slot] |= need[slot];
-    mcor_node_signs(known[slot], node_value + slot * 64L, node_weight + slot * 64L, iso,
-      node_threshold, above + slot, valid + slot);
+    known[slot] |= evaluated[slot];
+    mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold,
+      above + slot, valid + slot);
   }
 }
 

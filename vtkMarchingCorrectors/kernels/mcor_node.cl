@@ -190,10 +190,9 @@ mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float s
   return query;
 }
 
-/* Sums at those nodes, for the groups of those that `wanted` has. The tile may hold the query's
- * particles already. */
+/* Sums at those nodes. The tile may hold the query's particles already. */
 void mcor_node_sum(
-  const mcor_grid* grid, mcor_query* query, mcor_tile* tile, ulong wanted, mcor_node_sums* sums)
+  const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
 {
   const real share = -query->radius;
   real first[3];
@@ -220,11 +219,8 @@ void mcor_node_sum(
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
       const int4 node = mcor_group_node(g);
-      if (wanted >> (node.x + 4 * node.y + 16 * node.z) & 1)
-      {
-        mcor_node_add(tile, term, g, first[0] + (real)node.x, first[1] + (real)node.y,
-          first[2] + (real)node.z, share, sums);
-      }
+      mcor_node_add(tile, term, g, first[0] + (real)node.x, first[1] + (real)node.y,
+        first[2] + (real)node.z, share, sums);
     }
   }
 }
@@ -234,14 +230,13 @@ void mcor_node_sum(
  * value. */
 #define MCOR_LEAST_WEIGHT ((real)1e-3)
 
-/* Writes the field's values and the trimming weights (-1: no valid value) at the wanted nodes of a
+/* Writes the field's values and the trimming weights (-1: no valid value) at the nodes of a
  * work-item, from its first on. */
-void mcor_node_store(
-  const mcor_node_sums* sums, ulong wanted, __global real* value, __global real* weight)
+void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global real* weight)
 {
-  for (ulong rest = wanted; rest; rest &= rest - 1)
+  for (int n = 0; n < MCOR_ITEM_NODES; ++n)
   {
-    const int n = mcor_ctz(rest), g = mcor_group_of(n), lane = mcor_lane_of(n);
+    const int g = mcor_group_of(n), lane = mcor_lane_of(n);
     const real s = MCOR_GET(sums->s[g], lane), w = MCOR_GET(sums->w[g], lane);
 #if MCOR_SOLIDS
     const real t = MCOR_GET(sums->t[g], lane);
@@ -259,9 +254,9 @@ void mcor_node_store(
   }
 }
 
-/* Writes which known nodes of a brick are above the iso value, and which are valid: their weight is
- * not below the node threshold. */
-void mcor_node_signs(ulong known, __global const real* value, __global const real* weight, real iso,
+/* Writes which nodes of a brick are above the iso value, and which are valid: their weight is not
+ * below the node threshold. */
+void mcor_node_signs(__global const real* value, __global const real* weight, real iso,
   real node_threshold, __global ulong* above, __global ulong* valid)
 {
   ulong a = 0, v = 0;
@@ -270,6 +265,6 @@ void mcor_node_signs(ulong known, __global const real* value, __global const rea
     a |= (ulong)(value[n] >= iso) << n;
     v |= (ulong)(MCOR_FIELD == 2 || weight[n] >= node_threshold) << n;
   }
-  *above = a & known;
-  *valid = v & known;
+  *above = a;
+  *valid = v;
 }

@@ -302,7 +302,6 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
  * evaluated. wide: those of the brick's region, if it is complete. */
 bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wide, real iso)
 {
-  const ulong wanted = MCOR_ITEM_NODES == 64 ? ~0UL : 1UL;
   bool inside = true;
   for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
   {
@@ -323,7 +322,7 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wid
     {
       return false;
     }
-    mcor_node_sum(grid, &query, &tile, wanted, &sums);
+    mcor_node_sum(grid, &query, &tile, &sums);
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
       inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
@@ -413,8 +412,8 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
     return 0;
   }
   mcor_node_sums sums;
-  mcor_node_sum(grid, &query, &tile, ~0UL, &sums);
-  mcor_node_store(&sums, ~0UL, value, weight);
+  mcor_node_sum(grid, &query, &tile, &sums);
+  mcor_node_store(&sums, value, weight);
   return ~0UL;
 }
 
@@ -458,23 +457,9 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
         mcor_seed_brick(&grid, brick, &wide, sides, iso, node_threshold, states + m, value, weight);
       if (known[slot])
       {
-        mcor_node_signs(
-          known[slot], value, weight, iso, node_threshold, above + slot, valid + slot);
+        mcor_node_signs(value, weight, iso, node_threshold, above + slot, valid + slot);
       }
     }
-  }
-}
-
-/* One work-item = one brick. Writes the signs of nodes known from another iso value. */
-__kernel void mcor_seed_signs(const int brick_count, __global const ulong* known,
-  __global const real* node_value, __global const real* node_weight, const real iso,
-  const real node_threshold, __global ulong* above, __global ulong* valid)
-{
-  const int slot = get_global_id(0);
-  if (slot < brick_count && known[slot])
-  {
-    mcor_node_signs(known[slot], node_value + slot * 64L, node_weight + slot * 64L, iso,
-      node_threshold, above + slot, valid + slot);
   }
 }
 

@@ -5,18 +5,29 @@
 
 #include <limits.h>
 
+/* Chunks into which `count` elements are cut: none is so short that walking it takes less time than
+ * the launches that several need. */
+static int mcor_chunks(const mcor_context* context, int count)
+{
+  const int most = count / (context->cl.lanes == 1 ? 64 : 16384);
+  return most < 1 ? 1 : most < context->cl.chunks ? most : context->cl.chunks;
+}
+
 /* Replaces counts[0..count) by their exclusive prefix sums; element `count` becomes the total. The
  * buffer holds count + 1 ints. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
 {
-  const int chunks = context->cl.chunks;
+  const int chunks = mcor_chunks(context, count);
   cl_long sum = 0;
   MCOR_TRY(
     mcor_reserve(context, &context->scan_sums, ((size_t)chunks + 1) * sizeof(cl_long)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
-    MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks),
-    MCOR_BUFFER(&context->scan_sums)));
+  if (chunks > 1)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
+      MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks),
+      MCOR_BUFFER(&context->scan_sums)));
+  }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
     MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
   MCOR_TRY(mcor_read(
@@ -38,11 +49,12 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
 
 /* Bits that one round of sorting treats: as few rounds as can be, of about the same size, with a
  * histogram no larger than what is sorted. */
-static int mcor_digit_bits(const mcor_context* context, int count, uint64_t key_limit)
+static int mcor_digit_bits(
+  const mcor_context* context, int chunks, int count, uint64_t key_limit)
 {
   int most = context->cl.lanes == 1 ? 8 : 11; /* MCOR_DIGIT_BITS of mcor_scan.cl */
   int bits = 1;
-  while (most > 8 && context->cl.chunks << most > count)
+  while (most > 8 && chunks << most > count)
   {
     --most;
   }
@@ -58,7 +70,8 @@ static int mcor_digit_bits(const mcor_context* context, int count, uint64_t key_
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
-  const int chunks = context->cl.chunks, bits = mcor_digit_bits(context, count, key_limit);
+  const int chunks = mcor_chunks(context, count);
+  const int bits = mcor_digit_bits(context, chunks, count, key_limit);
   const size_t n = (size_t)count;
   int total;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));

@@ -30,8 +30,7 @@ __kernel void mcor_scan_sum(
   sums[chunk] = sum;
 }
 
-/* One work-item in all. Reads the chunk sums. Writes their exclusive prefix sums, the total
- * last. */
+/* One work-item in all. Reads the chunk sums. Writes their exclusive prefix sums. */
 __kernel void mcor_scan_top(const int chunks, __global long* sums)
 {
   if (get_global_id(0) != 0)
@@ -45,30 +44,31 @@ __kernel void mcor_scan_top(const int chunks, __global long* sums)
     sums[i] = sum;
     sum += s;
   }
-  sums[chunks] = sum;
 }
 
-/* One work-item = one chunk. Reads counts and chunk sums. Writes the exclusive prefix sums in place
- * of the counts; element `count` becomes the total. */
+/* One work-item = one chunk. Reads counts, and the scanned chunk sums if there are several. Writes
+ * the exclusive prefix sums in place of the counts; element `count` becomes the total, and so does
+ * that behind the chunk sums. */
 __kernel void mcor_scan_fill(
-  __global int* counts, const int count, const int chunks, __global const long* sums)
+  __global int* counts, const int count, const int chunks, __global long* sums)
 {
   const int chunk = get_global_id(0);
   if (chunk >= chunks)
   {
     return;
   }
-  int sum = (int)sums[chunk];
+  long sum = chunks > 1 ? sums[chunk] : 0;
   const int end = mcor_chunk_begin(chunk + 1, chunks, count);
   for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
   {
     const int c = counts[i];
-    counts[i] = sum;
+    counts[i] = (int)sum;
     sum += c;
   }
   if (chunk == chunks - 1)
   {
-    counts[count] = sum;
+    counts[count] = (int)sum;
+    sums[chunks] = sum;
   }
 }
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const int sizes[] = { 0, 1, 2, 15, 16, 17, 255, 1000, 100003 };
+static const int sizes[] = { 0, 1, 2, 15, 16, 17, 255, 1000, 40000, 100003 };
 #define SIZE_COUNT (int)(sizeof sizes / sizeof sizes[0])
 
 /* Key sets: dense, with many repeats, sparse over the whole range, all equal, all but one equal. */

@@ -4,10 +4,10 @@
 /* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices
  * numbered by lattice edge. */
 
-/* One work-item = one brick. Reads the cells to examine. Writes the nodes that are not yet known, of
- * a brick with any that they need: where a surface grows it mostly needs the others next, and the
- * particles are gathered once. Writes which cells are new since the last time, too; they are then
- * kept in `examined`. */
+/* One work-item = one brick. Reads the cells to examine. Writes its nodes if they need any and none
+ * is known yet: where a surface grows it mostly needs the others next, and the particles are
+ * gathered once. Writes which cells are new since the last time, too; they are then kept in
+ * `examined`. */
 __kernel void mcor_march_need(const int brick_count, __global const int* neighbours,
   __global const ulong* cells, __global const ulong* known, __global ulong* need,
   __global ulong* examined, __global ulong* fresh)
@@ -17,14 +17,17 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   {
     return;
   }
-  ulong m[8];
-  mcor_brick_masks(cells, neighbours, slot, 7, m);
   bool some = false;
-  for (int d = 0; d < 8; ++d)
+  if (!known[slot])
   {
-    some |= mcor_cells_reach(m[d], d);
+    ulong m[8];
+    mcor_brick_masks(cells, neighbours, slot, 7, m);
+    for (int d = 0; d < 8; ++d)
+    {
+      some |= mcor_cells_reach(m[d], d);
+    }
   }
-  need[slot] = some ? ~known[slot] : 0;
+  need[slot] = some ? ~0UL : 0;
   fresh[slot] = cells[slot] & ~examined[slot];
   examined[slot] = cells[slot];
 }

@@ -25,7 +25,8 @@ class Program:
 
     def run(self, path, options, runs=None):
         """Medians of the timed runs: one process that extracts the surface once more than it is
-        timed, each time from scratch but for the OpenCL program. The first, which loads that, is apart."""
+        timed, each time from scratch but for the OpenCL program. The first, which loads that, is apart.
+        A process before it builds the program, if that is not cached: the compiler takes memory."""
         runs = runs or self.runs
         key = (str(path), tuple(map(str, options)), runs)
         if key not in self.known:
@@ -34,6 +35,7 @@ class Program:
 
     def measure(self, path, options, runs):
         print(f"marching-correctors {path.name} {' '.join(map(str, options))}", file=sys.stderr)
+        self.start(path, options, 1)
         found = self.start(path, options, runs + 1)[0]
         first, *rest = found["runs"]
         seconds = [run["wall_seconds"] for run in rest]

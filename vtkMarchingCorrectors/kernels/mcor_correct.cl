@@ -102,20 +102,36 @@ realv mcor_correct_ratio(realv x, realv y)
   return y != 0 ? x / (y != 0 ? y : (realv)1) : (realv)-1;
 }
 
-/* Root of the cubic through the values at 0, 1 and t and the slope at t: near t, by Newton
- * steps. */
-realv mcor_correct_cubic(realv v0, realv v1, realv t, realv v, realv slope)
+/* Root d of v + slope d + c2 d^2 + c3 d^3 near 0, by Newton steps. */
+realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
 {
-  const realv a = ((v0 - v) / t + slope) / t;                      /* (p(0) - tangent) / t^2 */
-  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t);    /* the same at 1 */
-  const realv c3 = b - a, c2 = a + c3 * t;
   realv d = -mcor_correct_ratio(v, slope);
   for (int i = 0; i < 3; ++i)
   {
     d -= mcor_correct_ratio(v + d * (slope + d * (c2 + d * c3)),
       slope + d * ((real)2 * c2 + d * (real)3 * c3));
   }
-  return t + d;
+  return d;
+}
+
+/* Root near t of the cubic through the values at 0, 1 and t and the slope at t. */
+realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
+{
+  const realv a = ((v0 - v) / t + slope) / t;                      /* (p(0) - tangent) / t^2 */
+  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t);    /* the same at 1 */
+  const realv c3 = b - a, c2 = a + c3 * t;
+  return t + mcor_correct_root(v, slope, c2, c3);
+}
+
+/* Root near t of the cubic through the values and slopes at t and where the last step began, which
+ * `last` is from t. */
+realv mcor_correct_next(
+  realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
+{
+  const realv inv = last != 0 ? (real)1 / (last != 0 ? last : (realv)1) : (realv)0;
+  const realv a = ((last_v - v) * inv - slope) * inv; /* c2 + c3 last */
+  const realv b = (last_slope - slope) * inv;         /* 2 c2 + 3 c3 last */
+  return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);
 }
 
 /* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight. */
@@ -137,6 +153,10 @@ void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int l
 /* Where the gradient is small, a small residual alone may be far from the surface: along the edge,
  * a vertex is also to come this close. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
+
+/* As far as rounding lets it: that of a sum, per its value. A Shepard mean's terms against the iso
+ * value vanish at the surface. */
+#define MCOR_SUM_ROUNDING (MCOR_FIELD == 0 ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
 /* A bracket of this length is not halved any more. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
@@ -187,6 +207,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
   const fixv rising = e->v0 < 0;
   fixv active = low < high;
+  realv last_t = t0, last_value = 0, last_slope = 0;
   realv reached_low = fmax(t0 - MCOR_EDGE_SLACK, (realv)0);
   realv reached_high = fmin(t0 + MCOR_EDGE_SLACK, (realv)1);
   mcor_tile_init(&reach->tile);
@@ -203,7 +224,8 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     const realv slope = at->gx * e->ax + at->gy * e->ay + at->gz * e->az;
     const realv error = fabs(at->value);
     active = active && high - low > MCOR_EDGE_RESOLUTION &&
-      (error > (real)0.5 * tolerance || error > MCOR_EDGE_ERROR * fabs(slope));
+      (error > (real)0.5 * tolerance ||
+        error > fmax(MCOR_EDGE_ERROR * fabs(slope), (realv)(MCOR_SUM_ROUNDING * fabs(iso))));
     if (i >= limit || !MCOR_ANY(active))
     {
       return;
@@ -211,8 +233,12 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     const fixv before = rising ? at->value < 0 : at->value >= 0;
     low = before ? *t : low;
     high = before ? high : *t;
-    realv next = i == 0 ? mcor_correct_cubic(e->v0, e->v1, *t, at->value, slope)
-                        : *t - mcor_correct_ratio(at->value, slope);
+    realv next = i == 0
+      ? mcor_correct_first(e->v0, e->v1, *t, at->value, slope)
+      : mcor_correct_next(*t, at->value, slope, last_t - *t, last_value, last_slope);
+    last_t = *t;
+    last_value = at->value;
+    last_slope = slope;
     /* Newton may creep where the field has a kink or no slope: from the 6th step on every other
      * step halves the bracket. */
     const bool newton = i < 5 || (i & 1);

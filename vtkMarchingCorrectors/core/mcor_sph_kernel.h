@@ -22,8 +22,8 @@
 
 /* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps it has the value of one side. */
 
-/* With a = 2 - q and b = 1 - q where positive, 1/4 a^3 - b^3; as a - b = 1 where b is not 0, this is
- * a c + b^2 with c = 1/4 a^2 - b^2, of which the derivative is -3 c. */
+/* With a = 2 - q and b = 1 - q where positive, 1/4 a^3 - b^3; as a - b = 1 where b is not 0, this
+ * is a c + b^2 with c = 1/4 a^2 - b^2, and its derivative is -3 c. */
 realv mcor_w_cubic(realv q)
 {
   const realv d = (real)2 - q;

@@ -35,6 +35,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
       }
       for (int i = begin; i < end; ++i)
       {
+        /* Again: to keep it takes longer. */
         mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
           MCOR_REACH(reach, z, i), d);
         const realv k = mcor_weight_gradient(

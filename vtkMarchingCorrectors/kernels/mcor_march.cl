@@ -52,8 +52,8 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
   mcor_node_store(&sums, node_value + first_node, node_weight + first_node);
 }
 
-/* One work-item = one brick. Reads the values of its nodes where these are `evaluated`: they are known
- * from now on. Writes which are above the iso value, and which are valid. */
+/* One work-item = one brick. Reads the values of its nodes where these are `evaluated`: they are
+ * known from now on. Writes which are above the iso value, and which are valid. */
 __kernel void mcor_march_sign(const int brick_count, __global const ulong* evaluated,
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)

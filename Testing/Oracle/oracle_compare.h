@@ -14,6 +14,9 @@ extern "C"
 {
 #endif
 
+/* With less fluid weight a point is at the rim of a kernel. */
+#define COMPARE_RIM 1e-6
+
   /* A field on its lattice, classified for one iso value. */
   typedef struct oracle_reference
   {
@@ -73,6 +76,7 @@ extern "C"
     int64_t below_threshold; /* vertices kept although their weight is too low */
     int64_t unsettled;       /* nodes and cells at the surface whose state depends on rounding */
     double weight_error, eigenvalue_error, gradient_error; /* of the optional arrays, relative */
+    double rim_gradient_error; /* where the fluid's weight is below COMPARE_RIM */
     char first[240]; /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 

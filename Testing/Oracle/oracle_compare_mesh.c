@@ -119,9 +119,11 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
   if (state->surface->gradients && sample->gradient_scale > 0.0)
   {
+    double* worst =
+      sample->weight < COMPARE_RIM ? &result->rim_gradient_error : &result->gradient_error;
     for (int axis = 0; axis < 3; ++axis)
     {
-      result->gradient_error = fmax(result->gradient_error,
+      *worst = fmax(*worst,
         fabs(state->surface->gradients[3 * v + axis] - sample->gradient[axis]) /
           sample->gradient_scale);
     }

@@ -125,12 +125,12 @@ realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
 }
 
 /* Root near t of the cubic through the values and slopes at t and where the last step began, which
- * `last` is from t; after a short one, by the slope at t alone. */
+ * `last` is from t; after a short one, or from a void, by the slope at t alone. */
 realv mcor_correct_next(
   realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
 {
-  const fixv is_long = fabs(last) > (real)1e-3f;
-  const realv inv = is_long ? (real)1 / (is_long ? last : (realv)1) : (realv)0;
+  const fixv two = fabs(last) > (real)1e-3f && fabs(last_v) < (real)1e20f;
+  const realv inv = two ? (real)1 / (two ? last : (realv)1) : (realv)0;
   const realv a = ((last_v - v) * inv - slope) * inv; /* c2 + c3 last */
   const realv b = (last_slope - slope) * inv;         /* 2 c2 + 3 c3 last */
   return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);

@@ -262,9 +262,10 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   for (int d = 0; d < 8; ++d)
   {
-    const int m = mcor_cells_reach(pushed, d) ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
-                                      brick.y + (d >> 1 & 1), brick.z + (d >> 2))
-                                  : -1;
+    const int m = mcor_cells_reach(pushed, d)
+      ? mcor_find_mark(
+          MCOR_BLOCK_ARGS, brick.x + (d & 1), brick.y + (d >> 1 & 1), brick.z + (d >> 2))
+      : -1;
     if (m >= 0 && mcor_ask_brick(asked, m))
     {
       atomic_or(flags, 2);

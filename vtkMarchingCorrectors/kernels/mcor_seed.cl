@@ -31,12 +31,9 @@ void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
 realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
 {
   realv xl, xh, yl, yh, zl, zh;
-  mcor_seed_interval(fmax(fabs(dx) - e, (realv)0) * inv_h,
-    (fabs(dx) + e) * inv_h, &xl, &xh);
-  mcor_seed_interval(fmax(fabs(dy) - e, (realv)0) * inv_h,
-    (fabs(dy) + e) * inv_h, &yl, &yh);
-  mcor_seed_interval(fmax(fabs(dz) - e, (realv)0) * inv_h,
-    (fabs(dz) + e) * inv_h, &zl, &zh);
+  mcor_seed_interval(fmax(fabs(dx) - e, (realv)0) * inv_h, (fabs(dx) + e) * inv_h, &xl, &xh);
+  mcor_seed_interval(fmax(fabs(dy) - e, (realv)0) * inv_h, (fabs(dy) + e) * inv_h, &yl, &yh);
+  mcor_seed_interval(fmax(fabs(dz) - e, (realv)0) * inv_h, (fabs(dz) + e) * inv_h, &zl, &zh);
   const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
   const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
   return side > 0 ? fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh))

@@ -79,9 +79,7 @@ mcor_status mcor_sort(
   MCOR_TRY(mcor_reserve(context, &context->sort_values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort_histogram,
     (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(
-    context, "mcor_sort_identity", MCOR_LIGHT, count, MCOR_INT(count), MCOR_BUFFER(values)));
-  for (int shift = 0; shift < 64 && (key_limit - 1) >> shift; shift += bits)
+  for (int shift = 0; shift == 0 || (shift < 64 && (key_limit - 1) >> shift); shift += bits)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
       MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),

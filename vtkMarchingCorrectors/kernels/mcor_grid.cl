@@ -40,33 +40,6 @@ bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
   return volume[i] != volume[j] ? volume[i] < volume[j] : solid[i] < solid[j];
 }
 
-/* Insertion sort; its limit. x, which mostly decides, is at hand. */
-#define MCOR_INSERTION_LIMIT 64
-void mcor_grid_insert(__global const fix* xyz, __global const real* inv_h,
-  __global const real* volume, __global const uchar* solid, __global int* order, int count)
-{
-  fix x[MCOR_INSERTION_LIMIT];
-  int sorted[MCOR_INSERTION_LIMIT];
-  for (int i = 0; i < count; ++i)
-  {
-    const int item = order[i];
-    const fix item_x = xyz[3L * item];
-    int to = i;
-    for (; to > 0 && (item_x < x[to - 1] || (item_x == x[to - 1] &&
-      mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1]))); --to)
-    {
-      x[to] = x[to - 1];
-      sorted[to] = sorted[to - 1];
-    }
-    x[to] = item_x;
-    sorted[to] = item;
-  }
-  for (int i = 0; i < count; ++i)
-  {
-    order[i] = sorted[i];
-  }
-}
-
 /* Heap sort's sift: the child `root` sinks in order[0..count). */
 void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
   __global const real* volume, __global const uchar* solid, __global int* order, int root,
@@ -90,15 +63,9 @@ void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
   order[root] = item;
 }
 
-/* Sorts the particles of a cell, so that their order no longer depends on that of the input. */
-void mcor_grid_sort_cell(__global const fix* xyz, __global const real* inv_h,
+void mcor_grid_heap_sort(__global const fix* xyz, __global const real* inv_h,
   __global const real* volume, __global const uchar* solid, __global int* order, int count)
 {
-  if (count <= MCOR_INSERTION_LIMIT)
-  {
-    mcor_grid_insert(xyz, inv_h, volume, solid, order, count);
-    return;
-  }
   for (int i = count / 2 - 1; i >= 0; --i)
   {
     mcor_grid_sift(xyz, inv_h, volume, solid, order, i, count);
@@ -112,25 +79,86 @@ void mcor_grid_sort_cell(__global const fix* xyz, __global const real* inv_h,
   }
 }
 
-/* One work-item = one particle, the first of its cell. Reads the input arrays. Writes the order of
- * the particles in the cell, and the arrays in that order, as they are at hand. `volume` is 0 where
- * it is still to be computed. */
+/* Asks for an element that will be needed. */
+#if MCOR_CPU && __has_builtin(__builtin_prefetch)
+#define MCOR_PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
+#else
+#define MCOR_PREFETCH(p)
+#endif
+
+/* Particles that one work-item puts in order: those of the cells that begin among so many; and for
+ * how many it does so by insertion. */
+#define MCOR_ORDER_CHUNK (MCOR_LANES == 1 ? 1 : 64)
+#define MCOR_ORDER_LIMIT (MCOR_LANES == 1 ? 64 : 128)
+
+/* Insertion sort in each of some cells. Particles lie far apart in the input arrays: all are asked
+ * for before the first is needed. */
+void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
+  __global const real* inv_h, __global const real* volume, __global const uchar* solid,
+  __global int* order, int count)
+{
+  fix x[MCOR_ORDER_LIMIT];
+  int sorted[MCOR_ORDER_LIMIT];
+  for (int i = 0; i < count; ++i)
+  {
+    sorted[i] = order[i];
+    x[i] = xyz[3L * sorted[i]];
+    MCOR_PREFETCH(inv_h + sorted[i]);
+    MCOR_PREFETCH(volume + sorted[i]);
+  }
+  for (int i = 0, cell = 0; i < count; ++i)
+  {
+    const int item = sorted[i];
+    const fix item_x = x[i];
+    cell = i > 0 && keys[i] == keys[i - 1] ? cell : i;
+    int to = i;
+    for (; to > cell && (item_x < x[to - 1] || (item_x == x[to - 1] &&
+      mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1]))); --to)
+    {
+      x[to] = x[to - 1];
+      sorted[to] = sorted[to - 1];
+    }
+    x[to] = item_x;
+    sorted[to] = item;
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    order[i] = sorted[i];
+  }
+}
+
+/* One work-item = the cells that begin among MCOR_ORDER_CHUNK particles. Reads the input arrays.
+ * Writes the order of the particles in these cells, so that it no longer depends on that of the
+ * input, and the arrays in that order. `volume` is 0 where it is still to be computed. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   __global const fix* xyz, __global const real* inv_h_in, __global const real* volume,
   __global const uchar* solid, __global int* order, __global fix* px, __global fix* py,
   __global fix* pz, __global real* inv_h_out, __global real* weight, __global real* trim_weight)
 {
-  const int begin = get_global_id(0);
-  if (begin >= count || (begin > 0 && keys[begin] == keys[begin - 1]))
+  int begin = get_global_id(0) * MCOR_ORDER_CHUNK;
+  int end = min(begin + MCOR_ORDER_CHUNK, count);
+  while (begin > 0 && begin < end && keys[begin] == keys[begin - 1])
   {
-    return;
+    ++begin;
   }
-  int end = begin + 1;
-  while (end < count && keys[end] == keys[begin])
+  while (begin < end && end < count && keys[end] == keys[end - 1])
   {
     ++end;
   }
-  mcor_grid_sort_cell(xyz, inv_h_in, volume, solid, order + begin, end - begin);
+  const bool few = end - begin <= MCOR_ORDER_LIMIT;
+  if (few)
+  {
+    mcor_grid_insert(
+      keys + begin, xyz, inv_h_in, volume, solid, order + begin, end - begin);
+  }
+  for (int first = begin, last = begin + 1; !few && last <= end; ++last)
+  {
+    if (last == end || keys[last] != keys[first])
+    {
+      mcor_grid_heap_sort(xyz, inv_h_in, volume, solid, order + first, last - first);
+      first = last;
+    }
+  }
   for (int i = begin; i < end; ++i)
   {
     const int j = order[i];

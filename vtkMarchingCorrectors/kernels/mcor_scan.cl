@@ -98,8 +98,9 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
   }
 }
 
-/* One work-item = one chunk. Reads keys, values and the scanned histogram. Writes both in the order
- * of the digit, equal digits in the order in which they came. */
+/* One work-item = one chunk. Reads keys, values (in the first round that of key i is i) and the
+ * scanned histogram. Writes both in the order of the digit, equal digits in the order in which they
+ * came. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
   const int count, const int chunks, const int shift, const int bits,
   __global const int* histogram, __global ulong* sorted_keys, __global int* sorted_values)
@@ -121,17 +122,7 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
     const ulong key = keys[i];
     const int to = bins[(int)(key >> shift) & (radix - 1)]++;
     sorted_keys[to] = key;
-    sorted_values[to] = values[i];
-  }
-}
-
-/* One work-item = one key. Writes value i = i. */
-__kernel void mcor_sort_identity(const int count, __global int* values)
-{
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    values[i] = i;
+    sorted_values[to] = shift == 0 ? i : values[i];
   }
 }
 

@@ -229,32 +229,32 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, __global c
   {
     return;
   }
-  mcor_query query;
-  const real coarsest =
-    mcor_query_particles(&grid, &query, begin, min(MCOR_LANES, particle_count - begin));
-  query.radius = (float)(MCOR_SUPPORT / (coarsest * h_scale)) * 1.0001f;
-#if MCOR_LANES == 1
-  const fixv x = px[begin], y = py[begin], z = pz[begin];
-  const realv inv_h = p_inv_h[begin] * h_scale;
-#else
-  const fixv x = MCOR_CAT(vload, MCOR_LANES)(0, px + begin);
-  const fixv y = MCOR_CAT(vload, MCOR_LANES)(0, py + begin);
-  const fixv z = MCOR_CAT(vload, MCOR_LANES)(0, pz + begin);
-  const realv inv_h = MCOR_CAT(vload, MCOR_LANES)(0, p_inv_h + begin) * h_scale;
-#endif
+  const int end = min(begin + MCOR_LANES, particle_count);
+  const fixv x = MCOR_LOAD_FIX(begin, px), y = MCOR_LOAD_FIX(begin, py),
+             z = MCOR_LOAD_FIX(begin, pz);
+  const realv scale = grid.unit * h_scale * MCOR_LOAD(begin, p_inv_h);
   realv sum = 0;
+  mcor_query query;
   mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+  for (int row = begin, next; row < end; row = next)
   {
-    for (int i = 0; i < tile.count; ++i)
+    real coarsest;
+    next = row + mcor_query_particles(&grid, &query, row, end, &coarsest);
+    query.radius = (float)(MCOR_SUPPORT / (coarsest * h_scale)) * 1.0001f;
+    const fixv lane = mcor_lane_index();
+    const fixv inside = lane >= (fixv)(row - begin) && lane < (fixv)(next - begin);
+    mcor_tile_init(&tile);
+    for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
     {
-      const int k = tile.list[i];
-      const realv scale = grid.unit * inv_h;
-      const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
-      const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
-      const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
-      sum += mass[k] * mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1);
+      for (int i = 0; i < tile.count; ++i)
+      {
+        const int k = tile.list[i];
+        const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
+        const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
+        const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
+        const realv m = inside ? (realv)mass[k] : (realv)0;
+        sum += m * mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1);
+      }
     }
   }
 #if MCOR_LANES == 1

@@ -108,14 +108,14 @@ void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mco
   }
 }
 
-/* Fits the query to particles [begin, end) and what may pair with them. Returns whether there are
- * particles on both sides. */
-bool mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale,
-  __global const uchar* sides, mcor_query* query)
+/* Fits the query to those of particles [begin, end) that lie in one row, and to what may pair with
+ * them. Returns how many. */
+int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
-  const real coarsest = mcor_query_particles(grid, query, begin, end - begin);
+  real coarsest;
+  const int count = mcor_query_particles(grid, query, begin, end, &coarsest);
   query->radius = (float)(MCOR_PAIR_REACH / (coarsest * h_scale));
-  return mcor_query_sides(grid, query, sides) == 3;
+  return count;
 }
 
 /* Greatest inv_h of the tile's particles. */
@@ -134,18 +134,13 @@ real mcor_pair_finest(const mcor_tile* tile)
   return finest;
 }
 
-/* Marks cells for particles [begin, end), of which there are no more than MCOR_LANES. */
-void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, int begin, int end,
-  __global const uchar* sides, real iso, real h_scale, __global uint* cells)
+/* Marks cells for particles [begin, end), which the query was fitted to. */
+void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_query* query,
+  int begin, int end, real iso, real h_scale, __global uint* cells)
 {
-  mcor_query query;
-  if (!mcor_pair_query(grid, begin, end, h_scale, sides, &query))
-  {
-    return;
-  }
   mcor_tile tile;
   mcor_tile_init(&tile);
-  for (bool first = true; mcor_tile_next(grid, &query, &tile, first); first = false)
+  for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
   {
     const int seen = mcor_tile_sides(&tile, iso);
     const real finest = mcor_pair_finest(&tile);
@@ -156,7 +151,7 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, int begi
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
         mcor_pair_mark_particle(
-          grid, MCOR_BLOCK_ARGS, &query, &tile, j, iso, h_scale, cells);
+          grid, MCOR_BLOCK_ARGS, query, &tile, j, iso, h_scale, cells);
       }
     }
   }
@@ -172,22 +167,23 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, int begi
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* sides,
   const real iso, const real h_scale, __global uint* cells)
 {
-  const int begin = get_global_id(0) * MCOR_PAIR_GROUPS * MCOR_LANES;
-  if (begin >= particle_count)
-  {
-    return;
-  }
   const mcor_grid grid = MCOR_GRID;
-  const int end = min(begin + MCOR_PAIR_GROUPS * MCOR_LANES, particle_count);
+  const int most = MCOR_PAIR_GROUPS * MCOR_LANES;
+  const int begin = get_global_id(0) * most, end = min(begin + most, particle_count);
   mcor_query query;
-  if (!mcor_pair_query(&grid, begin, end, h_scale, sides, &query))
+  for (int row = begin, row_end; row < end; row = row_end)
   {
-    return;
-  }
-  for (int i = begin; i < end; i += MCOR_LANES)
-  {
-    mcor_pair_mark_particles(
-      &grid, MCOR_BLOCK_ARGS, i, min(i + MCOR_LANES, end), sides, iso, h_scale, cells);
+    row_end = row + mcor_pair_query(&grid, row, end, h_scale, &query);
+    const bool far = mcor_query_sides(&grid, &query, sides) != 3;
+    for (int i = row, next; i < row_end && !far; i = next)
+    {
+      next = i + mcor_pair_query(&grid, i, min(i + MCOR_LANES, row_end), h_scale, &query);
+      if (mcor_query_sides(&grid, &query, sides) == 3)
+      {
+        mcor_pair_mark_particles(
+          &grid, MCOR_BLOCK_ARGS, &query, i, next, iso, h_scale, cells);
+      }
+    }
   }
 }
 

@@ -59,6 +59,17 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
 #endif
 
+/* MCOR_LANES elements from p[i] on. Compilers may make several accesses of vloadn and vstoren. */
+#if MCOR_LANES == 1
+#define MCOR_LOAD(i, p) ((p)[i])
+#define MCOR_LOAD_FIX(i, p) ((p)[i])
+#else
+typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
+typedef realv __attribute__((aligned(4))) mcor_loose_realv;
+#define MCOR_LOAD(i, p) MCOR_CAT(vload, MCOR_LANES)(0, (p) + (i))
+#define MCOR_LOAD_FIX(i, p) (*(__global const mcor_loose_fixv*)((p) + (i)))
+#endif
+
 /* 0, 1, ... MCOR_LANES - 1. */
 fixv mcor_lane_index(void)
 {

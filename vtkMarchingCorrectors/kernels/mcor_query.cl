@@ -229,22 +229,47 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
   return false;
 }
 
-/* Fits the query's box to sorted particles [begin, begin + count); returns the least of their
- * inv_h. */
-real mcor_query_particles(const mcor_grid* grid, mcor_query* query, int begin, int count)
+/* Fits the query's box to those of the sorted particles [begin, end) that lie in the first one's
+ * row, in which x ascends. Returns how many, and the least of their inv_h. */
+int mcor_query_particles(
+  const mcor_grid* grid, mcor_query* query, int begin, int end, real* coarsest)
 {
-  real coarsest = grid->inv_h[begin];
+  __global const fix* const position[3] = { grid->px, grid->py, grid->pz };
+  fixv low[3], high[3];
+  realv least = grid->inv_h[begin];
+  int count = end - begin;
   for (int a = 0; a < 3; ++a)
   {
-    __global const fix* p = a == 0 ? grid->px : a == 1 ? grid->py : grid->pz;
-    query->low[a] = query->high[a] = p[begin];
-    for (int i = begin + 1; i < begin + count; ++i)
+    low[a] = high[a] = position[a][begin];
+  }
+  for (int i = 0; i < count; i += MCOR_LANES)
+  {
+    const fixv ends = MCOR_LOAD_FIX(begin + i + 1, grid->px) < MCOR_LOAD_FIX(begin + i, grid->px);
+    for (int lane = 0; MCOR_ANY(ends) && i + lane < count && lane < MCOR_LANES; ++lane)
     {
-      query->low[a] = min(query->low[a], p[i]);
-      query->high[a] = max(query->high[a], p[i]);
-      coarsest = min(coarsest, grid->inv_h[i]);
+      count = MCOR_GET_FIX(ends, lane) ? i + lane + 1 : count;
+    }
+    const fixv inside = mcor_lane_index() < (fixv)(count - i);
+    for (int a = 0; a < 3; ++a)
+    {
+      const fixv p = MCOR_LOAD_FIX(begin + i, position[a]);
+      low[a] = inside ? min(low[a], p) : low[a];
+      high[a] = inside ? max(high[a], p) : high[a];
+    }
+    least = inside ? fmin(least, MCOR_LOAD(begin + i, grid->inv_h)) : least;
+  }
+  *coarsest = MCOR_GET(least, 0);
+  for (int a = 0; a < 3; ++a)
+  {
+    query->low[a] = MCOR_GET_FIX(low[a], 0);
+    query->high[a] = MCOR_GET_FIX(high[a], 0);
+    for (int lane = 1; lane < MCOR_LANES; ++lane)
+    {
+      query->low[a] = min(query->low[a], MCOR_GET_FIX(low[a], lane));
+      query->high[a] = max(query->high[a], MCOR_GET_FIX(high[a], lane));
+      *coarsest = fmin(*coarsest, MCOR_GET(least, lane));
     }
   }
   mcor_query_place(grid, query, query->low);
-  return coarsest;
+  return count;
 }

@@ -7,17 +7,6 @@
  * lines. */
 #define MCOR_ALIGNED __attribute__((aligned(sizeof(real) * MCOR_LANES)))
 
-/* MCOR_LANES elements from p[i] on. Compilers may make several accesses of vloadn and vstoren. */
-#if MCOR_LANES == 1
-#define MCOR_LOAD(i, p) ((p)[i])
-#define MCOR_LOAD_FIX(i, p) ((p)[i])
-#else
-typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
-typedef realv __attribute__((aligned(4))) mcor_loose_realv;
-#define MCOR_LOAD(i, p) MCOR_CAT(vload, MCOR_LANES)(0, (p) + (i))
-#define MCOR_LOAD_FIX(i, p) (*(__global const mcor_loose_fixv*)((p) + (i)))
-#endif
-
 /* Copies of the particles that reach a query's box, MCOR_TILE at a time:
  *
  *   mcor_tile_init(&tile);

@@ -12,8 +12,6 @@
  * and need more rows: 2 took as long, 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
-#define MCOR_ORDER_CHUNK 64 /* as in mcor_grid.cl */
-
 /* One level for each factor of 2 of support radius that occurs; renumbers staging->level. Returns
  * the number of search cells of all levels. */
 static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
@@ -106,8 +104,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
   mcor_release_sort(context);
   MCOR_TRY(mcor_reserve_particles(context, count));
-  const int chunk = context->cl.lanes == 1 ? 1 : MCOR_ORDER_CHUNK;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_HEAVY, (count - 1) / chunk + 1,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
     MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h),
     MCOR_BUFFER(size), MCOR_BUFFER(solid), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px),
     MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h),

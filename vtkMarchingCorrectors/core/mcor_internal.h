@@ -194,6 +194,12 @@ static inline bool mcor_is_put(const cl_int* scanned, int64_t v)
   return scanned[v] != scanned[v + 1];
 }
 
+/* Batches of so many particles or triangles, above 0. Twin of MCOR_BATCH in mcor_prelude.cl. */
+static inline int mcor_batches(const mcor_context* context, int count)
+{
+  return (count - 1) / (context->cl.lanes == 1 ? 1 : 64) + 1;
+}
+
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
 static inline bool mcor_uses_pairs(const mcor_context* context)
 {

@@ -32,18 +32,15 @@ typedef struct mcor_download
   const uint8_t* flag;
 } mcor_download;
 
-/* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v, and
- * renumbers the triangles. */
-static mcor_status mcor_compact(mcor_context* context, int* count)
+/* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
+static mcor_status mcor_count_used(mcor_context* context, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
-  const int vertices = mesh->vertex_count, corners = 3 * mesh->triangle_count;
+  const int vertices = mesh->vertex_count;
   MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, ((size_t)vertices + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, corners,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, 3 * (size_t)mesh->triangle_count,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
-  MCOR_TRY(mcor_scan(context, &mesh->scanned, vertices, count));
-  return MCOR_LAUNCH(context, "mcor_trim_renumber", MCOR_LIGHT, corners,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->scanned), MCOR_BUFFER(&mesh->triangles));
+  return mcor_scan(context, &mesh->scanned, vertices, count);
 }
 
 /* The buffers of the views. */
@@ -110,7 +107,7 @@ static mcor_status mcor_grow(
 }
 
 static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* input,
-  mcor_surface* s, int64_t points)
+  mcor_surface* s, int64_t points, int64_t triangles)
 {
   const mcor_options* o = context->options;
   const int64_t n = s->point_count;
@@ -130,6 +127,8 @@ static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* in
     { o->boundary_flag, (void**)&s->boundary_flag, 1 },
     { o->iso_value, (void**)&s->iso_value, sizeof(double) },
     { o->nearest_particle, (void**)&s->nearest_particle, sizeof(int64_t) } };
+  MCOR_TRY(mcor_grow(
+    context, (void**)&s->triangles, s->triangle_count, triangles, 3 * sizeof(int32_t)));
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     if (arrays[i].wanted)
@@ -165,13 +164,13 @@ typedef struct mcor_delivery
 
 /* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it
  * lies on the border that the node threshold leaves. */
-static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int v)
+static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
   return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
 }
 
 /* How far the correction moved vertex v, unit L. */
-static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int v)
+static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
   return v < context->mesh.march_count
     ? fabs(mcor_get_real(context, d->linear, v)) * context->lattice.cube
@@ -179,7 +178,7 @@ static double mcor_correction_of(const mcor_context* context, const mcor_downloa
 }
 
 static void mcor_count_correction(
-  const mcor_context* context, const mcor_download* d, int v, mcor_tally* tally)
+  const mcor_context* context, const mcor_download* d, int64_t v, mcor_tally* tally)
 {
   const double tolerance =
     context->options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
@@ -233,8 +232,8 @@ static void mcor_put_normal(const double gradient[3], float normal[3])
 }
 
 /* Vertex v becomes point `to` of the surface. */
-static void mcor_put_point(const mcor_context* context, const mcor_download* d, int v, double iso,
-  mcor_surface* s, int64_t to)
+static void mcor_put_point(const mcor_context* context, const mcor_download* d, int64_t v,
+  double iso, mcor_surface* s, int64_t to)
 {
   const double cube = context->lattice.cube;
   double gradient[3];
@@ -280,7 +279,7 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
   const mcor_download* d = delivery->download;
   mcor_surface* surface = delivery->surface;
   mcor_tally tally = { 0 };
-  for (int v = (int)first; v < (int)last; ++v)
+  for (int64_t v = first; v < last; ++v)
   {
     if (mcor_is_put(d->scanned, v))
     {
@@ -308,36 +307,31 @@ static void mcor_deliver_vertices(
 
 typedef struct mcor_corners
 {
-  const cl_int* from;
+  const cl_int *from, *scanned;
   int32_t* to;
   int32_t base;
 } mcor_corners;
 
-static void mcor_copy_corners(void* data, int slice, int64_t first, int64_t last)
+static void mcor_renumber_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_corners* corners = data;
   for (int64_t i = first; i < last; ++i)
   {
-    corners->to[i] = corners->from[i] + corners->base;
+    corners->to[i] = corners->scanned[corners->from[i]] + corners->base;
   }
   (void)slice;
 }
 
 static mcor_status mcor_deliver_triangles(
-  mcor_context* context, int64_t triangles, mcor_surface* surface)
+  mcor_context* context, const cl_int* scanned, mcor_surface* surface)
 {
   mcor_buffer* buffer = &context->mesh.triangles;
+  const int64_t triangles = context->mesh.triangle_count;
   void* view;
-  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, surface->triangle_count, triangles,
-    3 * sizeof(int32_t)));
-  if (triangles == 0)
-  {
-    return MCOR_OK;
-  }
   MCOR_TRY(mcor_map(context, buffer, (size_t)triangles * 3 * sizeof(cl_int), false, &view));
-  mcor_corners corners = { view, surface->triangles + 3 * surface->triangle_count,
+  mcor_corners corners = { view, scanned, surface->triangles + 3 * surface->triangle_count,
     (int32_t)surface->point_count };
-  mcor_parallel_for(3 * triangles, MCOR_LIGHT_GRAIN, mcor_copy_corners, &corners);
+  mcor_parallel_for(3 * triangles, MCOR_LIGHT_GRAIN, mcor_renumber_slice, &corners);
   MCOR_TRY(mcor_unmap(context, buffer, &view));
   mcor_release(context, buffer);
   return MCOR_OK;
@@ -373,14 +367,14 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
 {
   const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
   int count;
-  MCOR_TRY(mcor_compact(context, &count));
+  MCOR_TRY(mcor_count_used(context, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; 2147483647 is the limit.", (long long)(base + count));
-  MCOR_TRY(mcor_deliver_triangles(context, triangles, surface));
-  MCOR_TRY(mcor_grow_surface(context, input, surface, count));
+  MCOR_TRY(mcor_grow_surface(context, input, surface, count, triangles));
   if (count > 0)
   {
     MCOR_TRY(mcor_map_vertices(context, download));
+    MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
     mcor_deliver_vertices(context, download, iso, surface);
     MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->scanned, surface));
     MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));

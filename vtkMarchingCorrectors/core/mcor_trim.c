@@ -19,15 +19,15 @@ static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int* cuts)
 {
   mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->triangle_count + 1;
-  MCOR_TRY(mcor_reserve(context, &mesh->remaining, n * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->cuts, n * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_LIGHT, mesh->triangle_count,
+  const int batches = mcor_batches(context, mesh->triangle_count);
+  MCOR_TRY(mcor_reserve(context, &mesh->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts)));
-  MCOR_TRY(mcor_scan(context, &mesh->remaining, mesh->triangle_count, remaining));
-  return mcor_scan(context, &mesh->cuts, mesh->triangle_count, cuts);
+  MCOR_TRY(mcor_scan(context, &mesh->remaining, batches, remaining));
+  return mcor_scan(context, &mesh->cuts, batches, cuts);
 }
 
 static mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
@@ -86,9 +86,10 @@ mcor_status mcor_trim(mcor_context* context, double iso)
     MCOR_TRY(mcor_evaluate_boundary(
       context, &mesh->node, &mesh->offset, mesh->march_count, &mesh->boundary));
   }
+  const int batches = mcor_batches(context, mesh->triangle_count);
   MCOR_TRY(mcor_count_trimmed(context, &remaining, &cuts));
   MCOR_TRY(mcor_reserve(context, &mesh->cut_keys, (size_t)cuts * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_LIGHT, mesh->triangle_count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_BUFFER(&mesh->cuts), MCOR_BUFFER(&mesh->cut_keys)));
@@ -96,7 +97,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   MCOR_TRY(mcor_unique(context, &mesh->cut_keys, cuts, (uint64_t)mesh->march_count << 32,
     &mesh->cut_distinct, &mesh->cut_index, &cut_count));
   MCOR_TRY(mcor_reserve(context, &mesh->trimmed, (size_t)remaining * 3 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_LIGHT, mesh->triangle_count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts),

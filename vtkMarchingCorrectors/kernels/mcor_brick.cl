@@ -150,8 +150,8 @@ __kernel void mcor_brick_neighbours(
       mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2));
     if (other >= 0)
     {
-      neighbours[slot * 14 + d - 1] = other;
-      neighbours[other * 14 + d + 6] = slot;
+      neighbours[slot * 14L + d - 1] = other;
+      neighbours[other * 14L + d + 6] = slot;
     }
   }
 }
@@ -205,7 +205,7 @@ __kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first,
     known[slot] = cells[slot] = examined[slot] = above[slot] = valid[slot] = 0;
     for (int n = 0; n < 14; ++n)
     {
-      neighbours[slot * 14 + n] = -1;
+      neighbours[slot * 14L + n] = -1;
     }
   }
   placed[word] |= brick_bits[word];
@@ -231,13 +231,13 @@ __kernel void mcor_brick_join(MCOR_BLOCK_PARAMS, const int first, const int bric
     const int upper = up < 0 ? -1 : slot_of[up], lower = down < 0 ? -1 : slot_of[down];
     if (upper >= 0)
     {
-      neighbours[slot * 14 + d - 1] = upper;
-      neighbours[upper * 14 + d + 6] = slot;
+      neighbours[slot * 14L + d - 1] = upper;
+      neighbours[upper * 14L + d + 6] = slot;
     }
     if (lower >= 0 && lower < first) /* a new one enters both */
     {
-      neighbours[slot * 14 + d + 6] = lower;
-      neighbours[lower * 14 + d - 1] = slot;
+      neighbours[slot * 14L + d + 6] = lower;
+      neighbours[lower * 14L + d - 1] = slot;
     }
   }
 }
@@ -270,8 +270,8 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   valid[slot] = old_valid[old];
   for (int n = 0; n < 64; ++n)
   {
-    node_value[slot * 64 + n] = old_value[old * 64 + n];
-    node_weight[slot * 64 + n] = old_weight[old * 64 + n];
+    node_value[slot * 64L + n] = old_value[old * 64L + n];
+    node_weight[slot * 64L + n] = old_weight[old * 64L + n];
   }
 }
 
@@ -282,7 +282,7 @@ void mcor_brick_masks(
   out[0] = masks[slot];
   for (int d = 1; d < 8; ++d)
   {
-    const int other = neighbours[slot * 14 + first + d - 1];
+    const int other = neighbours[slot * 14L + first + d - 1];
     out[d] = other < 0 ? 0 : masks[other];
   }
 }

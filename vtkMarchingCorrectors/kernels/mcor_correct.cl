@@ -183,8 +183,8 @@ void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int grou
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = from[lane], axis = vertex_edge[v].w & 3;
-    MCOR_SET(edges->v0, lane) = vertex_ends[2 * v];
-    MCOR_SET(edges->v1, lane) = vertex_ends[2 * v + 1];
+    MCOR_SET(edges->v0, lane) = vertex_ends[2L * v];
+    MCOR_SET(edges->v1, lane) = vertex_ends[2L * v + 1];
     MCOR_SET(edges->ax, lane) = axis == 0;
     MCOR_SET(edges->ay, lane) = axis == 1;
     MCOR_SET(edges->az, lane) = axis == 2;

@@ -86,19 +86,15 @@ void mcor_grid_heap_sort(__global const fix* xyz, __global const real* inv_h,
 #define MCOR_PREFETCH(p)
 #endif
 
-/* Particles that one work-item puts in order: those of the cells that begin among so many; and for
- * how many it does so by insertion. */
-#define MCOR_ORDER_CHUNK (MCOR_LANES == 1 ? 1 : 64)
-#define MCOR_ORDER_LIMIT (MCOR_LANES == 1 ? 64 : 128)
-
-/* Insertion sort in each of some cells. Particles lie far apart in the input arrays: all are asked
- * for before the first is needed. */
+/* Insertion sort in each of some cells; its limit. Particles lie far apart in the input arrays: all
+ * are asked for before the first is needed. */
+#define MCOR_INSERTION_LIMIT (MCOR_LANES == 1 ? 64 : 128)
 void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
   __global const real* inv_h, __global const real* volume, __global const uchar* solid,
   __global int* order, int count)
 {
-  fix x[MCOR_ORDER_LIMIT];
-  int sorted[MCOR_ORDER_LIMIT];
+  fix x[MCOR_INSERTION_LIMIT];
+  int sorted[MCOR_INSERTION_LIMIT];
   for (int i = 0; i < count; ++i)
   {
     sorted[i] = order[i];
@@ -127,16 +123,16 @@ void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
   }
 }
 
-/* One work-item = the cells that begin among MCOR_ORDER_CHUNK particles. Reads the input arrays.
- * Writes the order of the particles in these cells, so that it no longer depends on that of the
- * input, and the arrays in that order. `volume` is 0 where it is still to be computed. */
+/* One work-item = the cells that begin in a batch of particles. Reads the input arrays. Writes the
+ * order of the particles in these cells, so that it no longer depends on that of the input, and the
+ * arrays in that order. `volume` is 0 where it is still to be computed. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   __global const fix* xyz, __global const real* inv_h_in, __global const real* volume,
   __global const uchar* solid, __global int* order, __global fix* px, __global fix* py,
   __global fix* pz, __global real* inv_h_out, __global real* weight, __global real* trim_weight)
 {
-  int begin = get_global_id(0) * MCOR_ORDER_CHUNK;
-  int end = min(begin + MCOR_ORDER_CHUNK, count);
+  int begin = get_global_id(0) * MCOR_BATCH;
+  int end = min(begin + MCOR_BATCH, count);
   while (begin > 0 && begin < end && keys[begin] == keys[begin - 1])
   {
     ++begin;
@@ -145,7 +141,7 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   {
     ++end;
   }
-  const bool few = end - begin <= MCOR_ORDER_LIMIT;
+  const bool few = end - begin <= MCOR_INSERTION_LIMIT;
   if (few)
   {
     mcor_grid_insert(

@@ -38,13 +38,14 @@ __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)
 {
-  const int first_node = get_global_id(0) * MCOR_ITEM_NODES, slot = first_node / 64;
+  const long first_node = (long)get_global_id(0) * MCOR_ITEM_NODES;
+  const int slot = (int)(first_node / 64);
   if (slot >= brick_count || need[slot] == 0)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  mcor_query query = mcor_node_query(&grid, bricks[slot], first_node % 64, 1);
+  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(first_node % 64), 1);
   mcor_node_sums sums;
   mcor_tile tile;
   mcor_tile_init(&tile);
@@ -234,7 +235,7 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
       {
         const int step = 1 << (2 * axis);
         const bool outside = (n >> (2 * axis) & 3) == 3;
-        const int other = outside ? neighbours[slot * 14 + (1 << axis) - 1] : slot;
+        const int other = outside ? neighbours[slot * 14L + (1 << axis) - 1] : slot;
         const int m = outside ? n - 3 * step : n + step;
         const int copies = 1 + (int)(e[6 + axis] >> n & 1);
         const int4 edge = (int4)(bricks[slot].x * MCOR_BRICK + (n & 3),
@@ -243,8 +244,8 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
         for (int copy = 0; copy < copies; ++copy, ++to)
         {
           vertex_edge[to] = edge;
-          vertex_ends[2 * to] = node_value[slot * 64L + n] - iso;
-          vertex_ends[2 * to + 1] = node_value[other * 64L + m] - iso;
+          vertex_ends[2L * to] = node_value[slot * 64L + n] - iso;
+          vertex_ends[2L * to + 1] = node_value[other * 64L + m] - iso;
         }
       }
     }
@@ -273,7 +274,7 @@ void mcor_march_numbers(__global const int* neighbours, __global const ulong* ed
 {
   for (int d = 0; d < 8; ++d)
   {
-    const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
+    const int owner = d ? neighbours[slot * 14L + d - 1] : slot;
     if (owner < 0)
     {
       continue;

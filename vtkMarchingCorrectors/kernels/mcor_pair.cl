@@ -304,7 +304,7 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   }
   const ulong used = now & crossed;
   const int4 brick = bricks[slot];
-  __global const int* n = neighbours + slot * 14;
+  __global const int* n = neighbours + slot * 14L;
   bool all = mcor_pair_push(
     MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],

@@ -96,6 +96,10 @@ real mcor_lane_sum(realv v)
  * memory per work-item. */
 #define MCOR_TILE (MCOR_LANES == 1 ? 32 : 1024)
 
+/* Particles or triangles that one work-item treats in turn where that spares work: a CPU hides
+ * little of what single ones wait for. Twin in mcor_internal.h. */
+#define MCOR_BATCH (MCOR_LANES == 1 ? 1 : 64)
+
 /* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest node they are. Node or cell
  * (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
 #define MCOR_BRICK 4

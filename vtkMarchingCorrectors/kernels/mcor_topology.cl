@@ -61,7 +61,7 @@ real mcor_topology_value(
   const int x = (n & 3) + (corner & 1), y = (n >> 2 & 3) + (corner >> 1 & 1),
             z = (n >> 4) + (corner >> 2);
   const int d = (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2;
-  const int owner = d ? neighbours[slot * 14 + d - 1] : slot;
+  const int owner = d ? neighbours[slot * 14L + d - 1] : slot;
   return node_value[owner * 64L + ((x & 3) | (y & 3) << 2 | (z & 3) << 4)];
 }
 
@@ -180,7 +180,7 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
     {
       const int axis = face >> 1, shift = 2 * axis;
       const int outside = face & 1 & ((cell >> shift & 3) == 3);
-      const int owner = outside ? neighbours[slot * 14 + (1 << axis) - 1] : slot;
+      const int owner = outside ? neighbours[slot * 14L + (1 << axis) - 1] : slot;
       const int n = outside ? cell - (3 << shift) : cell + ((face & 1) << shift);
       row += decisions[owner * (long)MCOR_DECISION_MASKS + axis] >> n & 1 ? bit : 0;
       bit <<= 1;

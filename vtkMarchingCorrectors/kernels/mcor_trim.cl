@@ -20,18 +20,27 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
   return some ? inside : 0;
 }
 
-/* One work-item = one triangle. Writes how many triangles remain of it, and its cut edges. */
+/* One work-item = one batch of triangles. Writes how many triangles remain of them, and their cut
+ * edges. */
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {
-  const int i = get_global_id(0);
-  if (i >= triangle_count)
+  const int batch = get_global_id(0);
+  const long begin = (long)batch * MCOR_BATCH;
+  if (begin >= triangle_count)
   {
     return;
   }
-  const int corners = (int)popcount(mcor_trim_case(triangles + 3 * i, weight, threshold));
-  remaining[i] = corners == 0 ? 0 : corners == 2 ? 2 : 1;
-  cuts[i] = corners == 1 || corners == 2 ? 2 : 0;
+  const long end = min(begin + MCOR_BATCH, (long)triangle_count);
+  int left = 0, cut = 0;
+  for (long i = begin; i < end; ++i)
+  {
+    const int corners = (int)popcount(mcor_trim_case(triangles + 3 * i, weight, threshold));
+    left += corners == 0 ? 0 : corners == 2 ? 2 : 1;
+    cut += corners == 1 || corners == 2 ? 2 : 0;
+  }
+  remaining[batch] = left;
+  cuts[batch] = cut;
 }
 
 /* The lone corner of a cut triangle: the one inside of one, or the one outside of two. */
@@ -45,61 +54,85 @@ ulong mcor_trim_key(int a, int b)
   return (ulong)min(a, b) << 32 | (uint)max(a, b);
 }
 
-/* One work-item = one triangle. Writes the keys of its cut edges: from the lone corner to the next
- * corner, then to the last one. */
+/* One work-item = one batch of triangles. Writes the keys of their cut edges: from the lone corner
+ * to the next corner, then to the last one. */
 __kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global const int* cuts,
   __global ulong* keys)
 {
-  const int i = get_global_id(0);
-  if (i >= triangle_count || cuts[i] == cuts[i + 1])
+  const int batch = get_global_id(0);
+  const long begin = (long)batch * MCOR_BATCH;
+  if (begin >= triangle_count)
   {
     return;
   }
-  __global const int* t = triangles + 3 * i;
-  const int lone = mcor_trim_lone(mcor_trim_case(t, weight, threshold));
-  keys[cuts[i]] = mcor_trim_key(t[lone], t[(lone + 1) % 3]);
-  keys[cuts[i] + 1] = mcor_trim_key(t[lone], t[(lone + 2) % 3]);
+  int cut = cuts[batch];
+  for (long i = begin; cut < cuts[batch + 1]; ++i)
+  {
+    __global const int* t = triangles + 3 * i;
+    const int inside = mcor_trim_case(t, weight, threshold);
+    if (inside != 0 && inside != 7)
+    {
+      const int lone = mcor_trim_lone(inside);
+      keys[cut++] = mcor_trim_key(t[lone], t[(lone + 1) % 3]);
+      keys[cut++] = mcor_trim_key(t[lone], t[(lone + 2) % 3]);
+    }
+  }
 }
 
-/* One work-item = one triangle. Writes what remains of it [Fig. 3 a, c, d, e]; a quad is split. */
+/* Writes what remains of a cut triangle [Fig. 3 c, d, e], whose cut edges have these vertices; a
+ * quad is split. Returns where the next triangle goes. */
+__global int* mcor_trim_cut(
+  __global const int* t, int inside, int cut_next, int cut_last, __global int* to)
+{
+  const int lone = mcor_trim_lone(inside);
+  *to++ = cut_next;
+  if (inside >> lone & 1)
+  {
+    *to++ = cut_last;
+    *to++ = t[lone];
+    return to;
+  }
+  const int next = t[(lone + 1) % 3], last = t[(lone + 2) % 3];
+  *to++ = next;
+  *to++ = last;
+  *to++ = cut_next;
+  *to++ = last;
+  *to++ = cut_last;
+  return to;
+}
+
+/* One work-item = one batch of triangles. Writes what remains of them [Fig. 3]. */
 __kernel void mcor_trim_fill(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, const int vertex_count,
   __global const int* remaining, __global const int* cuts, __global const int* cut_vertex,
   __global int* out)
 {
-  const int i = get_global_id(0);
-  if (i >= triangle_count || remaining[i] == remaining[i + 1])
+  const int batch = get_global_id(0);
+  const long begin = (long)batch * MCOR_BATCH;
+  if (begin >= triangle_count)
   {
     return;
   }
-  __global const int* t = triangles + 3 * i;
-  __global int* to = out + 3 * remaining[i];
-  const int inside = mcor_trim_case(t, weight, threshold);
-  if (inside == 7)
+  __global int *to = out + 3L * remaining[batch], *end = out + 3L * remaining[batch + 1];
+  int cut = cuts[batch];
+  for (long i = begin; to < end; ++i)
   {
-    for (int c = 0; c < 3; ++c)
+    __global const int* t = triangles + 3 * i;
+    const int inside = mcor_trim_case(t, weight, threshold);
+    if (inside == 7)
     {
-      to[c] = t[c];
+      *to++ = t[0];
+      *to++ = t[1];
+      *to++ = t[2];
     }
-    return;
+    else if (inside != 0)
+    {
+      to = mcor_trim_cut(
+        t, inside, vertex_count + cut_vertex[cut], vertex_count + cut_vertex[cut + 1], to);
+      cut += 2;
+    }
   }
-  const int lone = mcor_trim_lone(inside);
-  const int next = t[(lone + 1) % 3], last = t[(lone + 2) % 3];
-  const int cut_next = vertex_count + cut_vertex[cuts[i]];
-  const int cut_last = vertex_count + cut_vertex[cuts[i] + 1];
-  to[0] = cut_next;
-  if (inside >> lone & 1)
-  {
-    to[1] = cut_last;
-    to[2] = t[lone];
-    return;
-  }
-  to[1] = next;
-  to[2] = last;
-  to[3] = cut_next;
-  to[4] = last;
-  to[5] = cut_last;
 }
 
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
@@ -268,24 +301,13 @@ __kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAM
   mcor_trim_solve_group(&grid, true, MCOR_TRIM_SOLVE_ARGS);
 }
 
-/* One work-item = one triangle. Writes 1 to every vertex that it uses. */
+/* One work-item = one triangle corner. Writes 1 to its vertex. */
 __kernel void mcor_trim_used(
   const int triangle_count, __global const int* triangles, __global int* used)
 {
-  const int i = get_global_id(0);
-  if (i < 3 * triangle_count)
+  const long i = get_global_id(0);
+  if (i < 3L * triangle_count)
   {
     used[triangles[i]] = 1;
-  }
-}
-
-/* One work-item = one triangle corner. Reads the scanned uses. Renumbers the corner. */
-__kernel void mcor_trim_renumber(
-  const int triangle_count, __global const int* scanned, __global int* triangles)
-{
-  const int i = get_global_id(0);
-  if (i < 3 * triangle_count)
-  {
-    triangles[i] = scanned[triangles[i]];
   }
 }

@@ -10,6 +10,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Kernels count in int, also a little beyond the last particle. */
+#define MCOR_PARTICLE_LIMIT 2000000000
+
 static const char* mcor_array_name(const mcor_array* array, const char* role)
 {
   return array->name ? array->name : role;
@@ -316,9 +319,9 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   MCOR_TRY(mcor_check_options(context, options));
-  MCOR_RETURN_IF(input->count < 0 || input->count > INT32_MAX - MCOR_PADDING, context,
-    MCOR_OUT_OF_CAPACITY, "There are %lld particles; 2147483631 is the limit.",
-    (long long)input->count);
+  MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
+    MCOR_OUT_OF_CAPACITY, "There are %lld particles; %d is the limit.", (long long)input->count,
+    MCOR_PARTICLE_LIMIT);
   if (input->count == 0)
   {
     return MCOR_OK;

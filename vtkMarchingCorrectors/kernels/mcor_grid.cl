@@ -144,9 +144,9 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   const bool few = end - begin <= MCOR_INSERTION_LIMIT;
   if (few)
   {
-    mcor_grid_insert(
-      keys + begin, xyz, inv_h_in, volume, solid, order + begin, end - begin);
+    mcor_grid_insert(keys + begin, xyz, inv_h_in, volume, solid, order + begin, end - begin);
   }
+  /* A cell with many particles is among them. */
   for (int first = begin, last = begin + 1; !few && last <= end; ++last)
   {
     if (last == end || keys[last] != keys[first])

@@ -107,7 +107,7 @@ static mcor_status mcor_grow(
 }
 
 static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* input,
-  mcor_surface* s, int64_t points, int64_t triangles)
+  mcor_surface* s, int64_t points)
 {
   const mcor_options* o = context->options;
   const int64_t n = s->point_count;
@@ -127,8 +127,6 @@ static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* in
     { o->boundary_flag, (void**)&s->boundary_flag, 1 },
     { o->iso_value, (void**)&s->iso_value, sizeof(double) },
     { o->nearest_particle, (void**)&s->nearest_particle, sizeof(int64_t) } };
-  MCOR_TRY(mcor_grow(
-    context, (void**)&s->triangles, s->triangle_count, triangles, 3 * sizeof(int32_t)));
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     if (arrays[i].wanted)
@@ -328,6 +326,12 @@ static mcor_status mcor_deliver_triangles(
   mcor_buffer* buffer = &context->mesh.triangles;
   const int64_t triangles = context->mesh.triangle_count;
   void* view;
+  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, surface->triangle_count, triangles,
+    3 * sizeof(int32_t)));
+  if (triangles == 0)
+  {
+    return MCOR_OK;
+  }
   MCOR_TRY(mcor_map(context, buffer, (size_t)triangles * 3 * sizeof(cl_int), false, &view));
   mcor_corners corners = { view, scanned, surface->triangles + 3 * surface->triangle_count,
     (int32_t)surface->point_count };
@@ -370,11 +374,14 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_count_used(context, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; 2147483647 is the limit.", (long long)(base + count));
-  MCOR_TRY(mcor_grow_surface(context, input, surface, count, triangles));
   if (count > 0)
   {
     MCOR_TRY(mcor_map_vertices(context, download));
-    MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
+  }
+  MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
+  MCOR_TRY(mcor_grow_surface(context, input, surface, count));
+  if (count > 0)
+  {
     mcor_deliver_vertices(context, download, iso, surface);
     MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->scanned, surface));
     MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));

@@ -71,7 +71,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   {
     const mcor_component* c = &attributes->varying[first + i];
     MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component, 0,
-      c->scale, &attributes->sorted, i * stride));
+      c->scale, &attributes->sorted, i));
   }
   return MCOR_OK;
 }

@@ -230,7 +230,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
-  int to_offset);
+  int to_row);
 void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_keep_bricks(mcor_context* context);

@@ -171,14 +171,15 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys,
   }
 }
 
-/* One work-item = one sorted particle. Reads an array in input order. Writes it in sorted order. */
+/* One work-item = one sorted particle. Reads an array in input order. Writes it in sorted order,
+ * to a row that is `count` long. */
 __kernel void mcor_grid_gather_value(const int count, __global const int* order,
-  __global const real* in, __global real* out, const int out_offset)
+  __global const real* in, __global real* out, const int out_row)
 {
   const int i = get_global_id(0);
   if (i < count)
   {
-    out[out_offset + i] = in[order[i]];
+    out[(long)out_row * count + i] = in[order[i]];
   }
 }
 

@@ -218,7 +218,7 @@ static void case_check_accuracy(case_run* run, int trimmed)
       c->normal_degrees, c->first);
     case_expect(
       run, c->gradient_error <= (single ? 1e-4 : 1e-9), "gradient off by %.3g", c->gradient_error);
-    /* There w has few digits in single precision. */
+    /* At a kernel's rim w has few digits in single precision. */
     case_expect(run, c->rim_gradient_error <= (single ? 2e-4 : 1e-9),
       "gradient at a kernel's rim off by %.3g", c->rim_gradient_error);
   }

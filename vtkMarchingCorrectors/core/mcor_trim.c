@@ -16,10 +16,10 @@ static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 }
 
 /* Counts what remains; ends with scanned counts in mesh->remaining and mesh->cuts. */
-static mcor_status mcor_count_trimmed(mcor_context* context, int* remaining, int* cuts)
+static mcor_status mcor_count_trimmed(
+  mcor_context* context, int batches, int* remaining, int* cuts)
 {
   mcor_mesh* mesh = &context->mesh;
-  const int batches = mcor_batches(context, mesh->triangle_count);
   MCOR_TRY(mcor_reserve(context, &mesh->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_LIGHT, batches,
@@ -87,7 +87,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
       context, &mesh->node, &mesh->offset, mesh->march_count, &mesh->boundary));
   }
   const int batches = mcor_batches(context, mesh->triangle_count);
-  MCOR_TRY(mcor_count_trimmed(context, &remaining, &cuts));
+  MCOR_TRY(mcor_count_trimmed(context, batches, &remaining, &cuts));
   MCOR_TRY(mcor_reserve(context, &mesh->cut_keys, (size_t)cuts * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),

@@ -16,7 +16,7 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   ulong cell[3];
   for (int a = 0; a < 3; ++a)
   {
-    cell[a] = clamp(mcor_cell_of(xyz[3L * i + a], level.inv_cell), 0, level.cells[a] - 1);
+    cell[a] = mcor_cell_of_particle(level, a, xyz[3L * i + a]);
   }
   keys[i] = level.base + (cell[2] * level.cells[1] + cell[1]) * level.cells[0] + cell[0];
 }

@@ -51,6 +51,12 @@ int mcor_cell_of(fix x, float inv_cell)
   return (int)floor((float)x * inv_cell);
 }
 
+/* Cell along an axis of a particle of the level. */
+int mcor_cell_of_particle(mcor_level level, int axis, fix x)
+{
+  return clamp(mcor_cell_of(x, level.inv_cell), 0, level.cells[axis] - 1);
+}
+
 /* Index of the first particle whose cell key is >= key. */
 int mcor_first_particle(const mcor_grid* grid, ulong key)
 {
@@ -85,29 +91,9 @@ typedef struct
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
   float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
   int level, first[3], last[3], y, z;
-  int begin, end; /* particles left of the current row */
+  bool has_many_rows; /* in reach, so that one passes over the empty ones at once */
+  int begin, end;     /* particles left of the current row */
 } mcor_query;
-
-/* A level whose rows in reach outnumber its particles is taken as one run, so that a coarse
- * particle does not walk through the empty rows of fine levels. */
-void mcor_query_sparse_level(const mcor_grid* grid, mcor_query* query, const mcor_level* level)
-{
-  const long rows =
-    (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1);
-  if (rows <= 64)
-  {
-    return;
-  }
-  const ulong cells = (ulong)level->cells[0] * level->cells[1] * level->cells[2];
-  const int begin = mcor_first_particle(grid, level->base);
-  const int end = mcor_first_particle(grid, level->base + cells);
-  if (end - begin < rows)
-  {
-    query->begin = begin;
-    query->end = end;
-    query->z = query->last[2];
-  }
-}
 
 /* The part of a query that depends on the level; false where the level has no cell in reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
@@ -127,11 +113,8 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
   }
   query->y = query->last[1]; /* as if the row before the first one had just ended */
   query->z = query->first[2] - 1;
-  query->begin = query->end = 0;
-  if (some)
-  {
-    mcor_query_sparse_level(grid, query, &level);
-  }
+  query->has_many_rows =
+    (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) > 64;
   return some;
 }
 
@@ -202,6 +185,25 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
+/* Moves to just before the row, or the plane of rows, of the level's next particle. */
+void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
+{
+  const mcor_level level = grid->levels[query->level];
+  const ulong nx = level.cells[0], ny = level.cells[1], nz = level.cells[2];
+  const int next = mcor_first_particle(grid, level.base + (query->z * ny + query->y + 1) * nx);
+  const int end = mcor_first_particle(grid, level.base + nz * ny * nx);
+  const int z = next < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level.cells[2];
+  if (z == query->z)
+  {
+    query->y = min(mcor_cell_of_particle(level, 1, grid->py[next]) - 1, query->last[1]);
+  }
+  else
+  {
+    query->y = query->last[1]; /* the plane's end */
+    query->z = min(z - 1, query->last[2]);
+  }
+}
+
 /* Moves to the next row with particles; false at the end. */
 bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
 {
@@ -212,10 +214,7 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
       query->y = query->first[1];
       if (++query->z > query->last[2])
       {
-        if (mcor_query_next_level(grid, query, query->level + 1) && query->begin < query->end)
-        {
-          return true;
-        }
+        mcor_query_next_level(grid, query, query->level + 1);
         continue;
       }
       query->z2 = MCOR_TENSOR ? 0 : mcor_query_distance2(query, 2, query->z);
@@ -224,6 +223,10 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
     if (query->begin < query->end)
     {
       return true;
+    }
+    if (query->has_many_rows)
+    {
+      mcor_query_skip_rows(grid, query);
     }
   }
   return false;

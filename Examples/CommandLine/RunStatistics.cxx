@@ -30,10 +30,9 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Smoo
   "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells", "SeedCells",
   "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",
   "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles",
-  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
-  "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
-  "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
-  "DeviceBytesPeak" };
+  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
+  "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",
+  "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

@@ -131,7 +131,7 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetSeedMode(
     options.Seeds == "pairs" ? vtkMarchingCorrectors::PAIRS : vtkMarchingCorrectors::COMPLETE);
   filter->SetTopology(options.Topology == "field" ? vtkMarchingCorrectors::TOPOLOGY_FIELD
-                                                 : vtkMarchingCorrectors::TOPOLOGY_TABLE);
+                                                  : vtkMarchingCorrectors::TOPOLOGY_TABLE);
   filter->SetPrecision(options.Precision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
                                                      : vtkAlgorithm::SINGLE_PRECISION);
   filter->SetHScaleFactor(options.HScale);

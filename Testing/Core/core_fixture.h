@@ -18,22 +18,22 @@
 /* cmocka wants the above first. */
 #include <cmocka.h>
 
-#define CORE_CHECK(condition, ...)                                          \
-  do                                                                        \
-  {                                                                         \
-    if (!(condition))                                                       \
-    {                                                                       \
-      print_error("%s:%d: not true: %s\n", __FILE__, __LINE__, #condition); \
-      fail_msg(__VA_ARGS__);                                                \
-    }                                                                       \
+#define CORE_CHECK(condition, ...)                                                                 \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      print_error("%s:%d: not true: %s\n", __FILE__, __LINE__, #condition);                        \
+      fail_msg(__VA_ARGS__);                                                                       \
+    }                                                                                              \
   } while (0)
 
-#define CORE_OK(context, call)                                                    \
-  do                                                                              \
-  {                                                                               \
-    const mcor_status core_status_ = (call);                                      \
-    CORE_CHECK(core_status_ == MCOR_OK, "%s: %s", mcor_status_name(core_status_), \
-      mcor_last_error(context));                                                  \
+#define CORE_OK(context, call)                                                                     \
+  do                                                                                               \
+  {                                                                                                \
+    const mcor_status core_status_ = (call);                                                       \
+    CORE_CHECK(core_status_ == MCOR_OK, "%s: %s", mcor_status_name(core_status_),                  \
+      mcor_last_error(context));                                                                   \
   } while (0)
 
 /* Particles, each array of exactly `count` elements. */

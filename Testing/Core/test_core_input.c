@@ -69,14 +69,14 @@ static void expect_good(mcor_context* context)
   free_call(&call);
 }
 
-#define BAD(context, status, words, ...)   \
-  do                                       \
-  {                                        \
-    bad_call call = make_call();           \
-    call.options.iso_values = call.iso;    \
-    __VA_ARGS__;                           \
-    expect(context, &call, status, words); \
-    free_call(&call);                      \
+#define BAD(context, status, words, ...)                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    bad_call call = make_call();                                                                   \
+    call.options.iso_values = call.iso;                                                            \
+    __VA_ARGS__;                                                                                   \
+    expect(context, &call, status, words);                                                         \
+    free_call(&call);                                                                              \
   } while (0)
 
 #define ARGUMENT(words, ...) BAD(*state, MCOR_INVALID_ARGUMENT, words, __VA_ARGS__)

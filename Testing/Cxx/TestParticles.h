@@ -24,14 +24,14 @@
 #include <iostream>
 #include <string>
 
-#define CHECK(condition)                                                                \
-  do                                                                                    \
-  {                                                                                     \
-    if (!(condition))                                                                   \
-    {                                                                                   \
-      std::cerr << __FILE__ << ":" << __LINE__ << ": failed: " #condition << std::endl; \
-      ++failures;                                                                       \
-    }                                                                                   \
+#define CHECK(condition)                                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      std::cerr << __FILE__ << ":" << __LINE__ << ": failed: " #condition << std::endl;            \
+      ++failures;                                                                                  \
+    }                                                                                              \
   } while (0)
 
 namespace test

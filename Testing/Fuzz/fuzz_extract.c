@@ -39,13 +39,13 @@ static void fuzz_fail(const char* condition, int line)
   abort();
 }
 
-#define FUZZ_CHECK(condition)          \
-  do                                   \
-  {                                    \
-    if (!(condition))                  \
-    {                                  \
-      fuzz_fail(#condition, __LINE__); \
-    }                                  \
+#define FUZZ_CHECK(condition)                                                                      \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      fuzz_fail(#condition, __LINE__);                                                             \
+    }                                                                                              \
   } while (0)
 
 static unsigned fuzz_byte(fuzz_bytes* bytes)

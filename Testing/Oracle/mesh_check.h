@@ -45,7 +45,7 @@ extern "C"
     int64_t euler;                    /* used points - edges + triangles */
     double area;
     double slimmest; /* least area of a triangle over the square of its longest side */
-    double volume; /* of what the outward oriented triangles enclose; needs no boundary */
+    double volume;   /* of what the outward oriented triangles enclose; needs no boundary */
     /* All triangle sides, sorted by (a, b, triangle); [3 * triangles]. */
     mesh_edge* side;
     int64_t side_count;

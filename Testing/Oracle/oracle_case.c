@@ -138,14 +138,14 @@ static void case_check_mesh(case_run* run)
   const oracle_comparison* c = &run->comparison;
   /* In double precision triangles at nodes may be 1e-9 edges wide, and trimming cuts such slivers
    * near their tips, too: still above rounding. */
-  const int slivers = run->options.precision == MCOR_FLOAT64 && c->trim_vertices > 0 &&
-    run->mesh.slimmest > 1e-14;
+  const int slivers =
+    run->options.precision == MCOR_FLOAT64 && c->trim_vertices > 0 && run->mesh.slimmest > 1e-14;
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
     /* Two valid cells that touch only in an edge have a vertex each there. */
     const int64_t allowed = fault == MESH_COINCIDENT_POINT ? c->split
-      : fault == MESH_ZERO_AREA && slivers ? run->mesh.faults[fault]
-                                           : 0;
+      : fault == MESH_ZERO_AREA && slivers                 ? run->mesh.faults[fault]
+                                                           : 0;
     case_expect(run, run->mesh.faults[fault] <= allowed, "%lld x %s: %s",
       (long long)run->mesh.faults[fault], mesh_fault_name((mesh_fault)fault),
       run->mesh.first[fault]);

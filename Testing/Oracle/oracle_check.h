@@ -6,16 +6,16 @@
 #include <stdio.h>
 
 /* A failed check prints where and what, and counts; the program goes on. */
-#define ORACLE_CHECK(condition, ...)                                          \
-  do                                                                          \
-  {                                                                           \
-    if (!(condition))                                                         \
-    {                                                                         \
-      fprintf(stderr, "%s:%d: failed: %s: ", __FILE__, __LINE__, #condition); \
-      fprintf(stderr, __VA_ARGS__);                                           \
-      fprintf(stderr, "\n");                                                  \
-      ++oracle_failures;                                                      \
-    }                                                                         \
+#define ORACLE_CHECK(condition, ...)                                                               \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      fprintf(stderr, "%s:%d: failed: %s: ", __FILE__, __LINE__, #condition);                      \
+      fprintf(stderr, __VA_ARGS__);                                                                \
+      fprintf(stderr, "\n");                                                                       \
+      ++oracle_failures;                                                                           \
+    }                                                                                              \
   } while (0)
 
 static int oracle_failures = 0;

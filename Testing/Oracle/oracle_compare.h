@@ -77,7 +77,7 @@ extern "C"
     int64_t unsettled;       /* nodes and cells at the surface whose state depends on rounding */
     double weight_error, eigenvalue_error, gradient_error; /* of the optional arrays, relative */
     double rim_gradient_error; /* where the fluid's weight is below COMPARE_RIM */
-    char first[240]; /* the first fault of a vertex or edge, in words */
+    char first[240];           /* the first fault of a vertex or edge, in words */
   } oracle_comparison;
 
   /* trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must be

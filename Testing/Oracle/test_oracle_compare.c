@@ -119,8 +119,7 @@ static void check_right_surface(const char* name)
     "%s: %s", name, c.first);
   ORACLE_CHECK(c.residual < 1e-12 && c.distance < 1e-10 && c.normal_degrees < 1e-4, "%s: %g %g %g",
     name, c.residual, c.distance, c.normal_degrees);
-  ORACLE_CHECK(
-    c.weight_error < 1e-6 && c.gradient_error < 1e-12 && c.rim_gradient_error < 1e-12,
+  ORACLE_CHECK(c.weight_error < 1e-6 && c.gradient_error < 1e-12 && c.rim_gradient_error < 1e-12,
     "%s: %g %g %g", name, c.weight_error, c.gradient_error, c.rim_gradient_error);
   free_fixture(&f);
 }

@@ -5,9 +5,9 @@
  * nothing, several iso values are the single ones together, shifts by lattice vectors and scaling
  * carry over, preview has the same triangles, attributes are Shepard means. */
 
+#include "mesh_check.h"
 #include "oracle_case.h"
 #include "oracle_check.h"
-#include "mesh_check.h"
 #include "particle_sets.h"
 
 #include <math.h>
@@ -407,13 +407,13 @@ static void test_wide_range(const char* device)
     }
     const double range = surface.statistics.scalar_max - surface.statistics.scalar_min;
     ORACLE_CHECK(worst <= 5e-6 * range, "1:1024: off by %g of the range", worst / range);
-    if (mesh_check(surface.points, surface.point_count, surface.triangles, surface.triangle_count,
-          &report))
+    if (mesh_check(
+          surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report))
     {
       for (int f = 0; f < MESH_FAULT_COUNT; ++f)
       {
-        ORACLE_CHECK(report.faults[f] == 0, "1:1024: %s: %s", mesh_fault_name((mesh_fault)f),
-          report.first[f]);
+        ORACLE_CHECK(
+          report.faults[f] == 0, "1:1024: %s: %s", mesh_fault_name((mesh_fault)f), report.first[f]);
       }
       ORACLE_CHECK(report.boundary_edges == 0 && report.components == 1 && report.euler == 2,
         "1:1024: %lld boundary edges, %lld components, Euler characteristic %lld",

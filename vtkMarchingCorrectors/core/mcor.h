@@ -86,7 +86,7 @@ extern "C"
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
-    MCOR_TOPOLOGY_FIELD = 1  /* as the field is at the saddle of the face's bilinear interpolant, and
+    MCOR_TOPOLOGY_FIELD = 1 /* as the field is at the saddle of the face's bilinear interpolant, and
                               * at those of the cell's trilinear one: bridges and tunnels as wide as
                               * a cube are those of the field */
   } mcor_topology;
@@ -109,8 +109,8 @@ extern "C"
   {
     const void* data; /* [count][components], finite; borrowed until return; NULL: constant */
     mcor_type type;
-    int components; /* 1 unless said otherwise; 0 is read as 1 */
-    double constant; /* the value of all particles where data is NULL */
+    int components;   /* 1 unless said otherwise; 0 is read as 1 */
+    double constant;  /* the value of all particles where data is NULL */
     const char* name; /* for messages; may be NULL */
   } mcor_array;
 
@@ -171,7 +171,7 @@ extern "C"
     double cube_size;        /* unit L; > 0 overrides the factor */
     const double* iso_values; /* [iso_count], finite */
     int iso_count;
-    double node_threshold;   /* cells with a node of lower weight are discarded; default 0.1. So
+    double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. So
                               * are Shepard cells with a node of a fluid weight below 0.001. */
     mcor_boundary_detection boundary_detection;
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
@@ -217,10 +217,10 @@ extern "C"
     double scalar_min, scalar_max;                     /* over fluid particles */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
     int64_t lattice_cells[3];
-    int64_t virtual_cells;                    /* product of lattice_cells (saturates) */
+    int64_t virtual_cells;                          /* product of lattice_cells (saturates) */
     int64_t seed_cells, seed_cells_not_intersected; /* summed over iso values, as are the next */
     int64_t bricks, nodes_evaluated;
-    int64_t cells_used;      /* intersected cells of the surface, before trimming */
+    int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t march_rounds;
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
@@ -245,19 +245,19 @@ extern "C"
     double* points;     /* [point_count][3], unit L */
     int32_t* triangles; /* [triangle_count][3], point indices */
     /* Optional arrays, NULL where not asked for. */
-    float* normals;   /* [point_count][3], unit length, towards lower values */
-    double* gradients; /* [point_count][3], gradient of the field, scalar unit / L */
-    float* weight_sum; /* [point_count], the trimming weight */
+    float* normals;             /* [point_count][3], unit length, towards lower values */
+    double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */
+    float* weight_sum;          /* [point_count], the trimming weight */
     float* boundary_eigenvalue; /* [point_count], see MCOR_BOUNDARY_EIGENVALUE */
-    float* correction_length; /* [point_count], unit L */
-    float* residual;          /* [point_count], f - iso, scalar unit */
-    uint8_t* boundary_flag; /* [point_count], 0 inside; 1 on the trim boundary, weight (or
+    float* correction_length;   /* [point_count], unit L */
+    float* residual;            /* [point_count], f - iso, scalar unit */
+    uint8_t* boundary_flag;     /* [point_count], 0 inside; 1 on the trim boundary, weight (or
                              * eigenvalue) = vertex threshold; 2 same, but left at the linear cut;
                              * 4 on a lattice edge next to a cell that the node threshold
                              * discarded */
-    double* iso_value;      /* [point_count] */
-    int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
-    double** attributes; /* [attribute_count] -> [point_count][components] */
+    double* iso_value;          /* [point_count] */
+    int64_t* nearest_particle;  /* [point_count], index of the nearest fluid particle */
+    double** attributes;        /* [attribute_count] -> [point_count][components] */
     int attribute_count;
     mcor_statistics statistics;
   } mcor_surface;

@@ -104,8 +104,8 @@ static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
 }
 
 /* Hands over the means of the components on the device. */
-static mcor_status mcor_put_attributes(mcor_context* context, const mcor_input* input,
-  const cl_int* scanned, mcor_surface* surface)
+static mcor_status mcor_put_attributes(
+  mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_attributes* attributes = &context->attributes;
   const mcor_buffer* means = &context->mesh.means;

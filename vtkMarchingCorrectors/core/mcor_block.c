@@ -39,9 +39,8 @@ static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor
   MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
   MCOR_TRY(mcor_reserve(context, &bricks->quiet, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-    MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_INT(MCOR_BLOCK_CUBES << cubes->level),
-    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
+    MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_INT(MCOR_BLOCK_CUBES << cubes->level), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
     MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->block_states)));
   return MCOR_LAUNCH(context, "mcor_block_quiet", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
@@ -78,8 +77,8 @@ static mcor_status mcor_divide_cubes(
     MCOR_BUFFER(keys)));
   MCOR_TRY(mcor_copy(
     context, kept, keys, (size_t)children * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
-  return mcor_unique(context, keys, children + added, mcor_cube_total(&finer),
-    &bricks->block_keys, index_of, &bricks->block_count);
+  return mcor_unique(context, keys, children + added, mcor_cube_total(&finer), &bricks->block_keys,
+    index_of, &bricks->block_count);
 }
 
 /* Bits of bricks for the blocks: those are kept of which nodes are known. */
@@ -110,8 +109,8 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
     bricks->block_keys = (mcor_buffer){ 0 };
   }
   bricks->block_count = (int)mcor_cube_total(&cubes);
-  mcor_status status = mcor_reserve(
-    context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
+  mcor_status status =
+    mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
   if (status == MCOR_OK)
   {
     status = MCOR_LAUNCH(context, "mcor_block_all", MCOR_LIGHT, bricks->block_count,

@@ -12,8 +12,8 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
   data->count = count;
   MCOR_TRY(mcor_reserve(context, &data->bricks, n * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &data->known, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_fill(
-    context, &data->cells, mcor_uses_pairs(context) ? 0 : 0xff, n * sizeof(cl_ulong)));
+  MCOR_TRY(
+    mcor_fill(context, &data->cells, mcor_uses_pairs(context) ? 0 : 0xff, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &data->examined, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &data->above, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &data->valid, 0, n * sizeof(cl_ulong)));
@@ -46,10 +46,10 @@ static mcor_status mcor_fill_bricks(
       MCOR_BRICK_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&last->bricks),
       MCOR_BUFFER(&last->known), MCOR_BUFFER(&last->cells), MCOR_BUFFER(&last->examined),
       MCOR_BUFFER(&last->above), MCOR_BUFFER(&last->valid), MCOR_BUFFER(&last->value),
-      MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known),
-      MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(&bricks->now.examined),
-      MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
-      MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
+      MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.cells),
+      MCOR_BUFFER(&bricks->now.examined), MCOR_BUFFER(&bricks->now.above),
+      MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&bricks->now.value),
+      MCOR_BUFFER(&bricks->now.weight)));
   }
   bricks->neighbours_valid = false;
   mcor_release(context, &bricks->placed);
@@ -120,8 +120,7 @@ static mcor_status mcor_extend_bricks(mcor_context* context, size_t count)
     const size_t bytes = count * parts[i].size;
     if (parts[i].buffer->size < bytes)
     {
-      MCOR_TRY(
-        mcor_extend(context, parts[i].buffer, old * parts[i].size, bytes + bytes / 2));
+      MCOR_TRY(mcor_extend(context, parts[i].buffer, old * parts[i].size, bytes + bytes / 2));
     }
   }
   return MCOR_OK;
@@ -150,6 +149,6 @@ mcor_status mcor_append_bricks(mcor_context* context)
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->cells),
     MCOR_BUFFER(&now->examined), MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
   return MCOR_LAUNCH(context, "mcor_brick_join", MCOR_LIGHT, added, MCOR_BLOCK_ARGS(context),
-    MCOR_INT(first), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks),
-    MCOR_BUFFER(&bricks->slot_of), MCOR_BUFFER(&bricks->neighbours));
+    MCOR_INT(first), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&bricks->slot_of),
+    MCOR_BUFFER(&bricks->neighbours));
 }

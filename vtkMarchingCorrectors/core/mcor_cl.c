@@ -34,8 +34,7 @@ static const char* mcor_cl_error_name(cl_int error)
     { CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES" },
     { CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY" },
     { CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE" },
-    { CL_INVALID_VALUE, "CL_INVALID_VALUE" },
-    { CL_INVALID_DEVICE, "CL_INVALID_DEVICE" },
+    { CL_INVALID_VALUE, "CL_INVALID_VALUE" }, { CL_INVALID_DEVICE, "CL_INVALID_DEVICE" },
     { CL_INVALID_CONTEXT, "CL_INVALID_CONTEXT" },
     { CL_INVALID_COMMAND_QUEUE, "CL_INVALID_COMMAND_QUEUE" },
     { CL_INVALID_MEM_OBJECT, "CL_INVALID_MEM_OBJECT" },
@@ -44,8 +43,7 @@ static const char* mcor_cl_error_name(cl_int error)
     { CL_INVALID_ARG_SIZE, "CL_INVALID_ARG_SIZE" },
     { CL_INVALID_KERNEL_ARGS, "CL_INVALID_KERNEL_ARGS" },
     { CL_INVALID_WORK_GROUP_SIZE, "CL_INVALID_WORK_GROUP_SIZE" },
-    { CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE" },
-    { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
+    { CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE" }, { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
   for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
   {
     if (names[i].code == error)
@@ -79,8 +77,8 @@ static void mcor_find_devices(mcor_device_list* list)
     const int room = MCOR_DEVICE_LIMIT - list->count;
     cl_uint found = 0;
     if (room <= 0 ||
-      clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, (cl_uint)room,
-        list->devices + list->count, &found) != CL_SUCCESS)
+      clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, (cl_uint)room, list->devices + list->count,
+        &found) != CL_SUCCESS)
     {
       continue;
     }
@@ -154,11 +152,11 @@ static void mcor_query_device(mcor_cl* cl)
   clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL);
-  clGetDeviceInfo(cl->device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof cl->device_memory,
-    &cl->device_memory, NULL);
+  clGetDeviceInfo(
+    cl->device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof cl->device_memory, &cl->device_memory, NULL);
   cl->memory_limit = cl->device_memory;
-  clGetDeviceInfo(cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer,
-    &cl->largest_buffer, NULL);
+  clGetDeviceInfo(
+    cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
   cl->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
   cl->has_fp64 = fp64 != 0;
   cl->chunks = cl->is_cpu ? (int)units * 8 : 4096;
@@ -289,8 +287,8 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
     mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl, mcor_source_mcor_brick_cl,
     mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_block_cl,
     mcor_source_mcor_march_cl, mcor_source_mcor_pair_cl, mcor_source_mcor_points_cl,
-    mcor_source_mcor_attribute_cl, mcor_source_mcor_correct_cl,
-    mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl };
+    mcor_source_mcor_attribute_cl, mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl,
+    mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl };
   char options[512];
   mcor_build_options(cl, build, options, sizeof options);
   cl_int error;
@@ -301,8 +299,7 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
   if (error != CL_SUCCESS)
   {
     char log[3000] = "";
-    clGetProgramBuildInfo(
-      cl->program, cl->device, CL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
+    clGetProgramBuildInfo(cl->program, cl->device, CL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
     mcor_drop_program(cl);
     return mcor_fail(context, MCOR_DEVICE_ERROR,
       "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
@@ -373,8 +370,7 @@ mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* d
   if (bytes > 0)
   {
     MCOR_CL_TRY(context,
-      clEnqueueWriteBuffer(
-        context->cl.queue, buffer->mem, CL_TRUE, 0, bytes, data, 0, NULL, NULL),
+      clEnqueueWriteBuffer(context->cl.queue, buffer->mem, CL_TRUE, 0, bytes, data, 0, NULL, NULL),
       "clEnqueueWriteBuffer");
   }
   return MCOR_OK;
@@ -433,15 +429,15 @@ mcor_status mcor_fill_range(
   if (last > first)
   {
     MCOR_CL_TRY(context,
-      clEnqueueFillBuffer(context->cl.queue, buffer->mem, &byte, sizeof byte, first, last - first,
-        0, NULL, NULL),
+      clEnqueueFillBuffer(
+        context->cl.queue, buffer->mem, &byte, sizeof byte, first, last - first, 0, NULL, NULL),
       "clEnqueueFillBuffer");
   }
   return MCOR_OK;
 }
 
-mcor_status mcor_copy(mcor_context* context, const mcor_buffer* from, mcor_buffer* to,
-  size_t to_offset, size_t bytes)
+mcor_status mcor_copy(
+  mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t to_offset, size_t bytes)
 {
   if (bytes > 0)
   {

@@ -114,8 +114,8 @@ mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
 /* Makes room for `bytes`, keeping the first `old`. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);
-mcor_status mcor_copy(mcor_context* context, const mcor_buffer* from, mcor_buffer* to,
-  size_t to_offset, size_t bytes);
+mcor_status mcor_copy(
+  mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t to_offset, size_t bytes);
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);

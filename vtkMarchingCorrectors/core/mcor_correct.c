@@ -14,8 +14,8 @@ mcor_status mcor_make_groups(
   mcor_buffer* flags = &context->scratch[0];
   MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_LIGHT,
-    (count + MCOR_GROUP_CHUNK - 1) / MCOR_GROUP_CHUNK, MCOR_INT(first),
-    MCOR_INT(count), MCOR_BUFFER(node), MCOR_BUFFER(flags)));
+    (count + MCOR_GROUP_CHUNK - 1) / MCOR_GROUP_CHUNK, MCOR_INT(first), MCOR_INT(count),
+    MCOR_BUFFER(node), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_scan(context, flags, count, group_count));
   MCOR_TRY(mcor_reserve(context, &context->groups, ((size_t)*group_count + 1) * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_group_fill", MCOR_LIGHT, count + 1, MCOR_INT(first),
@@ -33,8 +33,7 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
   MCOR_TRY(mcor_reserve(context, &mesh->gradient, n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_weight, n * real));
   MCOR_TRY(mcor_reserve(context, &mesh->flag, n));
-  MCOR_TRY(
-    mcor_reserve(context, &mesh->means, n * (size_t)context->attributes.count * real));
+  MCOR_TRY(mcor_reserve(context, &mesh->means, n * (size_t)context->attributes.count * real));
   return mcor_reserve(context, &mesh->evaluations, n);
 }
 
@@ -68,13 +67,13 @@ mcor_status mcor_correct(mcor_context* context, double iso)
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_reserve_vertices(context, count));
   MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, count, &groups));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups,
-    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->groups),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends),
-    MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
-    MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
-    MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
-    MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+      MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
+      MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
+      MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
+      MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
+      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   return options->preview ? MCOR_OK : mcor_count_iterations(context);
 }

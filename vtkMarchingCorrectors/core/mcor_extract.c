@@ -193,8 +193,8 @@ static mcor_status mcor_prepare(
   {
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
-  context->grid.has_solids = context->measure.solid_count > 0 && !input->ignore_solids &&
-    options->field != MCOR_WEIGHT_SUM;
+  context->grid.has_solids =
+    context->measure.solid_count > 0 && !input->ignore_solids && options->field != MCOR_WEIGHT_SUM;
   const mcor_build build = { .sph_kernel = options->sph_kernel,
     .field = options->field,
     .precision = options->precision,

@@ -110,8 +110,8 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h),
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&grid->trim_weight)));
-  MCOR_TRY(mcor_index_keys(
-    context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
+  MCOR_TRY(
+    mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
     /* Each cell has a bucket: nobody looks for keys. */
@@ -183,7 +183,8 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   MCOR_RETURN_IF(!(most * fmax(context->heaviest, 1) < (single ? 1e33 : 1e290)), context,
     MCOR_INVALID_DATA,
     "The scalar's values, from %g to %g, reach too far for %s precision. %s remove the particles "
-    "with the outermost values.", low, high, single ? "single" : "double",
+    "with the outermost values.",
+    low, high, single ? "single" : "double",
     single ? "Use double precision, or" : "Use another unit, or");
   MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, &grid->value, 0));
   return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,

@@ -18,8 +18,7 @@ static const char* mcor_array_name(const mcor_array* array, const char* role)
   return array->name ? array->name : role;
 }
 
-void mcor_read_array(
-  const mcor_array* array, int64_t first, int count, int component, double* out)
+void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out)
 {
   const int64_t stride = mcor_components(array), begin = first * stride + component;
   if (!array->data)
@@ -337,8 +336,7 @@ mcor_status mcor_check_input(
     MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
       MCOR_INVALID_ARGUMENT,
       "There is no smoothing length. Name its array, give a constant, or ask for an estimate.");
-    MCOR_TRY(
-      mcor_check_array(context, &input->smoothing_length, "smoothing length", n, 1, true));
+    MCOR_TRY(mcor_check_array(context, &input->smoothing_length, "smoothing length", n, 1, true));
   }
   if (input->has_volume)
   {

@@ -16,9 +16,9 @@ static inline int mcor_components(const mcor_array* array)
 static inline double mcor_array_at(const mcor_array* array, int64_t i, int component)
 {
   const int64_t at = i * mcor_components(array) + component;
-  return !array->data                    ? array->constant
+  return !array->data             ? array->constant
     : array->type == MCOR_FLOAT64 ? ((const double*)array->data)[at]
-                                         : (double)((const float*)array->data)[at];
+                                  : (double)((const float*)array->data)[at];
 }
 
 /* Solid particles take no part where they are ignored, nor in the free surface. */
@@ -30,8 +30,7 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
 
 #define MCOR_CHUNK 1024
 
-void mcor_read_array(
-  const mcor_array* array, int64_t first, int count, int component, double* out);
+void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
 /* The largest absolute value of one component; all are finite. */

@@ -9,7 +9,7 @@
 #include "mcor_cl.h"
 
 #define MCOR_LEVEL_LIMIT 32
-#define MCOR_PADDING 16  /* elements beyond the end of particle arrays, for vector loads */
+#define MCOR_PADDING 16 /* elements beyond the end of particle arrays, for vector loads */
 #define MCOR_BLOCK_CUBES 32
 #define MCOR_BLOCK_BRICKS 512
 #define MCOR_BLOCK_WORDS 16
@@ -49,11 +49,11 @@ typedef struct mcor_level
 typedef struct mcor_measure
 {
   int64_t fluid_count, solid_count;
-  double low[3], high[3];           /* of positions +- support radius */
-  double h_min, h_max;              /* smoothing length of fluid particles */
-  double support_min, support_max;  /* scaled support radius of all particles */
+  double low[3], high[3];          /* of positions +- support radius */
+  double h_min, h_max;             /* smoothing length of fluid particles */
+  double support_min, support_max; /* scaled support radius of all particles */
   double scalar_min, scalar_max;
-  double h_estimate;                /* where it was asked for */
+  double h_estimate; /* where it was asked for */
   double cube;
 } mcor_measure;
 
@@ -61,7 +61,7 @@ typedef struct mcor_measure
 typedef struct mcor_lattice
 {
   double cube;
-  int64_t origin[3]; /* a multiple of MCOR_BLOCK_CUBES */
+  int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
   int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
   int fix_bits;
   int blocks[3];
@@ -84,10 +84,10 @@ typedef struct mcor_grid
 typedef struct mcor_brick_data
 {
   int count;
-  mcor_buffer bricks; /* int4: position in bricks */
-  mcor_buffer known;  /* ulong: nodes evaluated, all or none of a brick */
-  mcor_buffer cells;  /* ulong: cells to examine for this iso value */
-  mcor_buffer examined; /* ulong: those whose nodes have been asked for */
+  mcor_buffer bricks;        /* int4: position in bricks */
+  mcor_buffer known;         /* ulong: nodes evaluated, all or none of a brick */
+  mcor_buffer cells;         /* ulong: cells to examine for this iso value */
+  mcor_buffer examined;      /* ulong: those whose nodes have been asked for */
   mcor_buffer value, weight; /* real [64] */
   mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
 } mcor_brick_data;
@@ -98,13 +98,13 @@ typedef struct mcor_bricks
   int block_count, block_shift;
   mcor_buffer block_keys, block_buckets;
   mcor_buffer block_states, quiet; /* uchar; see mcor_block.cl */
-  mcor_buffer states;     /* uchar [block_count][512], see mcor_seed.cl */
-  mcor_buffer bits, base; /* [block_count][16] */
+  mcor_buffer states;              /* uchar [block_count][512], see mcor_seed.cl */
+  mcor_buffer bits, base;          /* [block_count][16] */
   mcor_brick_data now;
   mcor_buffer neighbours; /* see mcor_brick_neighbours */
   bool neighbours_valid;
   mcor_buffer placed, slot_of; /* of mcor_append_bricks, see mcor_brick.cl */
-  mcor_buffer need, fresh; /* fresh: see mcor_march_need */
+  mcor_buffer need, fresh;     /* fresh: see mcor_march_need */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */
@@ -115,7 +115,7 @@ typedef struct mcor_mesh
   int vertex_count; /* the same and those of the trim boundary */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
-  mcor_buffer means; /* real [vertex_count][attributes.count] */
+  mcor_buffer means;    /* real [vertex_count][attributes.count] */
   mcor_buffer boundary; /* real [march_count], MCOR_BOUNDARY_EIGENVALUE only: what w is otherwise */
   mcor_buffer triangles, trimmed, remaining, cuts, cut_keys, cut_distinct, cut_index;
   mcor_buffer scanned;
@@ -151,14 +151,14 @@ struct mcor_context
   mcor_measure measure;
   mcor_buffer case_table;
   mcor_buffer topology_cases, topology_rows; /* empty until MCOR_TOPOLOGY_FIELD is first used */
-  mcor_buffer scratch[6];     /* within one function */
+  mcor_buffer scratch[6];                    /* within one function */
   mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
   mcor_attributes attributes;
-  mcor_buffer groups; /* see mcor_make_groups */
-  int32_t* source; /* [grid.count] input index of each device particle; NULL: the same */
-  double value_shift; /* A0 */
-  double heaviest; /* no particle has a greater V / (scaled h)^3 */
-  bool nodes_valid;   /* bricks hold node values of the current scalar */
+  mcor_buffer groups;    /* see mcor_make_groups */
+  int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
+  double value_shift;    /* A0 */
+  double heaviest;       /* no particle has a greater V / (scaled h)^3 */
+  bool nodes_valid;      /* bricks hold node values of the current scalar */
   mcor_input last_input; /* what grid and value were made from */
   mcor_options last_options;
   bool grid_valid, value_valid;
@@ -229,8 +229,7 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
-  int to_row);
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row);
 void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_keep_bricks(mcor_context* context);
@@ -244,8 +243,7 @@ mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
-mcor_status mcor_count_bits(
-  mcor_context* context, const mcor_buffer* masks, int count, int* total);
+mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int count, int* total);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
@@ -258,8 +256,8 @@ mcor_status mcor_trim(mcor_context* context, double iso);
 mcor_status mcor_list_attributes(mcor_context* context, const mcor_input* input);
 bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
-mcor_status mcor_add_attributes(mcor_context* context, const mcor_input* input,
-  const cl_int* scanned, mcor_surface* surface);
+mcor_status mcor_add_attributes(
+  mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);

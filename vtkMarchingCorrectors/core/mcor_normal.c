@@ -37,8 +37,8 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
     return MCOR_OK;
   }
   double* sums = calloc((size_t)surface->point_count * 3 + 1, sizeof(double));
-  MCOR_RETURN_IF(!sums, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for the normals could not be allocated.");
+  MCOR_RETURN_IF(
+    !sums, context, MCOR_OUT_OF_CAPACITY, "Host memory for the normals could not be allocated.");
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;

@@ -106,8 +106,8 @@ static mcor_status mcor_grow(
   return MCOR_OK;
 }
 
-static mcor_status mcor_grow_surface(mcor_context* context, const mcor_input* input,
-  mcor_surface* s, int64_t points)
+static mcor_status mcor_grow_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points)
 {
   const mcor_options* o = context->options;
   const int64_t n = s->point_count;
@@ -326,8 +326,8 @@ static mcor_status mcor_deliver_triangles(
   mcor_buffer* buffer = &context->mesh.triangles;
   const int64_t triangles = context->mesh.triangle_count;
   void* view;
-  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, surface->triangle_count, triangles,
-    3 * sizeof(int32_t)));
+  MCOR_TRY(mcor_grow(
+    context, (void**)&surface->triangles, surface->triangle_count, triangles, 3 * sizeof(int32_t)));
   if (triangles == 0)
   {
     return MCOR_OK;
@@ -402,8 +402,7 @@ static void mcor_release_construction(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
   mcor_buffer* const buffers[] = { &m->edges, &m->ends, &m->evaluations, &m->remaining, &m->cuts,
-    &m->cut_keys, &m->cut_distinct, &m->cut_index, &context->bricks.need,
-    &context->bricks.fresh };
+    &m->cut_keys, &m->cut_distinct, &m->cut_index, &context->bricks.need, &context->bricks.fresh };
   for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
   {
     mcor_release(context, buffers[i]);

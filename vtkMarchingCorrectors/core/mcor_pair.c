@@ -24,8 +24,8 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso)
     MCOR_BUFFER(marked), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
-  MCOR_TRY(mcor_fill(
-    context, &bricks->now.examined, 0, (size_t)bricks->now.count * sizeof(cl_ulong)));
+  MCOR_TRY(
+    mcor_fill(context, &bricks->now.examined, 0, (size_t)bricks->now.count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_take", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(marked), MCOR_BUFFER(&bricks->now.cells)));

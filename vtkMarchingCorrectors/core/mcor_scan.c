@@ -19,19 +19,18 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
 {
   const int chunks = mcor_chunks(context, count);
   cl_long sum = 0;
-  MCOR_TRY(
-    mcor_reserve(context, &context->scan_sums, ((size_t)chunks + 1) * sizeof(cl_long)));
+  MCOR_TRY(mcor_reserve(context, &context->scan_sums, ((size_t)chunks + 1) * sizeof(cl_long)));
   if (chunks > 1)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
       MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks),
-      MCOR_BUFFER(&context->scan_sums)));
+    MCOR_TRY(MCOR_LAUNCH(
+      context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
   }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
     MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
-  MCOR_TRY(mcor_read(
-    context, &context->scan_sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
+  MCOR_TRY(
+    mcor_read(context, &context->scan_sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
   MCOR_RETURN_IF(sum > INT_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface is too large: a table would need %lld entries, %d is the limit. Use a larger cube "
     "size.",
@@ -49,8 +48,7 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
 
 /* Bits that one round of sorting treats: as few rounds as can be, of about the same size, with a
  * histogram no larger than what is sorted. */
-static int mcor_digit_bits(
-  const mcor_context* context, int chunks, int count, uint64_t key_limit)
+static int mcor_digit_bits(const mcor_context* context, int chunks, int count, uint64_t key_limit)
 {
   int most = context->cl.lanes == 1 ? 8 : 11; /* MCOR_DIGIT_BITS of mcor_scan.cl */
   int bits = 1;
@@ -77,8 +75,8 @@ mcor_status mcor_sort(
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort_keys, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &context->sort_values, n * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &context->sort_histogram,
-    (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(
+    context, &context->sort_histogram, (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
   for (int shift = 0; shift == 0 || (shift < 64 && (key_limit - 1) >> shift); shift += bits)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
@@ -86,8 +84,8 @@ mcor_status mcor_sort(
       MCOR_BUFFER(&context->sort_histogram)));
     MCOR_TRY(mcor_scan(context, &context->sort_histogram, chunks << bits, &total));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
-      MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift),
-      MCOR_INT(bits), MCOR_BUFFER(&context->sort_histogram), MCOR_BUFFER(&context->sort_keys),
+      MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),
+      MCOR_BUFFER(&context->sort_histogram), MCOR_BUFFER(&context->sort_keys),
       MCOR_BUFFER(&context->sort_values)));
     mcor_swap(keys, &context->sort_keys);
     mcor_swap(values, &context->sort_values);

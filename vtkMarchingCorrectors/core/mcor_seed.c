@@ -66,9 +66,9 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
     MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list),
     MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso), MCOR_REAL(node_threshold),
-    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight),
-    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid)));
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid)));
   MCOR_TRY(mcor_keep_bricks(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
@@ -101,6 +101,5 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
     return mcor_mark_pairs(context, iso);
   }
   MCOR_TRY(mcor_place_complete(context, iso));
-  return mcor_fill(
-    context, &bricks->now.cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
+  return mcor_fill(context, &bricks->now.cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
 }

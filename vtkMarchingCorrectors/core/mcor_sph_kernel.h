@@ -12,8 +12,8 @@
 
 /* ENTRY(enumerator, name, support / h, norm, is a tensor product) */
 #define MCOR_SPH_KERNEL_TABLE(ENTRY)                                                               \
-  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2, 0.31830988618379067154, 0)     /* 1 / pi */                   \
-  ENTRY(MCOR_QUADRATIC, quadratic, 2, 0.07460387957432593864, 0)    /* 15 / (64 pi) */             \
+  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2, 0.31830988618379067154, 0)  /* 1 / pi */                      \
+  ENTRY(MCOR_QUADRATIC, quadratic, 2, 0.07460387957432593864, 0) /* 15 / (64 pi) */                \
   ENTRY(MCOR_M_PRIME_4, mprime4, 2, 1.0, 1)                                                        \
   ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3, 0.00265258238486492226, 0) /* 1 / (120 pi) */             \
   ENTRY(MCOR_WENDLAND_C2, wendland, 2, 0.41778172561622525639, 0)   /* 21 / (16 pi) */

@@ -353,8 +353,7 @@ static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t l
 /* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from
  * the caller's order to the sorted one, to row `to_row`, one value per particle long. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to,
-  int to_row)
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row)
 {
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;

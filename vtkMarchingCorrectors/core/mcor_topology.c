@@ -62,8 +62,8 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   int faces, joined;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->sample_base)));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->decisions),
+    MCOR_BUFFER(&mesh->sample_base)));
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_LIGHT, count, MCOR_INT(count),
@@ -82,9 +82,9 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above),
-    MCOR_BUFFER(&context->topology_cases), MCOR_BUFFER(&context->topology_rows),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->sample_base)));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->topology_cases),
+    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->decisions),
+    MCOR_BUFFER(&mesh->sample_base)));
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_middles", iso, &samples));
   context->statistics->ambiguous_cells += samples / 2;
   return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_LIGHT, count, MCOR_INT(count),
@@ -115,9 +115,9 @@ mcor_status mcor_count_resolved(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&context->topology_cases),
-    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(counts)));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->decisions),
+    MCOR_BUFFER(&context->topology_cases), MCOR_BUFFER(&context->topology_rows),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &tunnels));
   context->statistics->tunnels += tunnels;
   return MCOR_OK;
@@ -129,8 +129,8 @@ mcor_status mcor_emit_resolved(mcor_context* context)
   const int count = context->bricks.now.count;
   return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->topology_cases),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->decisions),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->topology_cases),
     MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }

@@ -16,8 +16,7 @@ static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 }
 
 /* Counts what remains; ends with scanned counts in mesh->remaining and mesh->cuts. */
-static mcor_status mcor_count_trimmed(
-  mcor_context* context, int batches, int* remaining, int* cuts)
+static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* remaining, int* cuts)
 {
   mcor_mesh* mesh = &context->mesh;
   MCOR_TRY(mcor_reserve(context, &mesh->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
@@ -63,9 +62,9 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   const char* solve = options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
     ? "mcor_trim_solve_eigenvalue"
     : "mcor_trim_solve_weight";
-  return MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
-    MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
+  return MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context), MCOR_INT(groups),
+    MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
+    MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
     MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),

@@ -11,8 +11,7 @@
 /* Sorted arrays, `stride` elements long, one after the other, at most MCOR_ATTRIBUTE_LIMIT. Their
  * means at a point lie one after the other, too. */
 #define MCOR_ATTRIBUTE_PARAMS                                                                      \
-  const int attribute_count, const int stride, __global const real *attributes,                    \
-    __global real *means
+  const int attribute_count, const int stride, __global const real *attributes, __global real *means
 
 #define MCOR_ATTRIBUTE_ARGS attribute_count, stride, attributes, means
 
@@ -74,11 +73,10 @@ void mcor_reach_evaluate(
   mcor_points_relative(grid, query, points, at);
   for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
-    mcor_points_from(at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
-      MCOR_REACH(reach, z, i), d);
+    mcor_points_from(
+      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
     const mcor_length length = mcor_length_of(d);
-    reach->w[i] =
-      mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+    reach->w[i] = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
   }
 }
 
@@ -143,8 +141,8 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
 }
 
 /* Updates each point's nearest fluid particle from those that reach the query's box. */
-void mcor_attribute_nearer(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
-  realv* least, fixv* index)
+void mcor_attribute_nearer(
+  const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {
   realv at[3], d[3];
   mcor_points_relative(grid, query, points, at);

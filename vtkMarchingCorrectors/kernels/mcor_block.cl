@@ -86,8 +86,8 @@ __kernel void mcor_block_count(const int count, const int cubes_x, const int cub
 
 /* One work-item = one cube. Reads the scanned counts. Writes the keys of its children. */
 __kernel void mcor_block_fill(const int count, const int cubes_x, const int cubes_y,
-  __global const ulong* keys, const int nx, const int ny, const int nz,
-  __global const int* scanned, __global ulong* child_keys)
+  __global const ulong* keys, const int nx, const int ny, const int nz, __global const int* scanned,
+  __global ulong* child_keys)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -107,8 +107,8 @@ __kernel void mcor_block_fill(const int count, const int cubes_x, const int cube
 }
 
 /* One work-item = one brick that has a slot. Asks for it again if any node's value is known. */
-__kernel void mcor_block_keep(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
+__kernel void mcor_block_keep(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* known, __global uint* brick_bits)
 {
   const int slot = get_global_id(0);
   if (slot < brick_count && known[slot])

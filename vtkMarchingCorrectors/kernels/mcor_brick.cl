@@ -47,8 +47,7 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int x, int y, int z)
 int mcor_find_mark(MCOR_BLOCK_PARAMS, int x, int y, int z)
 {
   const int block = mcor_find_block(MCOR_BLOCK_ARGS, x >> 3, y >> 3, z >> 3);
-  return block < 0 ? -1
-                   : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
+  return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
 }
 
 /* The same for a brick beside another one, with mark `own`: mostly in the same block. x, y, z: -1
@@ -186,10 +185,10 @@ __kernel void mcor_brick_count_new(const int word_count, __global const uint* br
 
 /* One work-item = one word of 32 bricks. Reads bits and scanned counts. Gives slots from `first` on
  * to those without, of which nothing is known. */
-__kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first,
-  __global const uint* brick_bits, __global const int* scanned, __global uint* placed,
-  __global int* slot_of, __global int4* bricks, __global int* neighbours, __global ulong* known,
-  __global ulong* cells, __global ulong* examined, __global ulong* above, __global ulong* valid)
+__kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first, __global const uint* brick_bits,
+  __global const int* scanned, __global uint* placed, __global int* slot_of, __global int4* bricks,
+  __global int* neighbours, __global ulong* known, __global ulong* cells, __global ulong* examined,
+  __global ulong* above, __global ulong* valid)
 {
   const int word = get_global_id(0);
   if (word >= block_count * MCOR_BLOCK_WORDS)
@@ -247,10 +246,9 @@ __kernel void mcor_brick_join(MCOR_BLOCK_PARAMS, const int first, const int bric
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
   __global const ulong* old_examined, __global const ulong* old_above,
-  __global const ulong* old_valid, __global const real* old_value,
-  __global const real* old_weight, __global ulong* known, __global ulong* cells,
-  __global ulong* examined, __global ulong* above, __global ulong* valid,
-  __global real* node_value, __global real* node_weight)
+  __global const ulong* old_valid, __global const real* old_value, __global const real* old_weight,
+  __global ulong* known, __global ulong* cells, __global ulong* examined, __global ulong* above,
+  __global ulong* valid, __global real* node_value, __global real* node_weight)
 {
   const int old = get_global_id(0);
   if (old >= old_count)

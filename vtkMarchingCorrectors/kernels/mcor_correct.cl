@@ -38,8 +38,8 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
         /* Again: to keep it takes longer. */
         mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
           MCOR_REACH(reach, z, i), d);
-        const realv k = mcor_weight_gradient(
-          d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
+        const realv k =
+          mcor_weight_gradient(d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
         const realv m = MCOR_REACH(reach, weight, i), ms = m * slope;
         reach->w[i] = k;
 #if MCOR_FIELD != 2
@@ -109,8 +109,8 @@ realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
   realv d = -mcor_correct_ratio(v, slope);
   for (int i = 0; i < 3; ++i)
   {
-    d -= mcor_correct_ratio(v + d * (slope + d * (c2 + d * c3)),
-      slope + d * ((real)2 * c2 + d * (real)3 * c3));
+    d -= mcor_correct_ratio(
+      v + d * (slope + d * (c2 + d * c3)), slope + d * ((real)2 * c2 + d * (real)3 * c3));
   }
   return d;
 }
@@ -118,16 +118,15 @@ realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
 /* Root near t of the cubic through the values at 0, 1 and t and the slope at t. */
 realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
 {
-  const realv a = ((v0 - v) / t + slope) / t;                      /* (p(0) - tangent) / t^2 */
-  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t);    /* the same at 1 */
+  const realv a = ((v0 - v) / t + slope) / t;                   /* (p(0) - tangent) / t^2 */
+  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t); /* the same at 1 */
   const realv c3 = b - a, c2 = a + c3 * t;
   return t + mcor_correct_root(v, slope, c2, c3);
 }
 
 /* Root near t of the cubic through the values and slopes at t and where the last step began, which
  * `last` is from t; after a short one, or from a void, by the slope at t alone. */
-realv mcor_correct_next(
-  realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
+realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
 {
   const fixv two = fabs(last) > (real)1e-3f && fabs(last_v) < (real)1e20f;
   const realv inv = two ? (real)1 / (two ? last : (realv)1) : (realv)0;
@@ -140,11 +139,10 @@ realv mcor_correct_next(
 void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int lane, int v,
   __global real4* offset, __global real* value, __global real4* gradient, __global real* weight)
 {
-  offset[v] = (real4)(
-    MCOR_GET(points->ox, lane), MCOR_GET(points->oy, lane), MCOR_GET(points->oz, lane), 0);
+  offset[v] =
+    (real4)(MCOR_GET(points->ox, lane), MCOR_GET(points->oy, lane), MCOR_GET(points->oz, lane), 0);
   value[v] = MCOR_GET(at->value, lane);
-  gradient[v] =
-    (real4)(MCOR_GET(at->gx, lane), MCOR_GET(at->gy, lane), MCOR_GET(at->gz, lane), 0);
+  gradient[v] = (real4)(MCOR_GET(at->gx, lane), MCOR_GET(at->gy, lane), MCOR_GET(at->gz, lane), 0);
   weight[v] = MCOR_GET(at->weight, lane);
 }
 
@@ -261,10 +259,10 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
  * (node, offset), linear less final position along the edge, value, gradient and trimming weight,
  * how many evaluations were made, and attributes. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* vertex_edge,
-  __global const real* vertex_ends, const real iso, const real tolerance, const int limit,
-  __global real4* offset, __global real* linear, __global real* value, __global real4* gradient,
-  __global real* weight, __global uchar* evaluations, MCOR_ATTRIBUTE_PARAMS)
+  __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
+  const real iso, const real tolerance, const int limit, __global real4* offset,
+  __global real* linear, __global real* value, __global real4* gradient, __global real* weight,
+  __global uchar* evaluations, MCOR_ATTRIBUTE_PARAMS)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -278,8 +276,8 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   mcor_edges edges;
   mcor_field_at at;
   mcor_edges_load(&grid, groups, group, vertex_edge, vertex_ends, &edges, &points);
-  const realv t0 = clamp(
-    edges.v0 / (edges.v0 - edges.v1), (realv)MCOR_EDGE_MARGIN, (realv)(1 - MCOR_EDGE_MARGIN));
+  const realv t0 =
+    clamp(edges.v0 / (edges.v0 - edges.v1), (realv)MCOR_EDGE_MARGIN, (realv)(1 - MCOR_EDGE_MARGIN));
   realv t;
   fixv count;
   mcor_correct_group(

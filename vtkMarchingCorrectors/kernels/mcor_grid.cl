@@ -108,8 +108,11 @@ void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
     const fix item_x = x[i];
     cell = i > 0 && keys[i] == keys[i - 1] ? cell : i;
     int to = i;
-    for (; to > cell && (item_x < x[to - 1] || (item_x == x[to - 1] &&
-      mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1]))); --to)
+    for (; to > cell &&
+         (item_x < x[to - 1] ||
+           (item_x == x[to - 1] &&
+             mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1])));
+         --to)
     {
       x[to] = x[to - 1];
       sorted[to] = sorted[to - 1];
@@ -126,10 +129,10 @@ void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
 /* One work-item = the cells that begin in a batch of particles. Reads the input arrays. Writes the
  * order of the particles in these cells, so that it no longer depends on that of the input, and the
  * arrays in that order. `volume` is 0 where it is still to be computed. */
-__kernel void mcor_grid_order(const int count, __global const ulong* keys,
-  __global const fix* xyz, __global const real* inv_h_in, __global const real* volume,
-  __global const uchar* solid, __global int* order, __global fix* px, __global fix* py,
-  __global fix* pz, __global real* inv_h_out, __global real* weight, __global real* trim_weight)
+__kernel void mcor_grid_order(const int count, __global const ulong* keys, __global const fix* xyz,
+  __global const real* inv_h_in, __global const real* volume, __global const uchar* solid,
+  __global int* order, __global fix* px, __global fix* py, __global fix* pz,
+  __global real* inv_h_out, __global real* weight, __global real* trim_weight)
 {
   int begin = get_global_id(0) * MCOR_BATCH;
   int end = min(begin + MCOR_BATCH, count);
@@ -185,10 +188,9 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
 
 /* One work-item = one sorted particle, the first of a run that differs in the scalar only. Sorts
  * the run by scalar, so that not even coincident particles make a result depend on input order. */
-__kernel void mcor_grid_order_value(const int count, __global const fix* px,
-  __global const fix* py, __global const fix* pz, __global const real* inv_h,
-  __global const real* weight, __global const real* trim_weight, __global real* value,
-  __global int* order)
+__kernel void mcor_grid_order_value(const int count, __global const fix* px, __global const fix* py,
+  __global const fix* pz, __global const real* inv_h, __global const real* weight,
+  __global const real* trim_weight, __global real* value, __global int* order)
 {
   const int begin = get_global_id(0);
 #define MCOR_SAME(i, j)                                                                            \
@@ -217,8 +219,8 @@ __kernel void mcor_grid_order_value(const int count, __global const fix* px,
 
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (1 each: number density).
  * Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j. */
-__kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, __global const real* mass,
-  __global real* density)
+__kernel void mcor_grid_density(
+  MCOR_GRID_PARAMS, const real h_scale, __global const real* mass, __global real* density)
 {
   const mcor_grid grid = MCOR_GRID;
   const int begin = get_global_id(0) * MCOR_LANES;

@@ -34,9 +34,8 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
 
 /* One work-item = MCOR_ITEM_NODES nodes of a brick. Where they are needed, reads the particles that
  * reach them. Writes their values and weights. */
-__kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const ulong* need, __global real* node_value,
-  __global real* node_weight)
+__kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* need, __global real* node_value, __global real* node_weight)
 {
   const long first_node = (long)get_global_id(0) * MCOR_ITEM_NODES;
   const int slot = (int)(first_node / 64);
@@ -194,8 +193,7 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
     ulong q[4];
     mcor_march_around(lower, a, q);
     const ulong crossed = changes[a] & (q[0] | q[1] | q[2] | q[3]);
-    const ulong pinched =
-      crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
+    const ulong pinched = crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
     to[a] = crossed;
     to[3 + a] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
     to[6 + a] = pinched;
@@ -238,9 +236,9 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
         const int other = outside ? neighbours[slot * 14L + (1 << axis) - 1] : slot;
         const int m = outside ? n - 3 * step : n + step;
         const int copies = 1 + (int)(e[6 + axis] >> n & 1);
-        const int4 edge = (int4)(bricks[slot].x * MCOR_BRICK + (n & 3),
-          bricks[slot].y * MCOR_BRICK + (n >> 2 & 3), bricks[slot].z * MCOR_BRICK + (n >> 4),
-          axis | (int)(e[3 + axis] >> n & 1) << 2);
+        const int4 edge =
+          (int4)(bricks[slot].x * MCOR_BRICK + (n & 3), bricks[slot].y * MCOR_BRICK + (n >> 2 & 3),
+            bricks[slot].z * MCOR_BRICK + (n >> 4), axis | (int)(e[3 + axis] >> n & 1) << 2);
         for (int copy = 0; copy < copies; ++copy, ++to)
         {
           vertex_edge[to] = edge;
@@ -280,13 +278,13 @@ void mcor_march_numbers(__global const int* neighbours, __global const ulong* ed
       continue;
     }
     __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
-    const ulong border = (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) &
-      (d & 4 ? MCOR_LOW_Z : ~0UL);
+    const ulong border =
+      (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) & (d & 4 ? MCOR_LOW_Z : ~0UL);
     for (ulong rest = (e[0] | e[1] | e[2]) & border; rest; rest &= rest - 1)
     {
       const int n = mcor_ctz(rest);
-      const int at = (n & 3) + 5 * (n >> 2 & 3) + 25 * (n >> 4) + 4 * (d & 1) +
-        20 * (d >> 1 & 1) + 100 * (d >> 2);
+      const int at = (n & 3) + 5 * (n >> 2 & 3) + 25 * (n >> 4) + 4 * (d & 1) + 20 * (d >> 1 & 1) +
+        100 * (d >> 2);
       int number = vertex_base[owner] + mcor_march_rank(e, n);
       for (int axis = 0; axis < 3; ++axis)
       {

@@ -48,9 +48,9 @@ int mcor_node_list(const mcor_tile* tile, real x, real y, real z, real share, in
   int count = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const fixv near = mcor_tile_near(MCOR_LOAD(i, tile->x), MCOR_LOAD(i, tile->y),
-      MCOR_LOAD(i, tile->z), MCOR_LOAD(i, tile->inv_h), x + exy, y + exy, z + ez, exy, exy, ez,
-      share);
+    const fixv near =
+      mcor_tile_near(MCOR_LOAD(i, tile->x), MCOR_LOAD(i, tile->y), MCOR_LOAD(i, tile->z),
+        MCOR_LOAD(i, tile->inv_h), x + exy, y + exy, z + ez, exy, exy, ez, share);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
     count += MCOR_MASK_COUNT(mask);
@@ -73,9 +73,8 @@ mcor_group_nodes mcor_group_place(real x, real y, real z)
 #if MCOR_LANES == 8
   const mcor_group_nodes nodes = { (realv)(x, x + 1, y, y + 1, z, z + 1, z, z) };
 #else
-  const mcor_group_nodes nodes = {
-    (realv)(x, x + 1, y, y + 1, z, z + 1, z + 2, z + 3, z, z, z, z, z, z, z, z)
-  };
+  const mcor_group_nodes nodes = { (
+    realv)(x, x + 1, y, y + 1, z, z + 1, z + 2, z + 3, z, z, z, z, z, z, z, z) };
 #endif
   return nodes;
 }
@@ -191,8 +190,7 @@ mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float s
 }
 
 /* Sums at those nodes. The tile may hold the query's particles already. */
-void mcor_node_sum(
-  const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
+void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
 {
   const real share = -query->radius;
   real first[3];

@@ -150,8 +150,7 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
-        mcor_pair_mark_particle(
-          grid, MCOR_BLOCK_ARGS, query, &tile, j, iso, h_scale, cells);
+        mcor_pair_mark_particle(grid, MCOR_BLOCK_ARGS, query, &tile, j, iso, h_scale, cells);
       }
     }
   }
@@ -180,8 +179,7 @@ __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const
       next = i + mcor_pair_query(&grid, i, min(i + MCOR_LANES, row_end), h_scale, &query);
       if (mcor_query_sides(&grid, &query, sides) == 3)
       {
-        mcor_pair_mark_particles(
-          &grid, MCOR_BLOCK_ARGS, &query, i, next, iso, h_scale, cells);
+        mcor_pair_mark_particles(&grid, MCOR_BLOCK_ARGS, &query, i, next, iso, h_scale, cells);
       }
     }
   }
@@ -211,8 +209,8 @@ __kernel void mcor_pair_ask(
 }
 
 /* One work-item = one brick that has a slot. Writes its marked cells there. */
-__kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const ulong* marked, __global ulong* cells)
+__kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* marked, __global ulong* cells)
 {
   const int slot = get_global_id(0);
   if (slot < brick_count)
@@ -258,10 +256,9 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   for (int d = 0; d < 8; ++d)
   {
-    const int m = mcor_cells_reach(pushed, d)
-      ? mcor_find_mark(
-          MCOR_BLOCK_ARGS, brick.x + (d & 1), brick.y + (d >> 1 & 1), brick.z + (d >> 2))
-      : -1;
+    const int m = mcor_cells_reach(pushed, d) ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
+                                                  brick.y + (d >> 1 & 1), brick.z + (d >> 2))
+                                              : -1;
     if (m >= 0 && mcor_ask_brick(asked, m))
     {
       atomic_or(flags, 2);
@@ -273,10 +270,10 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
 /* One work-item = one brick with cells new to this round. Reads node masks. Grows the cells
  * examined by now through crossed faces of used cells, within the brick to the end, and one step
  * into its neighbours. */
-__kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const int* neighbours, __global ulong* examined,
-  __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
-  __global uint* asked, __global uint* cells, __global int* flags)
+__kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const int* neighbours, __global ulong* examined, __global const ulong* fresh,
+  __global const ulong* above, __global const ulong* valid, __global uint* asked,
+  __global uint* cells, __global int* flags)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count || fresh[slot] == 0)
@@ -305,8 +302,7 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count,
   const ulong used = now & crossed;
   const int4 brick = bricks[slot];
   __global const int* n = neighbours + slot * 14L;
-  bool all = mcor_pair_push(
-    MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
+  bool all = mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],
     (used & faces[0] & MCOR_LOW_X) << 3, asked, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(1, 0, 0, 0), n[0],

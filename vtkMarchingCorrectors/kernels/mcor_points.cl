@@ -363,8 +363,8 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
   MCOR_ALIGNED real term[MCOR_TILE + MCOR_LANES];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    MCOR_CAT(vstore, MCOR_LANES)(
-      MCOR_LOAD(i, tile->weight) * MCOR_FIELD_TERM(MCOR_LOAD(i, tile->value), iso), 0, term + i);
+    MCOR_CAT(vstore, MCOR_LANES)
+    (MCOR_LOAD(i, tile->weight) * MCOR_FIELD_TERM(MCOR_LOAD(i, tile->value), iso), 0, term + i);
   }
   mcor_reach_pack(&reach->masks, term, reach->term);
 #endif

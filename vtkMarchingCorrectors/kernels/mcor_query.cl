@@ -10,10 +10,10 @@
 
 typedef struct
 {
-  ulong base;       /* key of the level's cell (0, 0, 0) */
-  int cells[3];     /* extent of the level, in its cells */
-  float inv_cell;   /* 1 / cell size, in fixed-point units */
-  float support;    /* largest support radius of the level's particles, cubes, rounded up */
+  ulong base;     /* key of the level's cell (0, 0, 0) */
+  int cells[3];   /* extent of the level, in its cells */
+  float inv_cell; /* 1 / cell size, in fixed-point units */
+  float support;  /* largest support radius of the level's particles, cubes, rounded up */
   int unused;
 } mcor_level;
 
@@ -86,10 +86,10 @@ int mcor_first_particle(const mcor_grid* grid, ulong key)
 typedef struct
 {
   fix low[3], high[3];
-  fix origin[3]; /* in a tile, positions count from here */
+  fix origin[3];                /* in a tile, positions count from here */
   real center[3], half_size[3]; /* of the box, in cubes from the origin */
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
-  float cell_size, reach2, z2;  /* of this level, in fixed-point units; squared distance of row z */
+  float cell_size, reach2, z2; /* of this level, in fixed-point units; squared distance of row z */
   int level, first[3], last[3], y, z;
   bool has_many_rows; /* in reach, so that one passes over the empty ones at once */
   int begin, end;     /* particles left of the current row */
@@ -139,8 +139,7 @@ void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin
   {
     query->origin[a] = origin[a];
     query->half_size[a] = (real)(query->high[a] - query->low[a]) * grid->unit * (real)0.5;
-    query->center[a] =
-      (real)(query->low[a] - origin[a]) * grid->unit + query->half_size[a];
+    query->center[a] = (real)(query->low[a] - origin[a]) * grid->unit + query->half_size[a];
   }
 }
 

@@ -102,8 +102,8 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
  * scanned histogram. Writes both in the order of the digit, equal digits in the order in which they
  * came. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
-  const int count, const int chunks, const int shift, const int bits,
-  __global const int* histogram, __global ulong* sorted_keys, __global int* sorted_values)
+  const int count, const int chunks, const int shift, const int bits, __global const int* histogram,
+  __global ulong* sorted_keys, __global int* sorted_values)
 {
   const int chunk = get_global_id(0);
   if (chunk >= chunks)

@@ -12,7 +12,7 @@
  * values, too (mcor_seed_bricks). */
 
 /* What is known of a region's nodes. */
-#define MCOR_VOID 0    /* below the node threshold: no cell there is valid */
+#define MCOR_VOID 0 /* below the node threshold: no cell there is valid */
 #define MCOR_ABOVE 1
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* not enough; evaluate */
@@ -171,8 +171,8 @@ typedef struct
   realv weight;    /* of the greatest weights */
 } mcor_bound;
 
-void mcor_seed_bound(const mcor_query* query, const mcor_tile* tile, real iso, bool from_below,
-  mcor_bound* bound)
+void mcor_seed_bound(
+  const mcor_query* query, const mcor_tile* tile, real iso, bool from_below, mcor_bound* bound)
 {
   const real e = query->half_size[0];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
@@ -421,10 +421,9 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
  * it. Of bricks of which nothing is known, writes the states, and the nodes known by now with their
  * values and signs. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int list_count,
-  __global const int* list, __global const uchar* sides, const real iso,
-  const real node_threshold, __global uchar* states, __global ulong* known,
-  __global real* node_value, __global real* node_weight, __global ulong* above,
-  __global ulong* valid)
+  __global const int* list, __global const uchar* sides, const real iso, const real node_threshold,
+  __global uchar* states, __global ulong* known, __global real* node_value,
+  __global real* node_weight, __global ulong* above, __global ulong* valid)
 {
   const int i = get_global_id(0) / (8 / MCOR_ITEM_BRICKS);
   if (i >= list_count)
@@ -505,9 +504,9 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
     {
       const int y = brick.y + d % 3 - 1, z = brick.z + d / 3 - 1;
       const bool within = y >> 3 == own.y && z >> 3 == own.z;
-      beside |= mcor_seed_row(
-        within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, y >> 3, z >> 3),
-        (z & 7) * 64 + (y & 7) * 8, states);
+      beside |=
+        mcor_seed_row(within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, y >> 3, z >> 3),
+          (z & 7) * 64 + (y & 7) * 8, states);
     }
   }
   for (int x = 0; x < 8; ++x)
@@ -524,10 +523,9 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
 /* One work-item = one brick; those without `fresh` nodes have been looked at before. Reads its
  * nodes' sides, and the states of bricks around it that are not evaluated. Asks for those certain
  * of another side than a valid node next to them. */
-__kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global const ulong* fresh,
-  __global const ulong* above, __global const ulong* valid, __global const uchar* states,
-  __global uint* brick_bits, __global int* grown)
+__kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
+  __global const uchar* states, __global uint* brick_bits, __global int* grown)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count || fresh[slot] == 0)

@@ -55,7 +55,7 @@ typedef int mcor_mask;
 #define MCOR_PACK_INDEX(mask, first, to) (*(to) = (first))
 #define MCOR_MASK_COUNT(mask) (mask)
 #elif MCOR_LANES == 16 && !MCOR_DOUBLE && defined(__AVX512F__) &&                                  \
-  __has_builtin(__builtin_ia32_compresssf512_mask) &&                                             \
+  __has_builtin(__builtin_ia32_compresssf512_mask) &&                                              \
   __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask)
 /* A vector unit that packs by itself: a third of a gather's time. */
 typedef ushort mcor_mask;
@@ -65,8 +65,8 @@ typedef ushort mcor_mask;
 #define MCOR_PACK_REAL(mask, v, to)                                                                \
   (*(mcor_loose_realv*)(to) = __builtin_ia32_compresssf512_mask((v), (float16)0, (mask)))
 #define MCOR_PACK_INDEX(mask, first, to)                                                           \
-  (*(mcor_loose_fixv*)(to) = __builtin_ia32_compresssi512_mask(                                    \
-     (first) + mcor_lane_index(), (int16)0, (mask)))
+  (*(mcor_loose_fixv*)(to) =                                                                       \
+      __builtin_ia32_compresssi512_mask((first) + mcor_lane_index(), (int16)0, (mask)))
 #define MCOR_MASK_COUNT(mask) ((int)popcount(mask))
 #define MCOR_PARTS 4
 

@@ -24,7 +24,8 @@
 ulong mcor_from_last(int axis, ulong m, ulong last)
 {
   return axis == 0 ? mcor_from_last_x(m, last)
-                   : axis == 1 ? mcor_from_last_y(m, last) : mcor_from_last_z(m, last);
+    : axis == 1    ? mcor_from_last_y(m, last)
+                   : mcor_from_last_z(m, last);
 }
 
 /* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next
@@ -80,9 +81,9 @@ int4 mcor_topology_node(__global const int4* bricks, int slot, int n)
 /* One work-item = one brick. Reads its ambiguous faces and node values. Writes the saddle of each:
  * node and offset. */
 __kernel void mcor_topology_saddles(const int brick_count, __global const int4* bricks,
-  __global const int* neighbours, __global const ulong* decisions,
-  __global const real* node_value, __global const int* base, const real iso,
-  __global int4* sample_node, __global real4* sample_offset)
+  __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
+  __global const int* base, const real iso, __global int4* sample_node,
+  __global real4* sample_offset)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -105,16 +106,15 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
       const real at[3] = { 0, mcor_topology_part(f00 - f01, sum),
         mcor_topology_part(f00 - f10, sum) };
       sample_node[to] = mcor_topology_node(bricks, slot, n);
-      sample_offset[to++] =
-        (real4)(at[(3 - axis) % 3], at[(4 - axis) % 3], at[(5 - axis) % 3], 0);
+      sample_offset[to++] = (real4)(at[(3 - axis) % 3], at[(4 - axis) % 3], at[(5 - axis) % 3], 0);
     }
   }
 }
 
 /* One work-item = one group of samples. Writes on which side of the iso value the field is. */
 __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* sample_node,
-  __global const real4* sample_offset, const real iso, __global uchar* side)
+  __global const int* groups, __global const int4* sample_node, __global const real4* sample_offset,
+  const real iso, __global uchar* side)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -135,9 +135,9 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
     const real value = MCOR_GET(at.value, lane);
     if (points.index[lane] >= 0)
     {
-      side[points.index[lane]] = (uchar)(value == (real)1e30f
-          ? MCOR_SAMPLE_NONE
-          : value >= 0 ? MCOR_SAMPLE_ABOVE : MCOR_SAMPLE_BELOW);
+      side[points.index[lane]] = (uchar)(value == (real)1e30f ? MCOR_SAMPLE_NONE
+          : value >= 0                                        ? MCOR_SAMPLE_ABOVE
+                                                              : MCOR_SAMPLE_BELOW);
     }
   }
 }
@@ -291,9 +291,9 @@ real4 mcor_topology_middle(const real* f)
 /* One work-item = one brick. Reads the cells that may have a tunnel, and node values. Writes two
  * samples for each: the saddles inside, the same one twice, or the middle. */
 __kernel void mcor_topology_middles(const int brick_count, __global const int4* bricks,
-  __global const int* neighbours, __global const ulong* decisions,
-  __global const real* node_value, __global const int* base, const real iso,
-  __global int4* sample_node, __global real4* sample_offset)
+  __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
+  __global const int* base, const real iso, __global int4* sample_node,
+  __global real4* sample_offset)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -357,8 +357,7 @@ __global const uchar* mcor_topology_cell(const ulong* corners, __global const in
   const int first = cases[mcor_march_case(corners, cell)] >> 6;
   const int row = mcor_topology_row(corners, neighbours, decisions, cases, slot, cell);
   __global const uchar* choice = rows + row * MCOR_ROW + MCOR_ROW_TUNNEL;
-  const int other =
-    cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
+  const int other = cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
   *tunnel = other != 0;
   return rows + (other ? first + other : row) * MCOR_ROW;
 }

@@ -57,8 +57,7 @@ ulong mcor_trim_key(int a, int b)
 /* One work-item = one batch of triangles. Writes the keys of their cut edges: from the lone corner
  * to the next corner, then to the last one. */
 __kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
-  __global const real* weight, const real threshold, __global const int* cuts,
-  __global ulong* keys)
+  __global const real* weight, const real threshold, __global const int* cuts, __global ulong* keys)
 {
   const int batch = get_global_id(0);
   const long begin = (long)batch * MCOR_BATCH;
@@ -247,8 +246,8 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
 #define MCOR_TRIM_SOLVE_PARAMS                                                                     \
   const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
     const real tolerance, const real threshold, const int limit, __global real4 *offset,           \
-    __global real *value, __global real4 *gradient, __global real *weight,                         \
-    __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
+    __global real *value, __global real4 *gradient, __global real *weight, __global uchar *flag,   \
+    MCOR_ATTRIBUTE_PARAMS
 
 #define MCOR_TRIM_SOLVE_ARGS                                                                       \
   group_count, groups, node, iso, tolerance, threshold, limit, offset, value, gradient, weight,    \
@@ -266,8 +265,8 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   mcor_query query;
   mcor_reach reach;
   mcor_field_at at;
-  mcor_group_load(grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points,
-    &query);
+  mcor_group_load(
+    grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
   const fixv linear = mcor_trim_group(
     grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &reach, &at);
   if (attribute_count > 0)

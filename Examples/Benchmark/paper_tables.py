@@ -71,7 +71,7 @@ PAPER = {
         cells=((2401980, 303408), (73602, 14917), (47007, 8012), (29388, 7183), (56543, 14535)),
         lengths=((0.000218, 0.000807), (0.009890, 0.018360), (0.000402, 0.001253))),
     "dam": Data(
-        "III", "dam break: variable smoothing length", sets.dam_break, 670000, "Lambda2", -170,
+        "III", "dam break: variable smoothing length", sets.dam_break, 670000, "Lambda2", -140,
         -100,
         grid=(0.07, 0.07, 0.1, 0.1, 0.17, 0.17),
         seeds=(0.08, 0.08, 0.05, 0.05, 0.04, 0.04),

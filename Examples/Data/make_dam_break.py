@@ -7,7 +7,7 @@ The column, 1.228 x 1.0 x 0.55 m, 0.3 s after the dam at x = 1.228 broke: z up, 
 solution for a dry bed. Particles are a jittered lattice, finest at the front and at the bottom,
 coarse far from both: a particle's volume V follows from its lattice cell, and h = 1.28 V^(1/3).
 Arrays: SmoothingLength, Density (1000), Mass = 1000 V, Lambda2 (1/s^2) of a periodic flow made of
-vortices; below 0 in their cores, try -170.
+vortices; below 0 in their cores, try -140.
 """
 import argparse
 
@@ -21,7 +21,10 @@ GRAVITY = 9.81
 RATIO = 1.28  # smoothing length / V^(1/3)
 WAVE_NUMBER = 2 * np.pi / 1.1
 SPEED = 2.3
-GRADING = (1.0, 0.4, 0.4)  # along an axis, spacing falls from 1 + grading to 1
+GRADING = (0.5, 0.5, 0.5)  # along an axis, spacing falls from 1 + grading to 1
+# Of the spacing, either way. The sum of V W at particles deep inside then varies by 1.4 %, in
+# dam_break_45k.vtp, which was simulated, by 1.5 % (standard deviations).
+JITTER = 0.06
 
 
 def depth(x):
@@ -77,11 +80,11 @@ def main():
     arguments = parser.parse_args()
 
     spacing = 0.02
-    for _ in range(3):  # the count goes with 1 / spacing^3, but for whole planes
+    for _ in range(5):  # the count goes with 1 / spacing^3, but for whole planes
         spacing *= (len(lattice(spacing)[0]) / arguments.n) ** (1 / 3)
     positions, spacings = lattice(spacing)
     volumes = spacings.prod(1)
-    positions += np.random.default_rng(477).uniform(-0.15, 0.15, positions.shape) * spacings
+    positions += np.random.default_rng(477).uniform(-JITTER, JITTER, positions.shape) * spacings
     arrays = {
         "SmoothingLength": RATIO * np.cbrt(volumes),
         "Density": np.full(len(positions), 1000.0),

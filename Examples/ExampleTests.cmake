@@ -9,7 +9,7 @@ endfunction ()
 
 mcor_add_example_test(c unit $<TARGET_FILE:extract_surface_c>
   "${out}/free_surface.obj" "${out}/temperature.obj")
-if (NOT MCOR_BUILD_VTK)
+if (NOT MCOR_BUILD_VTK OR mcor_lacking)
   return ()
 endif ()
 

@@ -4,34 +4,48 @@
 #
 # Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
 set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc)
-set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersGeneral FiltersSources
-  FiltersPoints FiltersModeling IOXML IOLegacy IOImage InteractionStyle RenderingCore RenderingOpenGL2
-  RenderingFreeType TestingRendering TestingCore)
+set(mcor_vtk_optional WrappingPythonCore Python FiltersSources IOXML IOLegacy IOImage RenderingCore
+  RenderingOpenGL2 TestingRendering)
 
 # VTK 9.3 passes empty arguments on, which CMake 3.31 warns of unless told what to do.
 set(CMAKE_POLICY_DEFAULT_CMP0174 NEW)
 
+macro(mcor_find_paraview)
+  find_package(ParaView QUIET)
+  if (ParaView_FOUND AND ParaView_VERSION VERSION_LESS 5.11)
+    set(ParaView_FOUND FALSE)
+    set(ParaView_NOT_FOUND_MESSAGE "its version is ${ParaView_VERSION}; 5.11 is the first that will do")
+  endif ()
+  if (ParaView_FOUND)
+    set(MCOR_VTK_PACKAGE ParaView)
+  elseif (ParaView_CONSIDERED_CONFIGS)
+    message(WARNING "There is a ParaView, but it cannot be used: ${ParaView_NOT_FOUND_MESSAGE}")
+  endif ()
+endmacro()
+
 set(MCOR_VTK_PACKAGE "")
 if (MCOR_BUILD_PLUGIN OR NOT DEFINED MCOR_BUILD_PLUGIN)
-  find_package(ParaView QUIET)
+  mcor_find_paraview()
+  if (MCOR_BUILD_PLUGIN AND NOT MCOR_VTK_PACKAGE)
+    message(FATAL_ERROR "The plugin (MCOR_BUILD_PLUGIN) needs ParaView >= 5.11, which was not found. "
+      "Set ParaView_DIR, or turn MCOR_BUILD_PLUGIN off.")
+  endif ()
 endif ()
-option(MCOR_BUILD_PLUGIN "Build the ParaView plugin" "${ParaView_FOUND}")
-if (NOT MCOR_BUILD_PLUGIN)
+if (NOT MCOR_VTK_PACKAGE)
   find_package(VTK 9.1 QUIET COMPONENTS ${mcor_vtk_components}
     OPTIONAL_COMPONENTS ${mcor_vtk_optional})
   if (VTK_FOUND)
     set(MCOR_VTK_PACKAGE VTK)
+  elseif (DEFINED MCOR_BUILD_PLUGIN)
+    mcor_find_paraview() # for the VTK inside it
   endif ()
 endif ()
 if (NOT MCOR_VTK_PACKAGE)
-  find_package(ParaView QUIET)
-  if (ParaView_FOUND)
-    set(MCOR_VTK_PACKAGE ParaView)
-  else ()
-    message(FATAL_ERROR "Neither VTK >= 9.1 nor ParaView was found (Debian: libvtk9-dev, or "
-      "paraview-dev). Set VTK_DIR or ParaView_DIR, or build the core alone with -DMCOR_BUILD_VTK=OFF.")
-  endif ()
+  message(FATAL_ERROR "Neither VTK >= 9.1 nor ParaView >= 5.11 was found (Debian: libvtk9-dev, or "
+    "paraview-dev). Set VTK_DIR or ParaView_DIR, or build the core alone with -DMCOR_BUILD_VTK=OFF.")
 endif ()
+# Only now: a run that failed must not decide for the next one.
+option(MCOR_BUILD_PLUGIN "Build the ParaView plugin" "${ParaView_FOUND}")
 message(STATUS "Building for ${MCOR_VTK_PACKAGE} ${${MCOR_VTK_PACKAGE}_VERSION}")
 
 # The tests need the interpreter for which VTK was built; the first python3 on the PATH may be another.

@@ -62,6 +62,16 @@ public:
   }
 };
 
+// These are handed to the core as they are.
+static_assert(static_cast<int>(vtkMarchingCorrectors::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
+    static_cast<int>(vtkMarchingCorrectors::QUADRATIC) == MCOR_QUADRATIC &&
+    static_cast<int>(vtkMarchingCorrectors::M_PRIME_4) == MCOR_M_PRIME_4 &&
+    static_cast<int>(vtkMarchingCorrectors::QUINTIC_SPLINE) == MCOR_QUINTIC_SPLINE &&
+    static_cast<int>(vtkMarchingCorrectors::WENDLAND_C2) == MCOR_WENDLAND_C2 &&
+    static_cast<int>(vtkMarchingCorrectors::WENDLAND_C2) + 1 == MCOR_SPH_KERNEL_COUNT &&
+    static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) == MCOR_MAGNITUDE,
+  "the filter's numbers are the core's");
+
 namespace
 {
 int IsOn(vtkTypeBool value)
@@ -206,7 +216,7 @@ bool vtkMarchingCorrectors::PrepareDevice()
   {
     return true;
   }
-  this->Fail(internals.Context ? mcor_last_error(internals.Context) : "Host memory ran out.");
+  this->Fail(mcor_last_error(internals.Context));
   internals.Forget(MCOR_DEVICE_ERROR);
   return false;
 }
@@ -263,6 +273,7 @@ int vtkMarchingCorrectors::RequestData(
   vtkPointSet* particles = vtkPointSet::GetData(inputVector[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   this->ErrorMessage.clear();
+  this->SetUsedNames({ this, particles });
   if (!particles || !output || particles->GetNumberOfPoints() == 0)
   {
     return 1;

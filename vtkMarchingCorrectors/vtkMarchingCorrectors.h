@@ -68,13 +68,21 @@
  * "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
- * "DeviceBytesPeak", "SmoothingLengthRange", "ScalarRange", and the parameters: "IsoValues",
- * "Field", "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray", "DensityArray", "Kernel",
- * "SeedMode", "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor",
- * "NodeThreshold", "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit",
- * "Preview".
+ * "DeviceBytesPeak", "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the
+ * parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
+ * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
+ * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "Kernel", "SeedMode",
+ * "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
+ * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Seconds are in
+ * s, lengths (of the correction, too) in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of
+ * the scalar; mcor_statistics in mcor.h says more of each.
  *
  * All lengths are in the unit of the point coordinates (L below).
+ *
+ * @warning
+ * Every piece or block is contoured by itself. Particles of a neighbouring piece, also those marked
+ * as ghosts, are particles like all others: without them the surface is trimmed at the cut, and with
+ * them both pieces have the surface there.
  *
  * @warning
  * The `sum` field falls to zero at a free surface, so it has a second sheet along the whole free
@@ -170,7 +178,10 @@ public:
    * "IsoValues" in the output field data.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
-  double GetValue(int i) { return this->ContourValues->GetValue(i); }
+  double GetValue(int i)
+  {
+    return this->GetNumberOfContours() > 0 ? this->ContourValues->GetValue(i) : 0.0;
+  }
   double* GetValues() { return this->ContourValues->GetValues(); }
   void GetValues(double* contourValues) { this->ContourValues->GetValues(contourValues); }
   void SetNumberOfContours(int number) { this->ContourValues->SetNumberOfContours(number); }
@@ -230,9 +241,12 @@ public:
    * draw several surfaces in one run.
    */
   void SetFreeSurfaceValue(double value);
-  double GetFreeSurfaceValue() { return this->FreeSurfaceValues->GetValue(0); }
+  double GetFreeSurfaceValue() { return this->GetFreeSurfaceValue(0); }
   void SetFreeSurfaceValue(int i, double value) { this->FreeSurfaceValues->SetValue(i, value); }
-  double GetFreeSurfaceValue(int i) { return this->FreeSurfaceValues->GetValue(i); }
+  double GetFreeSurfaceValue(int i)
+  {
+    return this->GetNumberOfFreeSurfaceValues() > 0 ? this->FreeSurfaceValues->GetValue(i) : 0.5;
+  }
   void SetNumberOfFreeSurfaceValues(int n) { this->FreeSurfaceValues->SetNumberOfContours(n); }
   vtkIdType GetNumberOfFreeSurfaceValues()
   {
@@ -259,7 +273,7 @@ public:
 
   ///@{
   /**
-   * Estimate one smoothing length for all particles: 1.3 times their mean spacing. For positions
+   * Estimate one smoothing length for all particles: 1.3 times their median spacing. For positions
    * without further data. Goes before array and constant. Off by default. The estimated value is
    * the "SmoothingLengthRange" of the output field data.
    */
@@ -281,7 +295,8 @@ public:
   ///@{
   /**
    * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Volumes are not searched for if a mass or density is set.
+   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses
+   * and densities may have any units that give volumes in L^3; a density is used with masses only.
    */
   vtkSetStdStringFromCharMacro(VolumeArrayName);
   vtkGetCharFromStdStringMacro(VolumeArrayName);
@@ -354,7 +369,9 @@ public:
   ///@{
   /**
    * Size of the virtual grid's cubes, as a factor of the smallest smoothing length (unscaled). No
-   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible.
+   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. Where smoothing lengths vary, the smallest
+   * one, and with it the lattice, may differ between time steps, or pieces of a data set: set
+   * CubeSize where they are to share one.
    */
   vtkSetMacro(CubeSizeFactor, double);
   vtkGetMacro(CubeSizeFactor, double);
@@ -362,7 +379,8 @@ public:
 
   ///@{
   /**
-   * Size of the virtual grid's cubes, unit L. 0 (the default): use CubeSizeFactor.
+   * Size of the virtual grid's cubes, unit L. 0 (the default): use CubeSizeFactor. Nodes lie at
+   * multiples of this size, counted from the origin of the coordinates.
    */
   vtkSetMacro(CubeSize, double);
   vtkGetMacro(CubeSize, double);
@@ -593,8 +611,9 @@ public:
 
   ///@{
   /**
-   * Most device memory in use and kept between updates, in MiB; 0, the default, means all that
-   * there is. An update that would need more fails with a sentence that says how much.
+   * Most device memory in use and kept between updates by this filter, in MiB; each filter has
+   * memory of its own. 0, the default, means all that there is. An update that would need more
+   * fails with a sentence that says how much.
    */
   vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(DeviceMemoryLimit, int);
@@ -622,9 +641,9 @@ public:
 
   ///@{
   /**
-   * Most iterations of the correction per vertex, >= 1, 30 by default.
+   * Most iterations of the correction per vertex, 1 to 255, 30 by default.
    */
-  vtkSetClampMacro(IterationLimit, int, 1, VTK_INT_MAX);
+  vtkSetClampMacro(IterationLimit, int, 1, 255);
   vtkGetMacro(IterationLimit, int);
   ///@}
 

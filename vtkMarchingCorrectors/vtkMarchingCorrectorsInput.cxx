@@ -199,10 +199,21 @@ bool vtkMarchingCorrectorsInput::CollectVolume()
   {
     return true;
   }
-  return this->CollectQuantity("mass", f->GetMassArrayName(), f->GetMass(), MassNames, this->Mass,
-           this->Core.mass, this->Core.has_mass) &&
-    this->CollectQuantity("density", f->GetDensityArrayName(), f->GetDensity(), DensityNames,
-      this->Density, this->Core.density, this->Core.has_density);
+  if (!this->CollectQuantity("mass", f->GetMassArrayName(), f->GetMass(), MassNames, this->Mass,
+        this->Core.mass, this->Core.has_mass) ||
+    !this->CollectQuantity("density", f->GetDensityArrayName(), f->GetDensity(), DensityNames,
+      this->Density, this->Core.density, this->Core.has_density))
+  {
+    return false;
+  }
+  if (!this->Core.has_mass)
+  {
+    // A density alone says nothing of volumes, and is not to be reported as used.
+    this->Density = nullptr;
+    this->Core.density = {};
+    this->Core.has_density = 0;
+  }
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -226,10 +237,8 @@ bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role,
     {
       return false;
     }
-    if (array->GetNumberOfComponents() != 1)
+    if (!this->HasOneComponent(role, array))
     {
-      this->Error = "The " + role + " array " + Quote(name) + " has " +
-        std::to_string(array->GetNumberOfComponents()) + " components; it must have one.";
       return false;
     }
   }
@@ -256,7 +265,7 @@ bool vtkMarchingCorrectorsInput::CollectSolids()
     return true;
   }
   this->Fluid = this->Find("fluid", name);
-  if (!this->Fluid)
+  if (!this->Fluid || !this->HasOneComponent("fluid", this->Fluid))
   {
     return false;
   }
@@ -408,6 +417,18 @@ vtkDataArray* vtkMarchingCorrectorsInput::Check(
     return nullptr;
   }
   return numbers;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMarchingCorrectorsInput::HasOneComponent(const std::string& role, vtkDataArray* array)
+{
+  const int components = array->GetNumberOfComponents();
+  if (components != 1)
+  {
+    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " has " +
+      std::to_string(components) + " components; it must have one.";
+  }
+  return components == 1;
 }
 
 //------------------------------------------------------------------------------

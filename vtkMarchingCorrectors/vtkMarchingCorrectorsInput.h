@@ -81,6 +81,7 @@ private:
   vtkDataArray* Detect(const std::vector<std::string>& usualNames);
   bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
     const std::vector<std::string>& usualNames, vtkDataArray*& array, mcor_array& core, int& given);
+  bool HasOneComponent(const std::string& role, vtkDataArray* array);
   std::string ListPointArrays() const;
 
   vtkMarchingCorrectors* Filter;

@@ -111,6 +111,17 @@ void AddArrayName(vtkFieldData* data, const char* name, vtkAbstractArray* array)
 {
   AddText(data, name, array && array->GetName() ? array->GetName() : "");
 }
+
+// The array's name, or the value for all particles where it was used.
+void AddQuantity(vtkFieldData* data, const std::string& name, int given, vtkAbstractArray* array,
+  const mcor_array& core)
+{
+  AddArrayName(data, (name + "Array").c_str(), array);
+  if (given && !array)
+  {
+    AddReal(data, name.c_str(), { core.constant });
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -297,7 +308,10 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   AddCount(fieldData, "FluidParticles", { s.fluid_particles });
   AddCount(fieldData, "SolidParticles", { s.solid_particles });
   AddReal(fieldData, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
-  AddReal(fieldData, "ScalarRange", { s.scalar_min, s.scalar_max });
+  if (this->Options.field != MCOR_WEIGHT_SUM)
+  {
+    AddReal(fieldData, "ScalarRange", { s.scalar_min, s.scalar_max });
+  }
   AddReal(fieldData, "CubeSize", { s.cube_size });
   AddCount(
     fieldData, "LatticeOrigin", { s.lattice_origin[0], s.lattice_origin[1], s.lattice_origin[2] });
@@ -345,9 +359,20 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   AddText(fieldData, "Field", fields[o.field]);
   AddText(fieldData, "Scalar", o.field == MCOR_WEIGHT_SUM ? "" : this->Input.ScalarName);
   AddArrayName(fieldData, "SmoothingLengthArray", this->Input.SmoothingLength);
+  AddCount(fieldData, "SmoothingLengthIsSupportRadius",
+    { this->Input.Core.smoothing_length_is_support_radius });
+  AddCount(fieldData, "EstimateSmoothingLength", { this->Input.Core.estimate_smoothing_length });
   AddArrayName(fieldData, "VolumeArray", this->Input.Volume);
-  AddArrayName(fieldData, "MassArray", this->Input.Mass);
-  AddArrayName(fieldData, "DensityArray", this->Input.Density);
+  AddQuantity(
+    fieldData, "Mass", this->Input.Core.has_mass, this->Input.Mass, this->Input.Core.mass);
+  AddQuantity(fieldData, "Density", this->Input.Core.has_density, this->Input.Density,
+    this->Input.Core.density);
+  AddArrayName(fieldData, "FluidArray", this->Input.Fluid);
+  if (this->Input.Fluid)
+  {
+    AddReal(fieldData, "FluidValue", { this->Filter->GetFluidValue() });
+    AddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
+  }
   AddText(fieldData, "Kernel", mcor_sph_kernel_name(o.sph_kernel));
   AddText(fieldData, "SeedMode", o.seeds == MCOR_PAIRS ? "pairs" : "complete");
   AddText(fieldData, "Topology", o.topology == MCOR_TOPOLOGY_FIELD ? "field" : "table");

@@ -143,6 +143,8 @@ const std::vector<Option>& AllOptions()
     { "", "", "The particles (arrays are found by their usual names if not given)", {} },
     { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or from the spacing",
       [](Options& o, Text n, Text v) { o.SmoothingLength = ToQuantity(n, v); } },
+    { "--support-radius", "", "these are the support radius, not the smoothing length",
+      [](Options& o, Text, Text) { o.SupportRadius = true; } },
     { "--volume", "NAME", "array of particle volumes",
       [](Options& o, Text, Text v) { o.Volume = v; } },
     { "--mass", "NAME|VALUE", "array of particle masses, or one value",
@@ -198,6 +200,10 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text, Text) { o.Gradients = true; } },
     { "--no-attributes", "", "leave out the particles' other arrays",
       [](Options& o, Text, Text) { o.Attributes = false; } },
+    { "--output-precision", "P", "of the points: single, double or input (default: as the input's)",
+      [](Options& o, Text n, Text v) {
+        o.OutputPrecision = ToChoice(n, v, { "single", "double", "input" });
+      } },
     { "--stats", "FILE.json", "write the statistics of the run",
       [](Options& o, Text, Text v) { o.StatisticsFile = v; } },
     { "--screenshot", "FILE.png", "write a picture of the surface (may need a display)",
@@ -319,7 +325,7 @@ std::string CommandLineHelp()
       continue;
     }
     std::string left = std::string("  ") + option.Name + " " + option.Argument;
-    left.resize(std::max<std::size_t>(left.size() + 1, 32), ' ');
+    left.resize(std::max<std::size_t>(left.size() + 2, 32), ' ');
     help << left << option.Help << "\n";
   }
   help << "\nExit status: 0 a surface was written, 1 bad data or a device problem, 2 wrong usage.\n"

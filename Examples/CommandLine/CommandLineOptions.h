@@ -22,6 +22,7 @@ struct CommandLineOptions
   /// A quantity is an array name or one value for all particles; the input decides which of the two
   /// a text such as "2" is.
   std::string SmoothingLength;
+  bool SupportRadius = false; ///< SmoothingLength is the kernel's support radius
   std::string Volume;
   std::string Mass;
   std::string Density;
@@ -45,6 +46,7 @@ struct CommandLineOptions
   bool BoundaryEigenvalue = false;
   bool Gradients = false;
   bool Attributes = true;
+  std::string OutputPrecision = "input";
 
   std::string Device;
   int MemoryLimit = 0;

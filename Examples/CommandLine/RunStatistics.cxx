@@ -23,8 +23,9 @@ namespace
 
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
-const char* const ParameterNames[] = { "IsoValues", "Field", "Kernel", "SeedMode", "Topology",
-  "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection",
+const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
+  "Mass", "Density", "IsoValues", "Field", "Kernel", "SeedMode", "Topology", "Precision",
+  "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection",
   "VertexThreshold", "Tolerance", "IterationLimit", "Preview" };
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "SmoothingLengthRange",
   "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells", "SeedCells",
@@ -63,11 +64,18 @@ std::string Format(vtkFieldData* run, const char* name, vtkIdType index = 0)
   return Format(Number(run, name, index));
 }
 
+/// Its array, or the value for all particles; empty if there is neither.
+std::string DescribeQuantity(vtkFieldData* run, const char* name)
+{
+  const std::string array = Text(run, (std::string(name) + "Array").c_str());
+  return !array.empty() || !run->GetArray(name) ? array : Format(run, name);
+}
+
 std::string DescribeVolume(vtkFieldData* run)
 {
   const std::string volume = Text(run, "VolumeArray");
-  const std::string mass = Text(run, "MassArray");
-  const std::string density = Text(run, "DensityArray");
+  const std::string mass = DescribeQuantity(run, "Mass");
+  const std::string density = DescribeQuantity(run, "Density");
   if (!volume.empty())
   {
     return "array " + volume;
@@ -76,7 +84,7 @@ std::string DescribeVolume(vtkFieldData* run)
   {
     return mass + " / " + density;
   }
-  return mass.empty() && density.empty() ? "no array" : "array " + mass + density;
+  return mass.empty() ? "computed" : "computed from " + mass;
 }
 
 std::string DescribeParticles(vtkFieldData* run)

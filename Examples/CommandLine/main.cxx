@@ -75,6 +75,7 @@ void SetParticles(
   {
     filter->SetSmoothingLengthArrayName(options.SmoothingLength.c_str());
   }
+  filter->SetSmoothingLengthIsSupportRadius(options.SupportRadius);
   filter->SetVolumeArrayName(options.Volume.c_str());
   if (IsConstant(options.Mass, particles, value))
   {
@@ -149,6 +150,10 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetComputeBoundaryEigenvalue(options.BoundaryEigenvalue);
   filter->SetComputeGradients(options.Gradients);
   filter->SetInterpolateAttributes(options.Attributes);
+  filter->SetOutputPointsPrecision(options.OutputPrecision == "single"
+      ? vtkAlgorithm::SINGLE_PRECISION
+      : options.OutputPrecision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
+                                            : vtkAlgorithm::DEFAULT_PRECISION);
   filter->SetDevice(options.Device.c_str());
   filter->SetDeviceMemoryLimit(options.MemoryLimit);
   filter->KeepDeviceDataOff();
@@ -198,15 +203,19 @@ void WarnIfEmpty(vtkPolyData* surface, MessageCapture* messages)
   {
     why = messages->GetWarnings().front();
   }
-  else if (vtkDataArray* range = surface->GetFieldData()->GetArray("ScalarRange"))
+  else if (vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues"))
   {
-    vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
+    vtkDataArray* range = surface->GetFieldData()->GetArray("ScalarRange");
     std::ostringstream stream;
     stream << "no part of the field reaches the iso value";
-    if (values && values->GetNumberOfValues() == 1)
+    if (values->GetNumberOfValues() == 1)
     {
-      stream << " " << values->GetComponent(0, 0) << "; the particles have values from "
-             << range->GetComponent(0, 0) << " to " << range->GetComponent(0, 1);
+      stream << " " << values->GetComponent(0, 0);
+    }
+    if (range)
+    {
+      stream << "; the particles have values from " << range->GetComponent(0, 0) << " to "
+             << range->GetComponent(0, 1);
     }
     why = stream.str();
   }
@@ -225,6 +234,38 @@ void ListDevices()
   std::cout << devices;
 }
 
+/// Whether two names are those of one file, which need not exist.
+bool IsSameFile(const std::string& a, const std::string& b)
+{
+  std::error_code ignored;
+  const auto place = [&](const std::string& file)
+  { return std::filesystem::weakly_canonical(std::filesystem::absolute(file, ignored), ignored); };
+  return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
+}
+
+/// No file is written over another, and all can be written: said before the work, not after it.
+void CheckFiles(const CommandLineOptions& options)
+{
+  std::vector<std::string> files = { options.Input };
+  for (const std::string& file : { options.Output, options.StatisticsFile, options.PictureFile })
+  {
+    if (file.empty())
+    {
+      continue;
+    }
+    for (const std::string& other : files)
+    {
+      if (IsSameFile(file, other))
+      {
+        throw UsageError(other == options.Input ? file + " would overwrite the input"
+                                                : file + " would be written twice");
+      }
+    }
+    CheckWritable(file);
+    files.push_back(file);
+  }
+}
+
 void Execute(const CommandLineOptions& options)
 {
   vtkNew<MessageCapture> messages;
@@ -235,18 +276,7 @@ void Execute(const CommandLineOptions& options)
     ListDevices();
     return;
   }
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.Input, options.Output, ignored))
-  {
-    throw UsageError("the output would overwrite the input");
-  }
-  for (const std::string& file : { options.Output, options.StatisticsFile, options.PictureFile })
-  {
-    if (!file.empty())
-    {
-      CheckWritable(file);
-    }
-  }
+  CheckFiles(options);
   vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Input, messages);
   vtkNew<vtkMarchingCorrectors> filter;
   SetParticles(filter, options, particles);

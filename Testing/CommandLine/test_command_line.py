@@ -70,7 +70,7 @@ class Usage(CommandLineTest):
                 --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
                 --weight-sum --boundary-eigenvalue --gradients --no-attributes --device --memory-limit
                 --list-devices --stats --screenshot --repeat --quiet --help
-                --version --precision""".split():
+                --version --precision --support-radius --output-precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
     def test_version(self):
@@ -91,6 +91,9 @@ class Usage(CommandLineTest):
             ([*good, "third", *ISO], "does not know what to do with 'third'"),
             ([self.input, "surface.stl", *ISO], "output is a .vtp file, not 'surface.stl'"),
             ([self.input, self.input, *ISO], "would overwrite the input"),
+            ([*good, *ISO, "--stats", self.input], "would overwrite the input"),
+            ([*good, *ISO, "--stats", "../" + self.directory.name + "/surface.vtp"], "written twice"),
+            ([*good, *ISO, "--stats", "a.png", "--screenshot", "a.png"], "written twice"),
             ([*good], "needs --scalar NAME and --iso V, or --free-surface"),
             ([*good, "--scalar", "Radius"], "needs an iso value"),
             ([*good, "--free-surface", "--scalar", "Radius"], "leave out --scalar"),
@@ -318,6 +321,9 @@ class Options(CommandLineTest):
         self.assertEqual(half["parameters"]["iso_values"], [0.5])
         self.assertEqual(half["parameters"]["field"], "weight sum")
         self.assertGreater(low["statistics"]["cells_used"], half["statistics"]["cells_used"])
+        self.assertNotIn("scalar_range", half["statistics"])
+        self.assertRegex(self.extract("--free-surface", "--iso", "50").stderr,
+                         "the surface is empty: no part of the field reaches the iso value 50$")
 
     def test_several_iso_values(self):
         first = self.succeed(*ISO)["statistics"]["triangles"]
@@ -341,6 +347,9 @@ class Options(CommandLineTest):
         self.assertEqual(value["statistics"]["triangles"], array["triangles"])
         estimate = self.succeed(*ISO, "--smoothing-length", "estimate")["statistics"]
         self.assertAlmostEqual(estimate["smoothing_length_range"][0], 0.13, delta=0.03)
+        radius = self.succeed(*ISO, "--smoothing-length", "0.26", "--support-radius")
+        self.assertEqual(radius["parameters"]["smoothing_length_is_support_radius"], 1)
+        self.assertEqual(radius["statistics"]["triangles"], array["triangles"])
         # A number that is the name of an array means the array.
         self.arrays["7"] = [0.13] * len(self.points)
         files.write_vtp(self.input, self.points, self.arrays)
@@ -350,6 +359,9 @@ class Options(CommandLineTest):
     def test_volumes(self):
         constant = self.succeed(*ISO, "--mass", "1", "--density", "1000")
         self.assertEqual(constant["arrays"]["mass_array"], "")
+        self.assertEqual(constant["parameters"]["mass"], 1)
+        self.assertEqual(constant["parameters"]["density"], 1000)
+        self.assertIn("volume: 1 / 1000\n", self.extract(*ISO, "--mass=1", "--density=1000").stdout)
         expected = self.succeed(*ISO)["statistics"]["triangles"]
         self.assertEqual(constant["statistics"]["triangles"], expected)
         self.arrays["Space"] = [0.001] * len(self.points)
@@ -413,6 +425,9 @@ class Options(CommandLineTest):
         double = self.succeed(*ISO, "--precision", "double")
         self.assertEqual(double["parameters"]["precision"], "double")
         self.assertEqual(single["parameters"]["precision"], "single")
+        for precision, type_name in ("single", "Float32"), ("double", "Float64"):
+            self.succeed(*ISO, "--output-precision", precision)
+            self.assertRegex(self.output.read_text(), rf'type="{type_name}" Name="Points"')
 
     def test_output_arrays(self):
         self.succeed(*ISO)

@@ -144,6 +144,11 @@ static void test_components(void** state)
            call.input.scalar_component = -2);
   ARGUMENT("dot product|as many|3|1", call.input.scalar = core_array(call.vector, 3);
            call.input.scalar_dot = core_array(call.set.scalar, 1));
+  ARGUMENT("smoothing length|hsml|3 components|must have 1",
+           call.input.smoothing_length = core_array(call.vector, 3);
+           call.input.smoothing_length.name = "hsml");
+  ARGUMENT("volume|-1 components|must have 1", call.input.volume.components = -1);
+  ARGUMENT("scalar|-2 components", call.input.scalar.components = -2);
   expect_good(*state);
 }
 
@@ -303,7 +308,7 @@ static void test_scalars_of_solids(void** state)
     for (int64_t i = 0; i < call.set.count; i += 3)
     {
       solid[i] = 1;
-      call.set.scalar[i] = k ? 1e300 : 0.5;
+      call.set.scalar[i] = k == 0 ? 0.5 : i % 2 ? 1e300 : NAN;
     }
     call.input.solid = solid;
     call.options.iso_values = call.iso;

@@ -4,6 +4,7 @@
 #include "mcor_internal.h"
 #include "mcor_sph_kernel.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,6 +98,21 @@ static void mcor_device_names(
   clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, platform_name, NULL);
 }
 
+/* The devices' numbers and names, as far as there is room. */
+static void mcor_write_devices(
+  const mcor_device_list* list, const char* separator, char* text, size_t room)
+{
+  size_t length = 0;
+  text[0] = '\0';
+  for (int i = 0; i < list->count && length < room; ++i)
+  {
+    char device[128], platform[128];
+    mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
+    length += (size_t)snprintf(
+      text + length, room - length, "%s%d: %s (%s)", i > 0 ? separator : "", i, device, platform);
+  }
+}
+
 mcor_status mcor_list_devices(char** text)
 {
   if (!text)
@@ -105,19 +121,14 @@ mcor_status mcor_list_devices(char** text)
   }
   mcor_device_list list;
   mcor_find_devices(&list);
-  const size_t line = 300;
-  *text = calloc((size_t)list.count * line + 1, 1);
+  const size_t room = (size_t)list.count * 300 + 2;
+  *text = calloc(room, 1);
   if (!*text)
   {
     return MCOR_OUT_OF_CAPACITY;
   }
-  size_t length = 0;
-  for (int i = 0; i < list.count; ++i)
-  {
-    char device[128], platform[128];
-    mcor_device_names(list.platforms[i], list.devices[i], device, platform, sizeof device);
-    length += (size_t)snprintf(*text + length, line, "%d: %s (%s)\n", i, device, platform);
-  }
+  mcor_write_devices(&list, "\n", *text, room - 1);
+  strcat(*text, list.count > 0 ? "\n" : "");
   return MCOR_OK;
 }
 
@@ -171,9 +182,14 @@ mcor_status mcor_open_device(mcor_context* context, const char* device)
     "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
     "runs on the CPU.");
   const int chosen = mcor_choose_device(&list, device);
-  MCOR_RETURN_IF(chosen < 0, context, MCOR_DEVICE_ERROR,
-    "There is no OpenCL device \"%s\"; give a number below %d or part of a device's name.", device,
-    list.count);
+  if (chosen < 0)
+  {
+    char devices[300];
+    mcor_write_devices(&list, ", ", devices, sizeof devices);
+    return mcor_fail(context, MCOR_DEVICE_ERROR,
+      "There is no OpenCL device \"%s\"; give the number of one, or part of its name: %s.", device,
+      devices);
+  }
   cl->platform = list.platforms[chosen];
   cl->device = list.devices[chosen];
   mcor_device_names(
@@ -344,11 +360,12 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   mcor_release(context, buffer);
   MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
     context, MCOR_OUT_OF_CAPACITY,
-    "This would need a buffer of %.0f MB besides %.0f MB in use, but %.0f MB of device %s may be "
-    "used, "
-    "%.0f MB at most in one buffer. Use a larger cube size, or fewer particles.",
-    (double)size / 1e6, (double)cl->bytes / 1e6, (double)cl->memory_limit / 1e6, cl->device_name,
-    (double)cl->largest_buffer / 1e6);
+    "This would need a buffer of %.1f MiB besides %.1f MiB in use, but %.1f MiB of device %s may "
+    "be "
+    "used, %.1f MiB at most in one buffer. Use a larger cube size, fewer particles, or a higher "
+    "memory limit where one is set.",
+    ldexp((double)size, -20), ldexp((double)cl->bytes, -20), ldexp((double)cl->memory_limit, -20),
+    cl->device_name, ldexp((double)cl->largest_buffer, -20));
   cl_int error;
   buffer->mem = clCreateBuffer(cl->context, CL_MEM_READ_WRITE, size, NULL, &error);
   if (error != CL_SUCCESS)

@@ -240,15 +240,15 @@ static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positi
   return !illegal;
 }
 
-/* Index of the first element of a component that is not finite, or not above 0 where it must be; -1
- * if there is none. */
+/* Index of the first particle, solids left out where `solid` is not NULL, of which a component is
+ * not finite, or not above 0 where it must be; -1 if there is none. */
 static int64_t mcor_find_illegal(
-  const mcor_array* array, int64_t count, int component, bool positive)
+  const mcor_array* array, const uint8_t* solid, int64_t count, int component, bool positive)
 {
   for (int64_t i = 0; i < count; ++i)
   {
     const double x = mcor_array_at(array, i, component);
-    if (!isfinite(x) || (positive && !(x > 0)))
+    if ((!isfinite(x) || (positive && !(x > 0))) && !(solid && solid[i]))
     {
       return i;
     }
@@ -256,21 +256,25 @@ static int64_t mcor_find_illegal(
   return -1;
 }
 
-/* Every element that is used is finite, and above 0 where it must be. */
+/* The array has as many components as it must, and every element that is used is finite, and above 0
+ * where it must be. solid: NULL, or whose particles' elements are not used. */
 static mcor_status mcor_check_array(mcor_context* context, const mcor_array* array,
-  const char* role, int64_t count, int components, bool positive)
+  const uint8_t* solid, const char* role, int64_t count, int components, bool positive)
 {
   const char* name = mcor_array_name(array, role);
   const bool same = strcmp(name, role) == 0;
   MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
     "The %s array %s has an unknown element type.", role, name);
+  MCOR_RETURN_IF(array->components < 0 || mcor_components(array) != components, context,
+    MCOR_INVALID_ARGUMENT, "The %s array %s has %d components; it must have %d.", role, name,
+    array->components, components);
   if (array->data && mcor_is_legal(array, count * components, positive))
   {
     return MCOR_OK;
   }
   for (int c = 0; c < components; ++c)
   {
-    const int64_t i = mcor_find_illegal(array, array->data ? count : 1, c, positive);
+    const int64_t i = mcor_find_illegal(array, solid, array->data ? count : 1, c, positive);
     if (i < 0)
     {
       continue;
@@ -308,10 +312,11 @@ static mcor_status mcor_check_scalar(
     "The dot product needs two arrays with as many components each; %s has %d and %s has %d.",
     mcor_array_name(&input->scalar, "the first"), components,
     mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
-  MCOR_TRY(mcor_check_array(context, &input->scalar, "scalar", input->count, components, false));
-  return input->scalar_dot.data
-    ? mcor_check_array(context, &input->scalar_dot, "scalar", input->count, components, false)
-    : MCOR_OK;
+  MCOR_TRY(mcor_check_array(
+    context, &input->scalar, input->solid, "scalar", input->count, components, false));
+  return input->scalar_dot.data ? mcor_check_array(context, &input->scalar_dot, input->solid,
+                                    "scalar", input->count, components, false)
+                                : MCOR_OK;
 }
 
 mcor_status mcor_check_input(
@@ -330,32 +335,33 @@ mcor_status mcor_check_input(
     !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
   mcor_array positions = input->positions;
   positions.components = 3;
-  MCOR_TRY(mcor_check_array(context, &positions, "position", n, 3, false));
+  MCOR_TRY(mcor_check_array(context, &positions, NULL, "position", n, 3, false));
   if (!input->estimate_smoothing_length)
   {
     MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
       MCOR_INVALID_ARGUMENT,
       "There is no smoothing length. Name its array, give a constant, or ask for an estimate.");
-    MCOR_TRY(mcor_check_array(context, &input->smoothing_length, "smoothing length", n, 1, true));
+    MCOR_TRY(
+      mcor_check_array(context, &input->smoothing_length, NULL, "smoothing length", n, 1, true));
   }
   if (input->has_volume)
   {
-    MCOR_TRY(mcor_check_array(context, &input->volume, "volume", n, 1, true));
+    MCOR_TRY(mcor_check_array(context, &input->volume, NULL, "volume", n, 1, true));
   }
   else if (input->has_mass)
   {
-    MCOR_TRY(mcor_check_array(context, &input->mass, "mass", n, 1, true));
+    MCOR_TRY(mcor_check_array(context, &input->mass, NULL, "mass", n, 1, true));
     if (input->has_density)
     {
-      MCOR_TRY(mcor_check_array(context, &input->density, "density", n, 1, true));
+      MCOR_TRY(mcor_check_array(context, &input->density, NULL, "density", n, 1, true));
     }
   }
   MCOR_TRY(mcor_check_scalar(context, input, options));
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* attribute = input->attributes + a;
-    MCOR_TRY(
-      mcor_check_array(context, attribute, "attribute", n, mcor_components(attribute), false));
+    MCOR_TRY(mcor_check_array(
+      context, attribute, NULL, "attribute", n, mcor_components(attribute), false));
   }
   return MCOR_OK;
 }

@@ -165,8 +165,7 @@ mcor_status mcor_measure_input(
     options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
   MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
     "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
-    "or "
-    "remove particles of such a smoothing length.",
+    "or remove particles of such a smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   lattice->cube = m->cube = cube;
   int64_t extent = 0;
@@ -177,8 +176,7 @@ mcor_status mcor_measure_input(
       !(fabs(first) < 1e15) || !(fabs(last) < 1e15) || last - first > MCOR_LATTICE_LIMIT, context,
       MCOR_OUT_OF_CAPACITY,
       "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
-      "Use a "
-      "larger cube size, or remove particles that are far away from the rest.",
+      "Use a larger cube size, or remove particles that are far away from the rest.",
       cube, last - first, a, MCOR_LATTICE_LIMIT);
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
     lattice->first[a] = (int64_t)first - lattice->origin[a];

@@ -1,6 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
+#if defined(__linux__) && !defined(_DEFAULT_SOURCE)
+#define _DEFAULT_SOURCE /* for clock_gettime */
+#endif
+
 #include "mcor_internal.h"
 #include "mcor_sph_kernel.h"
 
@@ -70,6 +74,10 @@ const char* mcor_last_error(const mcor_context* context)
 double mcor_seconds(void)
 {
   struct timespec now;
+#ifdef CLOCK_MONOTONIC
+  clock_gettime(CLOCK_MONOTONIC, &now);
+#else
   timespec_get(&now, TIME_UTC);
+#endif
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

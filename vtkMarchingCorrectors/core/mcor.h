@@ -12,6 +12,7 @@
  *
  *   mcor_context *context;
  *   mcor_create_context(NULL, &context);
+ *   mcor_set_default_options(&options);   (then options.iso_values, options.iso_count)
  *   mcor_extract(context, &input, &options, &surface);   (errors: mcor_last_error(context))
  *   ... use surface ...
  *   mcor_free_surface(&surface);
@@ -169,10 +170,10 @@ extern "C"
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
-    const double* iso_values; /* [iso_count], finite */
+    const double* iso_values; /* [iso_count], finite; none give an empty surface */
     int iso_count;
     double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. So
-                              * are Shepard cells with a node of a fluid weight below 0.001. */
+                            * are Shepard cells with a node of a fluid weight below 0.001. */
     mcor_boundary_detection boundary_detection;
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
                               * is lower; default 0.5 */

@@ -250,5 +250,5 @@ int TestAnalyticField(int, char*[])
   TestSeveralValues();
   TestDefaultValue();
   TestPreview();
-  return failures;
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

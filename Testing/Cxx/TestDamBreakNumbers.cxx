@@ -120,5 +120,5 @@ int TestDamBreakNumbers(int argc, char* argv[])
   CHECK(surface->GetNumberOfCells() > 100000);
   CHECK(worst <= 2e-5);
   CHECK(bounds[0] > -0.05 && bounds[1] < 3.27 && bounds[4] > -0.55 && bounds[5] < 0.55);
-  return failures;
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -201,5 +201,5 @@ int TestInputTypes(int, char*[])
   TestPointSets();
   TestQuantities();
   TestInputUnmodified();
-  return failures;
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

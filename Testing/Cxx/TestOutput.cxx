@@ -232,5 +232,5 @@ int TestOutput(int, char*[])
   TestPrecision();
   TestFieldData();
   TestState();
-  return failures;
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

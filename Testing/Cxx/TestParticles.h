@@ -19,6 +19,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <iostream>

@@ -174,5 +174,5 @@ int TestReuse(int, char*[])
   TestSteps();
   TestAbort();
   TestDeviceChange();
-  return failures;
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

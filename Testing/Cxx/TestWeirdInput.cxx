@@ -285,5 +285,5 @@ int TestWeirdInput(int, char*[])
   TestNoFluid();
   TestRecovery();
   TestDegenerate();
-  return failures;
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -7,7 +7,6 @@
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
-#include "vtkIntArray.h"
 #include "vtkMarchingCorrectors.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkNew.h"

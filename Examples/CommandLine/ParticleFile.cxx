@@ -4,7 +4,6 @@
 
 #include "MessageCapture.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkGenericDataObjectReader.h"
 #include "vtkNew.h"

@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const char source[] =
   "__kernel void test_boundary(MCOR_GRID_PARAMS, const int count, __global const int4* node,\n"

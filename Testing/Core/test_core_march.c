@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Masks of a brick and its 7 neighbours -> shifted masks, cells with some / all nodes. */
 static const char source[] =

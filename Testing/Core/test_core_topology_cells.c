@@ -7,8 +7,6 @@
 #include "core_cells.h"
 #include "core_fixture.h"
 
-#include <string.h>
-
 static int set_up(void** state)
 {
   static mcor_topology_table table;

@@ -7,7 +7,6 @@
 #include "core_fixture.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static int set_up(void** state)
 {

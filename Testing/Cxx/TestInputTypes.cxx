@@ -4,7 +4,6 @@
 // is never modified.
 #include "TestParticles.h"
 
-#include "vtkCompositeDataPipeline.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkMultiBlockDataSet.h"

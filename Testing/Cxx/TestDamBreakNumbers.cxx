@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers on real particles, for the surfaces that TestImages draws: size, extent, residual against
-// a brute-force evaluation, trim boundary.
+// Numbers on real particles, for the surfaces that TestSpeedImage and TestFreeSurfaceImage draw:
+// size, extent, residual against a brute-force evaluation, trim boundary.
 #include "TestDamBreak.h"
 
 #include "vtkFieldData.h"

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
 """Collapsing water column with particles of different sizes: deterministic, for timing.
 
   make_dam_break.py N out.vtp        70 neighbours inside 2 h, smoothing lengths differ by 1.5 : 1

@@ -75,9 +75,16 @@ def surface_filter(reader):
     return surface
 
 
+def need_surface(surface):
+    surface.Update()
+    if surface.GetOutput().GetNumberOfCells() == 0:
+        sys.exit(surface.GetErrorMessage() or "the surface is empty")
+
+
 def free_surface_actor(reader, opacity=1.0):
     surface = surface_filter(reader)
     surface.FreeSurfaceOn()
+    need_surface(surface)
     actor = colored_by_speed(surface)
     actor.GetProperty().SetOpacity(opacity)
     actor.GetProperty().SetSpecular(0.35)
@@ -89,7 +96,7 @@ def isosurface_actor(reader):
     surface = surface_filter(reader)
     surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")
     surface.SetValue(0, 1.0)
-    surface.Update()
+    need_surface(surface)
     actor = vtkActor()
     mapper = vtkDataSetMapper()
     mapper.SetInputConnection(surface.GetOutputPort())

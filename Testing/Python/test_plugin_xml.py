@@ -1,0 +1,105 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plugin's XML against the wrapped filter, without ParaView: commands, defaults, values."""
+import pathlib
+import unittest
+import xml.etree.ElementTree
+
+from marchingcorrectors import vtkMarchingCorrectors
+
+XML = pathlib.Path(__file__).resolve().parents[2] / "Plugin" / "MarchingCorrectors.xml"
+TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
+NO_NAMES = ("(automatic)", "(none)")  # the filter's empty array name
+# Setters of more or less than one value.
+NOT_SCALAR = ("SetInputConnection", "SetInputArrayToProcess", "SetValue")
+
+# Setters without a property, and why.
+NOT_IN_XML = {
+    "SetDetectArrays": "(automatic) in the panel's lists of arrays",
+    "SetNumberOfFreeSurfaceValues": "SetFreeSurfaceValue makes it 1",
+    "SetScalarComponent": "set by SetPanelComponent",
+}
+
+
+def get(extract, command):
+    """What the setter `command` has set."""
+    if command == "SetPanelComponent":
+        component = extract.GetScalarComponent()
+        return 3 if component == vtkMarchingCorrectors.MAGNITUDE else component
+    return getattr(extract, "Get" + command[len("Set"):])()
+
+
+def domain_values(element):
+    """Texts of all values that the property's domains name."""
+    for domain in element:
+        if domain.tag == "BooleanDomain":
+            yield from ("0", "1")
+        elif domain.tag == "EnumerationDomain":
+            yield from (entry.get("value") for entry in domain)
+        elif domain.tag.endswith("RangeDomain"):
+            yield from (domain.get(key) for key in ("min", "max") if domain.get(key))
+
+
+class TestPluginXml(unittest.TestCase):
+    def setUp(self):
+        self.proxy = xml.etree.ElementTree.parse(XML).find(".//SourceProxy")
+        self.elements = [e for e in self.proxy if e.tag.endswith("Property")]
+
+    def for_each_scalar(self, check):
+        """check(setter, type, XML element) for all properties of one value."""
+        for element in self.elements:
+            if element.get("command") not in NOT_SCALAR:
+                with self.subTest(element.get("name")):
+                    self.assertEqual(element.get("number_of_elements"), "1")
+                    check(element.get("command"), TYPES[element.tag], element)
+
+    def commands(self):
+        return [e.get(key) for e in self.elements for key in ("command", "set_number_command")
+                if e.get(key)]
+
+    def test_commands_are_methods(self):
+        self.assertEqual(self.proxy.get("class"), vtkMarchingCorrectors.__name__)
+        for command in self.commands():
+            with self.subTest(command):
+                self.assertTrue(callable(getattr(vtkMarchingCorrectors, command, None)))
+
+    def test_setters_have_properties(self):
+        own = vars(vtkMarchingCorrectors)
+        setters = {name for name in own if name.startswith("Set") and "G" + name[1:] in own}
+        self.assertEqual(setters - set(self.commands()), set(NOT_IN_XML))
+
+    def test_names(self):
+        def check(command, kind, element):
+            name = element.get("name").replace("ScalarComponent", "PanelComponent")
+            self.assertIn(command, (f"Set{name}", f"Set{name}Name"))
+        self.for_each_scalar(check)
+
+    def test_defaults(self):
+        def check(command, kind, element):
+            text = element.get("default_values")
+            found = get(vtkMarchingCorrectors(), command)
+            self.assertIs(type(found), kind)
+            self.assertEqual(found, kind("" if text in NO_NAMES else text))
+        self.for_each_scalar(check)
+
+    def test_values_are_accepted(self):
+        def check(command, kind, element):
+            extract = vtkMarchingCorrectors()
+            for text in domain_values(element):
+                getattr(extract, command)(kind(text))
+                self.assertEqual(get(extract, command), kind(text))
+        self.for_each_scalar(check)
+
+    def test_enumerations_are_complete(self):
+        def check(command, kind, element):
+            entries = element.findall("EnumerationDomain/Entry")
+            if entries:
+                last = max(int(entry.get("value")) for entry in entries)
+                extract = vtkMarchingCorrectors()
+                getattr(extract, command)(last + 1)
+                self.assertEqual(get(extract, command), last)
+        self.for_each_scalar(check)
+
+
+if __name__ == "__main__":
+    unittest.main()

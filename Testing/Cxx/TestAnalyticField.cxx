@@ -240,6 +240,47 @@ void TestPreview()
   CHECK(worst > 1e-5 && worst < 0.01);
   CHECK(filter->GetOutput()->GetPointData()->GetNormals() != nullptr);
 }
+
+// A lower tolerance takes more iterations; where these are too few, vertices stay above it.
+void TestTolerance()
+{
+  auto cube = test::MakeCube();
+  auto filter = test::MakeSphereFilter(cube);
+  filter->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  const auto worst = [&]()
+  {
+    filter->Update();
+    vtkPolyData* surface = filter->GetOutput();
+    double residual = 0.0;
+    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); i += 7)
+    {
+      residual = std::max(residual, Residual(cube, surface->GetPoint(i), 0.6, true));
+    }
+    std::cout << "tolerance " << filter->GetTolerance() << ", " << filter->GetIterationLimit()
+              << " iterations: residual " << residual << "\n";
+    return residual;
+  };
+  const auto number = [&](const char* name)
+  {
+    vtkDataArray* array = filter->GetOutput()->GetFieldData()->GetArray(name);
+    CHECK(array != nullptr);
+    return array ? array->GetComponent(0, 0) : -1.0;
+  };
+  const double bound = 1e-12 * std::sqrt(3.0);
+  CHECK(worst() > 10.0 * bound);
+  const double evaluations = number("NewtonEvaluations");
+
+  filter->SetTolerance(1e-12);
+  CHECK(worst() < 1.1 * bound);
+  CHECK(number("NewtonEvaluations") > evaluations);
+  CHECK(number("IterationsMax") > 1.0);
+  CHECK(number("VerticesAboveTolerance") == 0.0);
+
+  filter->SetIterationLimit(1);
+  CHECK(worst() > 10.0 * bound);
+  CHECK(number("IterationsMax") == 1.0);
+  CHECK(number("VerticesAboveTolerance") > 0.0);
+}
 }
 
 int TestAnalyticField(int, char*[])
@@ -250,5 +291,6 @@ int TestAnalyticField(int, char*[])
   TestSeveralValues();
   TestDefaultValue();
   TestPreview();
+  TestTolerance();
   return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

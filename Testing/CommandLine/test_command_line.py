@@ -114,6 +114,7 @@ class Usage(CommandLineTest):
             ([*good, "--scalar", "Radius", "--iso", "nan"], "--iso needs a finite number"),
             ([*good, *ISO, "--component", "-1"], "--component needs a whole number"),
             ([*good, *ISO, "--repeat", "0"], "--repeat needs a whole number from 1, not '0'"),
+            ([*good, *ISO, "--memory-limit", "0"], "--memory-limit needs a whole number from 1"),
             ([*good, *ISO, "--h-scale", "0"], "--h-scale must be greater than 0"),
             ([*good, *ISO, "--cube-factor", "-1"], "--cube-factor must be greater than 0"),
             ([*good, *ISO, "--cube-size", "inf"], "--cube-size needs a finite number"),
@@ -201,6 +202,11 @@ class BadData(CommandLineTest):
 
     def test_surface_too_large(self):
         self.refuse_with("too large.*larger cube size", *ISO, "--cube-size", "1e-5")
+
+    def test_memory_limit(self):
+        fine = [*ISO, "--cube-size", "0.01", "--memory-limit"]
+        self.refuse_with("1.* of device .* may be used", *fine, "1")
+        self.assertGreater(self.succeed(*fine, "1000")["statistics"]["device_bytes_peak"], 1 << 20)
 
     def test_device(self):
         self.refuse_with("(?i)device.*nonesuch", *ISO, "--device", "nonesuch")

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is kept on the device between runs never changes a result, and an aborted run leaves an
-// empty output and a filter that works.
+// What is kept on the device between runs never changes a result and can be given back; a run that
+// is aborted, or short of device memory, leaves an empty output and a filter that works.
 #include "TestParticles.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
 
 #include <vector>
 
@@ -167,6 +169,89 @@ void TestDeviceChange()
   CHECK(!*filter->GetErrorMessage());
   CHECK(test::SameSurface(first, filter->GetOutput()));
 }
+
+// Most device memory of the last run; it begins with what was kept.
+double PeakBytes(Filter* filter)
+{
+  vtkDataArray* peak = filter->GetOutput()->GetFieldData()->GetArray("DeviceBytesPeak");
+  CHECK(peak && peak->GetComponent(0, 0) > 0.0);
+  return peak ? peak->GetComponent(0, 0) : 0.0;
+}
+
+void TestRelease()
+{
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(0.0, 0.0, 0.0);
+  vtkNew<vtkPolyData> particle;
+  particle->SetPoints(points);
+  auto cube = test::MakeCube();
+  const auto makeFilter = [](vtkPolyData* particles)
+  {
+    auto filter = vtkSmartPointer<Filter>::New();
+    filter->SetInputData(particles);
+    filter->SetSmoothingLength(test::SmoothingLength);
+    filter->FreeSurfaceOn();
+    filter->Update();
+    return filter;
+  };
+  const auto peakAfterCube = [&](const std::function<void(Filter*)>& change)
+  {
+    auto filter = makeFilter(cube);
+    change(filter);
+    filter->SetInputData(particle);
+    filter->Update();
+    CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
+    return PeakBytes(filter);
+  };
+  const double kept = peakAfterCube([](Filter*) {});
+  const double released = peakAfterCube([](Filter* f) { f->ReleaseDeviceMemory(); });
+  const double off = peakAfterCube(
+    [](Filter* f)
+    {
+      f->KeepDeviceDataOff();
+      f->Update();
+    });
+  const double alone = PeakBytes(makeFilter(particle));
+  std::cout << "bytes for one particle after many: kept " << kept << ", released " << released
+            << ", nothing kept " << off << "; alone " << alone << "\n";
+  CHECK(kept > alone);
+  CHECK(released == alone);
+  CHECK(off == alone);
+}
+
+void CountError(vtkObject*, unsigned long, void* count, void*)
+{
+  ++*static_cast<int*>(count);
+}
+
+void TestMemoryLimit()
+{
+  auto filter = test::MakeSphereFilter(test::MakeCube());
+  filter->SetCubeSize(0.02);
+  filter->Update();
+  vtkNew<vtkPolyData> expected;
+  expected->DeepCopy(filter->GetOutput());
+  CHECK(PeakBytes(filter) > 2 << 20);
+
+  int errors = 0;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback(CountError);
+  observer->SetClientData(&errors);
+  filter->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->SetDeviceMemoryLimit(1);
+  filter->Update();
+  std::cout << "memory limit: " << filter->GetErrorMessage() << "\n";
+  CHECK(errors > 0);
+  CHECK(std::strstr(filter->GetErrorMessage(), "may be used"));
+  CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+
+  filter->SetDeviceMemoryLimit(1000);
+  filter->Update();
+  CHECK(!*filter->GetErrorMessage());
+  CHECK(expected->GetNumberOfPoints() > 0);
+  CHECK(test::SameSurface(expected, filter->GetOutput()));
+}
 }
 
 int TestReuse(int, char*[])
@@ -174,5 +259,7 @@ int TestReuse(int, char*[])
   TestSteps();
   TestAbort();
   TestDeviceChange();
+  TestRelease();
+  TestMemoryLimit();
   return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The particle sets of the benchmark, made by the scripts in Examples/Data when they are needed."""
 import dataclasses
+import hashlib
 import pathlib
 import subprocess
 import sys
@@ -57,15 +58,21 @@ def vortex_rings(count):
                ("--kernel", "mprime4", "--node-threshold", 0, "--vertex-threshold", 0))
 
 
+def version_of(which):
+    """Changes with the generator and its arguments."""
+    made_by = (GENERATORS / which.script).read_bytes() + repr(which.arguments).encode()
+    return hashlib.sha1(made_by).hexdigest()[:8]
+
+
 class Folder:
-    """Where the sets lie. A set that is already there is not made again."""
+    """Where the sets lie. A set that is already there, made in the same way, is not made again."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
         self.path.mkdir(parents=True, exist_ok=True)
 
     def get(self, which):
-        path = self.path / f"{which.name}.vtp"
+        path = self.path / f"{which.name}-{version_of(which)}.vtp"
         if not path.exists():
             print(f"making {path.name}", file=sys.stderr)
             part = path.with_suffix(".part.vtp")
@@ -79,7 +86,7 @@ class Folder:
         """The same particles with one array alone, and the options that say what the others said:
         smoothing length, mass and density must be the same for all particles."""
         whole = self.get(which)
-        path = whole.with_name(f"{which.name}-{array}.vtp")
+        path = whole.with_name(f"{whole.stem}-{array}.vtp")
         particles = read(whole)
         data = particles.GetPointData()
         options = []

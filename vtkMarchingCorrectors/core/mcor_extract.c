@@ -358,12 +358,19 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   mcor_cl* cl = &context->cl;
   const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
   cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
-  const bool keeps = context->grid_valid;
-  const mcor_status status = mcor_try_extract(context, input, options, surface);
-  if (status != MCOR_OUT_OF_CAPACITY || !keeps)
+  const int64_t held = cl->bytes;
+  mcor_status status = mcor_try_extract(context, input, options, surface);
+  if (status == MCOR_OUT_OF_CAPACITY)
   {
-    return status;
+    mcor_release_memory(context);
+    if (held > cl->bytes)
+    {
+      status = mcor_try_extract(context, input, options, surface);
+    }
   }
-  mcor_release_memory(context);
-  return mcor_try_extract(context, input, options, surface);
+  if (status == MCOR_OUT_OF_CAPACITY)
+  {
+    mcor_release_memory(context); /* not in the way of a smaller one */
+  }
+  return status;
 }

@@ -12,6 +12,10 @@
  * and need more rows: 2 took as long, 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
+/* Along an axis, so that the keys of all levels' cells are below 2^62. Far fewer are as good where
+ * particles are that far apart. */
+#define MCOR_CELL_LIMIT (1 << 19)
+
 /* One level for each factor of 2 of support radius that occurs; renumbers staging->level. Returns
  * the number of search cells of all levels. */
 static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
@@ -25,6 +29,11 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   for (int i = 0; i < (one && staging->count > 0 ? 1 : staging->count); ++i)
   {
     occurs[particle_level[i]] = true;
+  }
+  int64_t extent = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
   uint64_t base = 0;
   grid->level_count = 0;
@@ -41,7 +50,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
     const double support = context->measure.support_max / lattice->cube * ldexp(1.0001, -l);
     level->base = base;
     level->support = (cl_float)support;
-    const double cell = support / MCOR_CELLS_PER_SUPPORT;
+    const double cell = fmax(support / MCOR_CELLS_PER_SUPPORT, (double)extent / MCOR_CELL_LIMIT);
     level->inv_cell = (cl_float)(1 / ldexp(cell, lattice->fix_bits));
     level->unused = 0;
     uint64_t cells = 1;
@@ -129,7 +138,8 @@ static mcor_status mcor_compute_volumes(mcor_context* context)
   const size_t bytes = ((size_t)count + MCOR_PADDING) * context->cl.real_size;
   mcor_buffer *size = &context->scratch[MCOR_STAGE_SIZE],
               *solid = &context->scratch[MCOR_STAGE_SOLID],
-              *mass = &context->scratch[MCOR_STAGE_LEVEL], *density = &context->scratch[5];
+              *mass = &context->scratch[MCOR_STAGE_LEVEL], *density = &context->scratch[5],
+              *without = &context->scratch[MCOR_STAGE_XYZ];
   MCOR_TRY(mcor_reserve(context, mass, bytes));
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
@@ -137,11 +147,20 @@ static mcor_status mcor_compute_volumes(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(mass), MCOR_BUFFER(density)));
-  return MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
+  cl_int first = INT32_MAX;
+  MCOR_TRY(mcor_write(context, without, &first, sizeof first));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(solid),
     MCOR_BUFFER(mass), MCOR_BUFFER(density),
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-    MCOR_BUFFER(&grid->trim_weight));
+    MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
+  MCOR_TRY(mcor_read(context, without, 0, &first, sizeof first));
+  MCOR_RETURN_IF(first != INT32_MAX, context, MCOR_INVALID_DATA,
+    "The volume of particle %lld cannot be computed: with kernel %s, which has negative parts, the "
+    "density there is too low, or negative. Give volumes, or masses and densities.",
+    (long long)(context->source ? context->source[first] : first),
+    mcor_sph_kernel_name(context->options->sph_kernel));
+  return MCOR_OK;
 }
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)

@@ -35,7 +35,7 @@
     }                                                                                              \
   } while (0)
 
-/* Twin of the struct in mcor_field.cl. */
+/* Twin of the struct in mcor_query.cl. */
 typedef struct mcor_level
 {
   cl_ulong base;
@@ -310,12 +310,12 @@ extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 
-/* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \
   MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
     MCOR_BUFFER(&(c)->attributes.sorted), MCOR_BUFFER(means)
 
+/* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
 #define MCOR_GRID_ARGS(c)                                                                          \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
     MCOR_INT((c)->lattice.fix_bits), MCOR_BUFFER(&(c)->grid.level_buffer),                         \

@@ -9,11 +9,10 @@
 #include <float.h>
 #include <math.h>
 
-/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-10 cubes. */
+/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-9 cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
 
-/* Support radius in cubes at least: below, no node is likely to see a particle, and search cells
- * would be too many to number. */
+/* Support radius in cubes at least: below, no node is likely to see a particle. */
 #define MCOR_LEAST_SUPPORT 1e-3
 
 /* One chunk of the particles, as double. */

@@ -129,7 +129,8 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift)
 {
-  const uint64_t most = 4 * (uint64_t)count + (1 << 20);
+  const uint64_t wanted = 4 * (uint64_t)count + (1 << 20);
+  const uint64_t most = wanted < INT32_MAX / 2 ? wanted : INT32_MAX / 2;
   *shift = 0;
   while (key_limit >> *shift > most)
   {

@@ -299,8 +299,8 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
     staging->count += (int)job.used[s];
   }
   mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, &job);
-  /* A computed volume is at most h^3 / norm: a particle's own share in the density. */
-  context->heaviest = mcor_needs_density(input) ? pow(context->options->h_scale, -3) : 0;
+  /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
+  context->heaviest = mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
   for (int s = 0; s < slices; ++s)
   {
     if (job.heavy[s] >= 0)

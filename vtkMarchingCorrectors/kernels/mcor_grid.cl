@@ -128,7 +128,7 @@ void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
 
 /* One work-item = the cells that begin in a batch of particles. Reads the input arrays. Writes the
  * order of the particles in these cells, so that it no longer depends on that of the input, and the
- * arrays in that order. `volume` is 0 where it is still to be computed. */
+ * arrays in that order. `volume` is the mass, or 1, where it is still to be computed. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys, __global const fix* xyz,
   __global const real* inv_h_in, __global const real* volume, __global const uchar* solid,
   __global int* order, __global fix* px, __global fix* py, __global fix* pz,
@@ -186,8 +186,36 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   }
 }
 
+/* Order of coincident particles: by scalar, so that not even they make a result depend on the order
+ * of the input; then by that order, so that no earlier scalar's shows. */
+bool mcor_grid_value_before(real v, int source, real w, int other)
+{
+  return v != w ? v < w : source < other;
+}
+
+/* The child `root` of a heap sinks in value[0..count). */
+void mcor_grid_value_sift(__global real* value, __global int* order, int root, int count)
+{
+  const real v = value[root];
+  const int source = order[root];
+  for (int child = 2 * root + 1; child < count; child = 2 * root + 1)
+  {
+    child += child + 1 < count &&
+      mcor_grid_value_before(value[child], order[child], value[child + 1], order[child + 1]);
+    if (!mcor_grid_value_before(v, source, value[child], order[child]))
+    {
+      break;
+    }
+    value[root] = value[child];
+    order[root] = order[child];
+    root = child;
+  }
+  value[root] = v;
+  order[root] = source;
+}
+
 /* One work-item = one sorted particle, the first of a run that differs in the scalar only. Sorts
- * the run by scalar, so that not even coincident particles make a result depend on input order. */
+ * the run, by a heap, as there may be any number of them. */
 __kernel void mcor_grid_order_value(const int count, __global const fix* px, __global const fix* py,
   __global const fix* pz, __global const real* inv_h, __global const real* weight,
   __global const real* trim_weight, __global real* value, __global int* order)
@@ -201,20 +229,28 @@ __kernel void mcor_grid_order_value(const int count, __global const fix* px, __g
   {
     return;
   }
-  for (int i = begin + 1; i < count && MCOR_SAME(begin, i); ++i)
+  int run = 2;
+  while (begin + run < count && MCOR_SAME(begin, begin + run))
   {
-    const real item = value[i];
-    const int source = order[i];
-    int to = i;
-    for (; to > begin && item < value[to - 1]; --to)
-    {
-      value[to] = value[to - 1];
-      order[to] = order[to - 1];
-    }
-    value[to] = item;
-    order[to] = source;
+    ++run;
   }
 #undef MCOR_SAME
+  value += begin;
+  order += begin;
+  for (int i = run / 2 - 1; i >= 0; --i)
+  {
+    mcor_grid_value_sift(value, order, i, run);
+  }
+  for (int last = run - 1; last > 0; --last)
+  {
+    const real v = value[last];
+    const int source = order[last];
+    value[last] = value[0];
+    order[last] = order[0];
+    value[0] = v;
+    order[0] = source;
+    mcor_grid_value_sift(value, order, 0, last);
+  }
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (1 each: number density).
@@ -263,16 +299,25 @@ __kernel void mcor_grid_density(
 #endif
 }
 
+/* Density, as a factor of what a particle itself adds to it, at least: below, a computed volume would
+ * be huge, or negative, as a kernel with negative lobes can make it. */
+#define MCOR_LEAST_DENSITY ((real)0.01f)
+
 /* One work-item = one sorted particle. Turns density into the weight V norm / (scaled h)^3: as
- * V = m / (sum m W), the norm and the unscaled h^3 cancel. */
+ * V = m / (sum m W), the norm and the unscaled h^3 cancel. Writes the first particle, if any, of
+ * which the density is too low to `without`. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const uchar* solid, __global const real* mass, __global const real* density,
-  __global real* weight, __global real* trim_weight)
+  __global real* weight, __global real* trim_weight, __global int* without)
 {
   const int i = get_global_id(0);
   if (i >= count)
   {
     return;
+  }
+  if (!(density[i] > mass[i] * MCOR_LEAST_DENSITY))
+  {
+    atomic_min(without, order[i]);
   }
   const real w = mass[i] / (density[i] * h_scale * h_scale * h_scale);
   trim_weight[i] = w;

@@ -95,13 +95,20 @@ typedef struct
   int begin, end;     /* particles left of the current row */
 } mcor_query;
 
+/* A distance, as far as the lattice reaches: then positions that far beyond it do not overflow. */
+fix mcor_query_reach(float distance)
+{
+  const fix most = (fix)1 << (MCOR_DOUBLE ? 62 : 30);
+  return distance < (float)most ? (fix)distance : most;
+}
+
 /* The part of a query that depends on the level; false where the level has no cell in reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   const mcor_level level = grid->levels[query->level];
   const float support = query->radius >= 0 ? query->radius : -query->radius * level.support;
   const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
-  const fix reach = (fix)far;
+  const fix reach = mcor_query_reach(far);
   query->cell_size = 1 / level.inv_cell;
   query->reach2 = far * far;
   bool some = true;
@@ -170,7 +177,7 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   }
   int begin = mcor_first_particle(grid, row + query->first[0]);
   int end = mcor_first_particle(grid, row + query->last[0] + 1);
-  const fix reach = (fix)(sqrt(rest) * 1.000001f) + 2;
+  const fix reach = mcor_query_reach(sqrt(rest) * 1.000001f + 2);
   const fix low = query->low[0] - reach, high = query->high[0] + reach;
   while (end - begin >= MCOR_LANES && grid->px[begin + MCOR_LANES - 1] < low)
   {
@@ -231,8 +238,9 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
   return false;
 }
 
-/* Fits the query's box to those of the sorted particles [begin, end) that lie in the first one's
- * row, in which x ascends. Returns how many, and the least of their inv_h. */
+/* Fits the query's box to those of the sorted particles [begin, end) before x descends, which it does
+ * where a row ends if the next one has particles on the left. Returns how many, and the least of
+ * their inv_h. */
 int mcor_query_particles(
   const mcor_grid* grid, mcor_query* query, int begin, int end, real* coarsest)
 {

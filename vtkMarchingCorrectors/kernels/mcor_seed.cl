@@ -55,9 +55,11 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv i
  * and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
 
-/* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Kept for every
- * MCOR_CHUNK successive sorted particles, so that most queries need not look at particles. */
+/* Sides of the iso value on which particles are: bit 0 above, bit 1 below; both where it is so close
+ * that a mean of such values may round to the other side. Kept for every MCOR_CHUNK successive
+ * sorted particles, so that most queries need not look at particles. */
 #define MCOR_CHUNK 16
+#define MCOR_SIDE_MARGIN ((real)1e-5f)
 
 /* One work-item = one chunk. Writes its fluid particles' sides. */
 __kernel void mcor_seed_sides(const int particle_count, __global const real* weight,
@@ -71,7 +73,9 @@ __kernel void mcor_seed_sides(const int particle_count, __global const real* wei
   int seen = 0;
   for (int j = begin; j < min(begin + MCOR_CHUNK, particle_count); ++j)
   {
-    seen |= (MCOR_SOLIDS && weight[j] == 0) ? 0 : value[j] >= iso ? 1 : 2;
+    const real margin = MCOR_SIDE_MARGIN * fabs(value[j]);
+    const int side = (value[j] >= iso - margin ? 1 : 0) | (value[j] < iso + margin ? 2 : 0);
+    seen |= (MCOR_SOLIDS && weight[j] == 0) ? 0 : side;
   }
   sides[get_global_id(0)] = (uchar)seen;
 }
@@ -116,8 +120,8 @@ mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
  *
  * as each w_j lies in its interval wherever in the box the point is, whatever the sign of w_j;
  * likewise from above. Only one of the two is computed: from below where F is positive in the
- * middle, else from above. The margin is 1e-5 of the sum of the absolute terms, above the rounding
- * of this sum and of the node values. */
+ * middle, else from above. The margin is 1e-5 of the sum of the absolute terms, for a Shepard mean
+ * with A_j in place of A_j - iso, above the rounding of this sum and of the node values. */
 
 /* c_j of MCOR_LANES particles of the tile. */
 realv mcor_seed_coefficients(const mcor_tile* tile, int i, real iso)
@@ -156,10 +160,10 @@ int mcor_tile_sides(const mcor_tile* tile, real iso)
   fixv above = 0, below = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const fixv is_above = MCOR_LOAD(i, tile->value) >= iso;
+    const realv value = MCOR_LOAD(i, tile->value), margin = MCOR_SIDE_MARGIN * fabs(value);
     const fixv counts = MCOR_LOAD(i, tile->weight) != 0;
-    above = above || (counts && is_above);
-    below = below || (counts && !is_above);
+    above = above || (counts && value >= iso - margin);
+    below = below || (counts && value < iso + margin);
   }
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
@@ -197,8 +201,10 @@ int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, re
 {
   const real level = MCOR_FIELD == 0 ? (real)0 : iso;
   const real sum = mcor_lane_sum(bound->sum);
-  const real margin = (real)1e-5f * (mcor_lane_sum(bound->size) + fabs(level));
-  if (MCOR_FIELD != 2 && mcor_lane_sum(bound->weight) < node_threshold * (real)0.9999)
+  const real weight = MCOR_FIELD == 2 ? (real)0 : mcor_lane_sum(bound->weight);
+  const real shift = MCOR_FIELD == 0 ? weight * fabs(iso) : fabs(level);
+  const real margin = (real)1e-5f * (mcor_lane_sum(bound->size) + shift);
+  if (MCOR_FIELD != 2 && weight < node_threshold * (real)0.9999)
   {
     return MCOR_VOID;
   }

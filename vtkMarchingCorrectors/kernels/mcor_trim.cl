@@ -6,18 +6,17 @@
  * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
  * there. */
 
-/* Bits 0..2: corner at or above the threshold. A triangle with no corner strictly above is outside,
- * so that one which merely touches the threshold leaves no sliver [Fig. 3 b]. */
+/* Bits 0..2: corner above the threshold. One at the threshold is outside, for every triangle around
+ * it, so that what remains is a manifold there, too, and one which merely touches the threshold
+ * leaves nothing [Fig. 3 b]. */
 int mcor_trim_case(__global const int* t, __global const real* weight, const real threshold)
 {
   int inside = 0;
-  bool some = false;
   for (int c = 0; c < 3; ++c)
   {
-    inside |= (weight[t[c]] >= threshold) << c;
-    some = some || weight[t[c]] > threshold;
+    inside |= (weight[t[c]] > threshold) << c;
   }
-  return some ? inside : 0;
+  return inside;
 }
 
 /* One work-item = one batch of triangles. Writes how many triangles remain of them, and their cut
@@ -135,7 +134,8 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
 }
 
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold: node of the lower vertex, offset. */
+ * mesh edge, is the threshold: node of the lower vertex, offset. It keeps off the ends, as cut
+ * vertices of several edges would meet there. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* weight)
@@ -147,7 +147,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   }
   const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
   const real wa = weight[a], wb = weight[b];
-  const real s = clamp((threshold - wa) / (wb - wa), (real)0, (real)1);
+  const real s = clamp((threshold - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
   const int4 d = node[b] - node[a];
   const real4 to = offset[b] + (real4)(d.x, d.y, d.z, 0);
   const int4 n = node[a];
@@ -177,23 +177,45 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
   bound->gz = at->wz;
 }
 
+/* Divides a value and its gradient by the gradient's length, whatever the unit. Returns where it has
+ * none. */
+fixv mcor_trim_normalize(realv* value, realv gradient[3])
+{
+  const realv most = fmax(fabs(gradient[0]), fmax(fabs(gradient[1]), fabs(gradient[2])));
+  const fixv none = most < (MCOR_DOUBLE ? (real)1e-300 : (real)1e-36f);
+  const realv inv_most = (real)1 / (none ? (realv)1 : most);
+  realv length2 = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    gradient[a] *= inv_most;
+    length2 += gradient[a] * gradient[a];
+  }
+  const realv inv = none ? (realv)0 : rsqrt(fmax(length2, (realv)1));
+  for (int a = 0; a < 3; ++a)
+  {
+    gradient[a] *= inv;
+  }
+  *value *= inv_most * inv;
+  return none;
+}
+
 /* Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J J^T)^-1
  * (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there is none, the
  * gradients being parallel. */
 fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real threshold,
   realv* dx, realv* dy, realv* dz)
 {
-  const realv f = at->value, w = bound->value - threshold;
-  const realv ff = at->gx * at->gx + at->gy * at->gy + at->gz * at->gz;
-  const realv ww = bound->gx * bound->gx + bound->gy * bound->gy + bound->gz * bound->gz;
-  const realv fw = at->gx * bound->gx + at->gy * bound->gy + at->gz * bound->gz;
-  const realv det = ff * ww - fw * fw;
-  const fixv tangent = det <= (real)1e-6f * ff * ww;
+  realv f = at->value, w = bound->value - threshold;
+  realv gf[3] = { at->gx, at->gy, at->gz }, gw[3] = { bound->gx, bound->gy, bound->gz };
+  const fixv flat = mcor_trim_normalize(&f, gf) || mcor_trim_normalize(&w, gw);
+  const realv fw = gf[0] * gw[0] + gf[1] * gw[1] + gf[2] * gw[2];
+  const realv det = (real)1 - fw * fw;
+  const fixv tangent = flat || det <= (real)1e-6f;
   const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
-  const realv lf = (fw * w - ww * f) * inv_det, lw = (fw * f - ff * w) * inv_det;
-  const realv x = lf * at->gx + lw * bound->gx;
-  const realv y = lf * at->gy + lw * bound->gy;
-  const realv z = lf * at->gz + lw * bound->gz;
+  const realv lf = (fw * w - f) * inv_det, lw = (fw * f - w) * inv_det;
+  const realv x = lf * gf[0] + lw * gw[0];
+  const realv y = lf * gf[1] + lw * gw[1];
+  const realv z = lf * gf[2] + lw * gw[2];
   const realv damp =
     fmin(MCOR_TRIM_STEP * rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
   *dx = damp * x;

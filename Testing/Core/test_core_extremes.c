@@ -1,0 +1,279 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Inputs at the ends of what is allowed: far apart, at one point, of any magnitude, exactly at a
+ * threshold. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Drops far apart are all found: the keys of search cells must not overflow. */
+static void test_far_apart(void** state)
+{
+  enum
+  {
+    DROPS = 40
+  };
+  const double iso = 0.5;
+  core_set set = core_make_set(DROPS);
+  uint64_t seed = 5;
+  for (int i = 0; i < DROPS; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      /* On nodes; the first and the last span the whole lattice. */
+      const double at = i == 0 ? 0 : i == DROPS - 1 ? 1 : random_unit(&seed);
+      set.position[3 * i + a] = floor(1000000 * at);
+    }
+    set.smoothing_length[i] = 0.1;
+    set.volume[i] = 0.003;
+  }
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.cube_size = 1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.point_count, 6 * DROPS);
+  assert_int_equal(surface.triangle_count, 8 * DROPS);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Unscaled smoothing lengths that reach far beyond the lattice: pairs, and computed volumes. */
+static void test_far_reach(void** state)
+{
+  const double iso = 0;
+  core_set set = core_make_block(6, 0.2, 7, core_slope);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] = 130;
+  }
+  for (int kind = 0; kind < 2; ++kind)
+  {
+    mcor_input input = core_input(&set);
+    mcor_options options = core_options(&iso);
+    input.has_volume = kind;
+    options.seeds = kind ? MCOR_PAIRS : MCOR_COMPLETE;
+    options.h_scale = 0.01;
+    options.cube_size = 0.1;
+    options.node_threshold = 1e-4;
+    options.vertex_threshold = 1e-3;
+    int64_t triangles[2];
+    for (int p = 0; p < 2; ++p)
+    {
+      options.precision = p ? MCOR_FLOAT64 : MCOR_FLOAT32;
+      mcor_surface surface = core_extract(*state, &input, &options);
+      triangles[p] = surface.triangle_count;
+      mcor_free_surface(&surface);
+    }
+    CORE_CHECK(triangles[0] > 100 && triangles[0] == triangles[1],
+      "kind %d: %lld triangles in single, %lld in double precision", kind, (long long)triangles[0],
+      (long long)triangles[1]);
+  }
+  core_free_set(&set);
+}
+
+/* The unit of the scalar changes nothing: neither the mesh nor which cut vertices are exact. */
+static void test_magnitude(void** state)
+{
+  const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };
+  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  for (int p = 0; p < 2; ++p)
+  {
+    int64_t points = 0, cut = 0;
+    for (int u = 0; u < 4; ++u)
+    {
+      const double iso = 0;
+      double* scaled = core_copy(set.scalar, (size_t)set.count * sizeof(double));
+      for (int64_t i = 0; i < set.count; ++i)
+      {
+        scaled[i] *= units[p][u];
+      }
+      mcor_input input = core_input(&set);
+      input.scalar = core_array(scaled, 1);
+      mcor_options options = core_options(&iso);
+      options.precision = p ? MCOR_FLOAT64 : MCOR_FLOAT32;
+      mcor_surface surface = core_extract(*state, &input, &options);
+      points = u == 0 ? surface.point_count : points;
+      cut = u == 0 ? surface.statistics.trim_vertices : cut;
+      CORE_CHECK(surface.point_count == points && surface.statistics.trim_vertices == cut &&
+          cut > 50 && surface.statistics.trim_vertices_linear == 0,
+        "precision %d, unit %g: %lld points, %lld cut, %lld of them linear", p, units[p][u],
+        (long long)surface.point_count, (long long)surface.statistics.trim_vertices,
+        (long long)surface.statistics.trim_vertices_linear);
+      mcor_free_surface(&surface);
+      free(scaled);
+    }
+  }
+  core_free_set(&set);
+}
+
+/* A threshold that is some vertex's own weight. */
+static void test_exact_threshold(void** state)
+{
+  const double iso = 0;
+  core_set set = core_make_block(7, 0.35, 9, core_slope);
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.weight_sum = 1;
+  options.vertex_threshold = 0;
+  mcor_surface whole = core_extract(*state, &input, &options);
+  int thresholds = 0;
+  for (int64_t v = 0; v < whole.point_count; v += 3)
+  {
+    options.vertex_threshold = (double)whole.weight_sum[v];
+    mcor_surface surface = core_extract(*state, &input, &options);
+    mesh_report report = core_check_mesh(&surface);
+    mesh_free_report(&report);
+    thresholds += surface.triangle_count > 0;
+    mcor_free_surface(&surface);
+  }
+  CORE_CHECK(thresholds > 50, "%d thresholds", thresholds);
+  mcor_free_surface(&whole);
+  core_free_set(&set);
+}
+
+/* Coincident particles: many are sorted in no time, and an earlier scalar leaves no trace. */
+static void test_coincident(void** state)
+{
+  enum
+  {
+    PARKED = 200000
+  };
+  const double iso = 0.1;
+  core_set block = core_make_block(8, 0.2, 3, core_slope);
+  core_set set = core_make_set(block.count + PARKED);
+  uint64_t seed = 11;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    /* Twins in the block, and a place where a simulation leaves what it does not need. */
+    const int64_t twin = i < block.count ? i / 2 * 2 : 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = i < block.count ? block.position[3 * twin + a] : 30;
+    }
+    set.smoothing_length[i] = 1.3;
+    set.volume[i] = i < block.count ? 0.5 : 1.0 / PARKED;
+    set.scalar[i] = i < block.count ? (i % 2 ? -1 : 1) : random_unit(&seed) - 2;
+  }
+  double* other = core_copy(set.scalar, (size_t)set.count * sizeof(double));
+  for (int64_t i = 0; i < block.count; ++i)
+  {
+    other[i] = set.position[3 * (i / 2 * 2)];
+  }
+  mcor_input input = core_input_to_keep(&set);
+  mcor_options options = core_options(&iso);
+  options.nearest_particle = 1;
+  mcor_surface first = core_extract(*state, &input, &options);
+  mcor_free_surface(&first);
+  input.scalar = core_array(other, 1);
+  ++input.scalar_version;
+  mcor_surface reused = core_extract(*state, &input, &options);
+  mcor_release_memory(*state);
+  mcor_surface fresh = core_extract(*state, &input, &options);
+  CORE_CHECK(fresh.point_count > 50, "%lld points", (long long)fresh.point_count);
+  assert_int_equal(core_hash(&reused), core_hash(&fresh));
+  mcor_free_surface(&reused);
+  mcor_free_surface(&fresh);
+  free(other);
+  core_free_set(&set);
+  core_free_set(&block);
+}
+
+/* A plateau at the iso value, to within rounding: what another iso value evaluated before does not
+ * show. */
+static void test_plateau(void** state)
+{
+  const double plateau = (double)0.3f;
+  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = set.position[3 * i] < 1 ? 0 : plateau;
+  }
+  mcor_input input = core_input(&set);
+  for (int k = 0; k < 5; ++k)
+  {
+    const double isos[2] = { plateau, plateau - 3e-8 * k };
+    mcor_options options = core_options(isos);
+    int64_t alone = 0;
+    for (int i = 0; i < 2; ++i)
+    {
+      options.iso_values = isos + i;
+      mcor_surface surface = core_extract(*state, &input, &options);
+      alone += surface.triangle_count;
+      mcor_free_surface(&surface);
+    }
+    options.iso_values = isos;
+    options.iso_count = 2;
+    mcor_surface both = core_extract(*state, &input, &options);
+    CORE_CHECK(both.triangle_count == alone, "%g below: %lld triangles, not %lld", 3e-8 * k,
+      (long long)both.triangle_count, (long long)alone);
+    mcor_free_surface(&both);
+  }
+  core_free_set(&set);
+}
+
+/* A kernel with negative lobes may leave no density to divide by. */
+static void test_no_density(void** state)
+{
+  const double iso = 0.5;
+  core_set set = core_make_set(17);
+  for (int i = 0; i < 17; ++i)
+  {
+    memset(set.position + 3 * i, 0, 3 * sizeof(double));
+    set.smoothing_length[i] = 1;
+    set.scalar[i] = i % 2;
+    if (i > 0)
+    {
+      /* Where the kernel is -1/16. */
+      set.position[3 * i + (i - 1) % 3] = (i - 1) / 3 % 2 ? 1.5 : -1.5;
+    }
+  }
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  input.has_volume = 0;
+  options.sph_kernel = MCOR_M_PRIME_4;
+  mcor_surface surface = { 0 };
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
+  assert_non_null(strstr(mcor_last_error(*state), "volume of particle 0"));
+  options.sph_kernel = MCOR_CUBIC_SPLINE;
+  surface = core_extract(*state, &input, &options);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* What did not fit leaves nothing behind: something smaller fits then. */
+static void test_after_no_memory(void** state)
+{
+  const double iso = 0;
+  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  for (int keep = 0; keep < 2; ++keep)
+  {
+    mcor_input input = keep ? core_input_to_keep(&set) : core_input(&set);
+    mcor_options fine = core_options(&iso), coarse = core_options(&iso);
+    fine.cube_size = 0.15;
+    coarse.cube_size = 1.3;
+    mcor_release_memory(*state);
+    mcor_surface surface = core_extract(*state, &input, &coarse);
+    fine.memory_limit = coarse.memory_limit = surface.statistics.device_bytes_peak + 100000;
+    mcor_free_surface(&surface);
+    assert_int_equal(mcor_extract(*state, &input, &fine, &surface), MCOR_OUT_OF_CAPACITY);
+    surface = core_extract(*state, &input, &coarse);
+    CORE_CHECK(surface.triangle_count > 100, "%lld triangles", (long long)surface.triangle_count);
+    mcor_free_surface(&surface);
+  }
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_apart),
+    cmocka_unit_test(test_far_reach), cmocka_unit_test(test_magnitude),
+    cmocka_unit_test(test_exact_threshold), cmocka_unit_test(test_coincident),
+    cmocka_unit_test(test_plateau), cmocka_unit_test(test_no_density),
+    cmocka_unit_test(test_after_no_memory) };
+  return cmocka_run_group_tests_name("extremes", tests, core_set_up, core_tear_down);
+}

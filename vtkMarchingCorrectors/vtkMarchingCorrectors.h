@@ -633,7 +633,8 @@ public:
   ///@{
   /**
    * The correction stops where |field - iso value| is at most Tolerance times the range of the
-   * scalar. No unit, > 0, 1e-6 by default.
+   * scalar, and the vertex within 2e-5 cubes of the surface: a higher tolerance than the default
+   * changes little. No unit, > 0, 1e-6 by default.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);

@@ -29,7 +29,11 @@ mcor_common_packages() {
     xvfb xauth libgl1-mesa-dri
 }
 
-mcor_test_packages() { echo libcmocka-dev; }
+# The simulator of a device: that of Debian 12 is known to do; elsewhere its test is left out.
+mcor_test_packages() {
+  echo libcmocka-dev
+  if [ "$(. /etc/os-release && echo "${VERSION_ID:-0}")" -eq 12 ]; then echo oclgrind; fi
+}
 
 mcor_sdk_packages() { # vtk | paraview
   if [ "$1" = vtk ]; then

@@ -80,7 +80,7 @@ void mcor_grid_heap_sort(__global const fix* xyz, __global const real* inv_h,
 }
 
 /* Asks for an element that will be needed. */
-#if MCOR_CPU && __has_builtin(__builtin_prefetch)
+#if MCOR_LANES > 1 && __has_builtin(__builtin_prefetch)
 #define MCOR_PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
 #else
 #define MCOR_PREFETCH(p)

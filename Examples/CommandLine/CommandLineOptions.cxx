@@ -200,7 +200,8 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text, Text) { o.Gradients = true; } },
     { "--no-attributes", "", "leave out the particles' other arrays",
       [](Options& o, Text, Text) { o.Attributes = false; } },
-    { "--output-precision", "P", "of the points: single, double or input (default: as the input's)",
+    { "--output-precision", "single|double|input",
+      "of the surface's points (default: as the input's)",
       [](Options& o, Text n, Text v) {
         o.OutputPrecision = ToChoice(n, v, { "single", "double", "input" });
       } },

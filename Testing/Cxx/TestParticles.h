@@ -8,9 +8,11 @@
 
 #include "vtkMarchingCorrectors.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -37,6 +39,16 @@
 
 namespace test
 {
+/// Counts events of the filter and its executive, which is where a failed update reports.
+inline void CountEvents(vtkMarchingCorrectors* filter, unsigned long event, int* count)
+{
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback([](vtkObject*, unsigned long, void* n, void*) { ++*static_cast<int*>(n); });
+  observer->SetClientData(count);
+  filter->AddObserver(event, observer);
+  filter->GetExecutive()->AddObserver(event, observer);
+}
+
 const double Spacing = 0.1;
 const double SmoothingLength = 0.13;
 

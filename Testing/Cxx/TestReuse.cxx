@@ -6,7 +6,6 @@
 
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
-#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 
 #include <vector>
@@ -219,11 +218,6 @@ void TestRelease()
   CHECK(off == alone);
 }
 
-void CountError(vtkObject*, unsigned long, void* count, void*)
-{
-  ++*static_cast<int*>(count);
-}
-
 void TestMemoryLimit()
 {
   auto filter = test::MakeSphereFilter(test::MakeCube());
@@ -234,11 +228,7 @@ void TestMemoryLimit()
   CHECK(PeakBytes(filter) > 2 << 20);
 
   int errors = 0;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(CountError);
-  observer->SetClientData(&errors);
-  filter->AddObserver(vtkCommand::ErrorEvent, observer);
-  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  test::CountEvents(filter, vtkCommand::ErrorEvent, &errors);
   filter->SetDeviceMemoryLimit(1);
   filter->Update();
   std::cout << "memory limit: " << filter->GetErrorMessage() << "\n";

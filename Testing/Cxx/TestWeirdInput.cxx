@@ -4,9 +4,7 @@
 // that names what was wrong; nothing crashes, and the same filter works again afterwards.
 #include "TestParticles.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
-#include "vtkExecutive.h"
 #include "vtkObject.h"
 #include "vtkPointSet.h"
 #include "vtkStringArray.h"
@@ -159,11 +157,6 @@ bool Contains(const std::string& sentence, const char* word)
   return lower(sentence).find(lower(word)) != std::string::npos;
 }
 
-void CountError(vtkObject*, unsigned long, void* count, void*)
-{
-  ++*static_cast<int*>(count);
-}
-
 void Run(const Case& c)
 {
   auto bad = test::MakeCube();
@@ -171,11 +164,7 @@ void Run(const Case& c)
   auto filter = test::MakeSphereFilter(bad);
   c.SetUp(filter);
   int errors = 0;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(CountError);
-  observer->SetClientData(&errors);
-  filter->AddObserver(vtkCommand::ErrorEvent, observer);
-  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  test::CountEvents(filter, vtkCommand::ErrorEvent, &errors);
   filter->Update();
   const std::string sentence = filter->GetErrorMessage();
   std::cout << c.Name << ": " << sentence << "\n";
@@ -216,10 +205,7 @@ void TestNoFluid()
   filter->SetFluidArrayName("Radius");
   filter->SetFluidValue(-5.0);
   int warnings = 0;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(CountError);
-  observer->SetClientData(&warnings);
-  filter->AddObserver(vtkCommand::WarningEvent, observer);
+  test::CountEvents(filter, vtkCommand::WarningEvent, &warnings);
   filter->Update();
   CHECK(warnings == 1);
   CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
@@ -229,11 +215,7 @@ void TestRecovery()
 {
   auto filter = test::MakeSphereFilter(test::MakeCube());
   int errors = 0;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(CountError);
-  observer->SetClientData(&errors);
-  filter->AddObserver(vtkCommand::ErrorEvent, observer);
-  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  test::CountEvents(filter, vtkCommand::ErrorEvent, &errors);
   filter->SetHScaleFactor(-1.0);
   filter->Update();
   CHECK(*filter->GetErrorMessage());

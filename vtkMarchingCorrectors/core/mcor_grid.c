@@ -158,8 +158,7 @@ static mcor_status mcor_compute_volumes(mcor_context* context)
   MCOR_RETURN_IF(first != INT32_MAX, context, MCOR_INVALID_DATA,
     "The volume of particle %lld cannot be computed: with kernel %s, which has negative parts, the "
     "density there is too low, or negative. Give volumes, or masses and densities.",
-    (long long)(context->source ? context->source[first] : first),
-    mcor_sph_kernel_name(context->options->sph_kernel));
+    (long long)context->source[first], mcor_sph_kernel_name(context->options->sph_kernel));
   return MCOR_OK;
 }
 

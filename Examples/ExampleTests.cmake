@@ -4,7 +4,7 @@ set(out "${CMAKE_CURRENT_BINARY_DIR}")
 
 function (mcor_add_example_test name label)
   add_test(NAME "example.${name}" COMMAND ${ARGN})
-  set_tests_properties("example.${name}" PROPERTIES LABELS "${label}" TIMEOUT 600)
+  set_tests_properties("example.${name}" PROPERTIES LABELS "${label}" TIMEOUT 1500)
 endfunction ()
 
 mcor_add_example_test(c unit $<TARGET_FILE:extract_surface_c>

@@ -35,7 +35,7 @@ class CommandLineTest(unittest.TestCase):
 
     def run_program(self, *arguments, **options):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.directory, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=300, **options)
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=1200, **options)
 
     def extract(self, *options, source=None, **run_options):
         return self.run_program(source or self.input, self.output, *options, **run_options)
@@ -477,7 +477,7 @@ class Picture(CommandLineTest):
     def test_picture(self):
         picture = self.directory / "picture.png"
         result = subprocess.run([WITH_DISPLAY, PROGRAM, self.input, self.output, *ISO, "--screenshot",
-                                 picture], capture_output=True, text=True, timeout=300)
+                                 picture], capture_output=True, text=True, timeout=1200)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         data = picture.read_bytes()
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")

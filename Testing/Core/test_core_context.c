@@ -5,6 +5,7 @@
 
 #include "core_fixture.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -328,7 +329,6 @@ static void test_memory_limit(void** state)
 
 static void test_devices(void** state)
 {
-  (void)state;
   char* list = NULL;
   assert_int_equal(mcor_list_devices(&list), MCOR_OK);
   CORE_CHECK(strncmp(list, "0: ", 3) == 0, "list: %s", list);
@@ -346,8 +346,18 @@ static void test_devices(void** state)
     assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
     mcor_free_context(context);
   }
-  const char* const known[] = { "", "0", NULL };
-  for (int i = 0; i < 3; ++i)
+  /* Part of the default device's name, in capitals and in small letters. */
+  const mcor_context* context_of_default = *state;
+  char upper[128], lower[128];
+  size_t n = 0;
+  for (; context_of_default->cl.device_name[n]; ++n)
+  {
+    upper[n] = (char)toupper((unsigned char)context_of_default->cl.device_name[n]);
+    lower[n] = (char)tolower((unsigned char)context_of_default->cl.device_name[n]);
+  }
+  upper[n] = lower[n] = '\0';
+  const char* const known[] = { "", "0", NULL, upper, lower + 1 };
+  for (int i = 0; i < 5; ++i)
   {
     mcor_context* context = NULL;
     CORE_OK(context, mcor_create_context(known[i], &context));

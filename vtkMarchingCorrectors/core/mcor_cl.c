@@ -12,7 +12,7 @@
 #define MCOR_PLATFORM_LIMIT 16
 #define MCOR_DEVICE_LIMIT 64
 
-/* The platform whose CPU device is the default. */
+/* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
 typedef struct mcor_device_list
@@ -24,27 +24,46 @@ typedef struct mcor_device_list
 
 static const char* mcor_cl_error_name(cl_int error)
 {
+#define MCOR_NAMED(code)                                                                           \
+  {                                                                                                \
+    code, #code                                                                                    \
+  }
   static const struct
   {
     cl_int code;
     const char* name;
-  } names[] = { { CL_DEVICE_NOT_FOUND, "CL_DEVICE_NOT_FOUND" },
-    { CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE" },
-    { CL_COMPILER_NOT_AVAILABLE, "CL_COMPILER_NOT_AVAILABLE" },
-    { CL_MEM_OBJECT_ALLOCATION_FAILURE, "CL_MEM_OBJECT_ALLOCATION_FAILURE" },
-    { CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES" },
-    { CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY" },
-    { CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE" },
-    { CL_INVALID_VALUE, "CL_INVALID_VALUE" }, { CL_INVALID_DEVICE, "CL_INVALID_DEVICE" },
-    { CL_INVALID_CONTEXT, "CL_INVALID_CONTEXT" },
-    { CL_INVALID_COMMAND_QUEUE, "CL_INVALID_COMMAND_QUEUE" },
-    { CL_INVALID_MEM_OBJECT, "CL_INVALID_MEM_OBJECT" },
-    { CL_INVALID_KERNEL_NAME, "CL_INVALID_KERNEL_NAME" },
-    { CL_INVALID_ARG_INDEX, "CL_INVALID_ARG_INDEX" },
-    { CL_INVALID_ARG_SIZE, "CL_INVALID_ARG_SIZE" },
-    { CL_INVALID_KERNEL_ARGS, "CL_INVALID_KERNEL_ARGS" },
-    { CL_INVALID_WORK_GROUP_SIZE, "CL_INVALID_WORK_GROUP_SIZE" },
-    { CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE" }, { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
+  } names[] = { MCOR_NAMED(CL_DEVICE_NOT_FOUND), MCOR_NAMED(CL_DEVICE_NOT_AVAILABLE),
+    MCOR_NAMED(CL_COMPILER_NOT_AVAILABLE), MCOR_NAMED(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+    MCOR_NAMED(CL_OUT_OF_RESOURCES), MCOR_NAMED(CL_OUT_OF_HOST_MEMORY),
+    MCOR_NAMED(CL_PROFILING_INFO_NOT_AVAILABLE), MCOR_NAMED(CL_MEM_COPY_OVERLAP),
+    MCOR_NAMED(CL_IMAGE_FORMAT_MISMATCH), MCOR_NAMED(CL_IMAGE_FORMAT_NOT_SUPPORTED),
+    MCOR_NAMED(CL_BUILD_PROGRAM_FAILURE), MCOR_NAMED(CL_MAP_FAILURE),
+    MCOR_NAMED(CL_MISALIGNED_SUB_BUFFER_OFFSET),
+    MCOR_NAMED(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+    MCOR_NAMED(CL_COMPILE_PROGRAM_FAILURE), MCOR_NAMED(CL_LINKER_NOT_AVAILABLE),
+    MCOR_NAMED(CL_LINK_PROGRAM_FAILURE), MCOR_NAMED(CL_DEVICE_PARTITION_FAILED),
+    MCOR_NAMED(CL_KERNEL_ARG_INFO_NOT_AVAILABLE), MCOR_NAMED(CL_INVALID_VALUE),
+    MCOR_NAMED(CL_INVALID_DEVICE_TYPE), MCOR_NAMED(CL_INVALID_PLATFORM),
+    MCOR_NAMED(CL_INVALID_DEVICE), MCOR_NAMED(CL_INVALID_CONTEXT),
+    MCOR_NAMED(CL_INVALID_QUEUE_PROPERTIES), MCOR_NAMED(CL_INVALID_COMMAND_QUEUE),
+    MCOR_NAMED(CL_INVALID_HOST_PTR), MCOR_NAMED(CL_INVALID_MEM_OBJECT),
+    MCOR_NAMED(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR), MCOR_NAMED(CL_INVALID_IMAGE_SIZE),
+    MCOR_NAMED(CL_INVALID_SAMPLER), MCOR_NAMED(CL_INVALID_BINARY),
+    MCOR_NAMED(CL_INVALID_BUILD_OPTIONS), MCOR_NAMED(CL_INVALID_PROGRAM),
+    MCOR_NAMED(CL_INVALID_PROGRAM_EXECUTABLE), MCOR_NAMED(CL_INVALID_KERNEL_NAME),
+    MCOR_NAMED(CL_INVALID_KERNEL_DEFINITION), MCOR_NAMED(CL_INVALID_KERNEL),
+    MCOR_NAMED(CL_INVALID_ARG_INDEX), MCOR_NAMED(CL_INVALID_ARG_VALUE),
+    MCOR_NAMED(CL_INVALID_ARG_SIZE), MCOR_NAMED(CL_INVALID_KERNEL_ARGS),
+    MCOR_NAMED(CL_INVALID_WORK_DIMENSION), MCOR_NAMED(CL_INVALID_WORK_GROUP_SIZE),
+    MCOR_NAMED(CL_INVALID_WORK_ITEM_SIZE), MCOR_NAMED(CL_INVALID_GLOBAL_OFFSET),
+    MCOR_NAMED(CL_INVALID_EVENT_WAIT_LIST), MCOR_NAMED(CL_INVALID_EVENT),
+    MCOR_NAMED(CL_INVALID_OPERATION), MCOR_NAMED(CL_INVALID_GL_OBJECT),
+    MCOR_NAMED(CL_INVALID_BUFFER_SIZE), MCOR_NAMED(CL_INVALID_MIP_LEVEL),
+    MCOR_NAMED(CL_INVALID_GLOBAL_WORK_SIZE), MCOR_NAMED(CL_INVALID_PROPERTY),
+    MCOR_NAMED(CL_INVALID_IMAGE_DESCRIPTOR), MCOR_NAMED(CL_INVALID_COMPILER_OPTIONS),
+    MCOR_NAMED(CL_INVALID_LINKER_OPTIONS), MCOR_NAMED(CL_INVALID_DEVICE_PARTITION_COUNT),
+    { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
+#undef MCOR_NAMED
   for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
   {
     if (names[i].code == error)
@@ -55,13 +74,33 @@ static const char* mcor_cl_error_name(cl_int error)
   return "an OpenCL error";
 }
 
+/* Drivers that allocate when memory is first needed say so in any later call. */
+static bool mcor_is_no_memory(cl_int error)
+{
+  return error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_RESOURCES ||
+    error == CL_OUT_OF_HOST_MEMORY;
+}
+
+static mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what)
+{
+  const char *device = context->cl.device_name, *name = mcor_cl_error_name(error);
+  return mcor_is_no_memory(error)
+    ? mcor_fail(context, MCOR_OUT_OF_CAPACITY,
+        "OpenCL device %s ran out of memory: %s failed with %s (%d). Use a larger cube size, or "
+        "fewer particles.",
+        device, what, name, (int)error)
+    : mcor_fail(context, MCOR_DEVICE_ERROR, "OpenCL device %s: %s failed with %s (%d).", device,
+        what, name, (int)error);
+}
+
 #define MCOR_CL_TRY(context, call, what)                                                           \
   do                                                                                               \
   {                                                                                                \
     const cl_int mcor_cl_error_ = (call);                                                          \
-    MCOR_RETURN_IF(mcor_cl_error_ != CL_SUCCESS, context, MCOR_DEVICE_ERROR,                       \
-      "OpenCL device %s: %s failed with %s (%d).", (context)->cl.device_name, what,                \
-      mcor_cl_error_name(mcor_cl_error_), (int)mcor_cl_error_);                                    \
+    if (mcor_cl_error_ != CL_SUCCESS)                                                              \
+    {                                                                                              \
+      return mcor_cl_fail(context, mcor_cl_error_, what);                                          \
+    }                                                                                              \
   } while (0)
 
 static void mcor_find_devices(mcor_device_list* list)
@@ -132,6 +171,29 @@ mcor_status mcor_list_devices(char** text)
   return MCOR_OK;
 }
 
+static char mcor_lower(char c)
+{
+  return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/* Whether `part` occurs in `text`, in capitals or not. */
+static bool mcor_contains(const char* text, const char* part)
+{
+  for (; *text; ++text)
+  {
+    size_t i = 0;
+    while (part[i] && mcor_lower(text[i]) == mcor_lower(part[i]))
+    {
+      ++i;
+    }
+    if (!part[i])
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 /* Index into the list of the device that the user named, or -1. */
 static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
 {
@@ -147,7 +209,7 @@ static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
     char device[128], platform[128];
     mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
     if (is_default ? strcmp(platform, MCOR_DEFAULT_PLATFORM) == 0
-                   : strstr(device, wanted) != NULL || strstr(platform, wanted) != NULL)
+                   : mcor_contains(device, wanted) || mcor_contains(platform, wanted))
     {
       return i;
     }
@@ -280,6 +342,23 @@ static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
     a->solids == b->solids;
 }
 
+static mcor_status mcor_fail_build(mcor_context* context, cl_int error, const char* options)
+{
+  const mcor_cl* cl = &context->cl;
+  size_t size = 0;
+  clGetProgramBuildInfo(cl->program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+  char* log = calloc(size + 1, 1);
+  if (log)
+  {
+    clGetProgramBuildInfo(cl->program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+  }
+  const mcor_status status = mcor_fail(context, MCOR_DEVICE_ERROR,
+    "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
+    mcor_cl_error_name(error), options, log ? log : "");
+  free(log);
+  return status;
+}
+
 mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
@@ -314,12 +393,9 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
   error = clBuildProgram(cl->program, 1, &cl->device, options, NULL, NULL);
   if (error != CL_SUCCESS)
   {
-    char log[3000] = "";
-    clGetProgramBuildInfo(cl->program, cl->device, CL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
+    const mcor_status status = mcor_fail_build(context, error, options);
     mcor_drop_program(cl);
-    return mcor_fail(context, MCOR_DEVICE_ERROR,
-      "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
-      mcor_cl_error_name(error), options, log);
+    return status;
   }
   cl->build_seconds = mcor_seconds() - begin;
   return MCOR_OK;
@@ -371,7 +447,9 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   if (error != CL_SUCCESS)
   {
     buffer->mem = NULL;
-    return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
+    return mcor_fail(context,
+      mcor_is_no_memory(error) || error == CL_INVALID_BUFFER_SIZE ? MCOR_OUT_OF_CAPACITY
+                                                                  : MCOR_DEVICE_ERROR,
       "Device %s could not allocate %.0f MB (%s). Use a larger cube size, or fewer particles.",
       cl->device_name, (double)size / 1e6, mcor_cl_error_name(error));
   }
@@ -473,11 +551,17 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
     return MCOR_OK;
   }
   mcor_buffer bigger = { 0 };
-  MCOR_TRY(mcor_reserve(context, &bigger, bytes));
-  MCOR_TRY(mcor_copy(context, buffer, &bigger, 0, old));
-  mcor_release(context, buffer);
-  *buffer = bigger;
-  return MCOR_OK;
+  mcor_status status = mcor_reserve(context, &bigger, bytes);
+  if (status == MCOR_OK)
+  {
+    status = mcor_copy(context, buffer, &bigger, 0, old);
+  }
+  mcor_release(context, status == MCOR_OK ? buffer : &bigger);
+  if (status == MCOR_OK)
+  {
+    *buffer = bigger;
+  }
+  return status;
 }
 
 static mcor_status mcor_find_kernel(mcor_context* context, const char* name, cl_kernel* kernel)

@@ -217,12 +217,26 @@ static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
   return is_default && list->count > 0 ? 0 : -1;
 }
 
+/* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
+ * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM is for tests: cpu or gpu. */
+static bool mcor_has_cpu_form(const mcor_cl* cl)
+{
+  const char* forced = getenv("MCOR_DEVICE_FORM");
+  if (forced && *forced)
+  {
+    return strcmp(forced, "gpu") != 0;
+  }
+  cl_device_type type = 0;
+  cl_uint width = 1;
+  clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  return (type & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
+}
+
 static void mcor_query_device(mcor_cl* cl)
 {
-  cl_device_type type = 0;
   cl_uint units = 1;
   cl_device_fp_config fp64 = 0;
-  clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL);
   clGetDeviceInfo(
@@ -230,7 +244,7 @@ static void mcor_query_device(mcor_cl* cl)
   cl->memory_limit = cl->device_memory;
   clGetDeviceInfo(
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
-  cl->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+  cl->is_cpu = mcor_has_cpu_form(cl);
   cl->has_fp64 = fp64 != 0;
   cl->chunks = cl->is_cpu ? (int)units * 8 : 4096;
 }
@@ -326,14 +340,14 @@ static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char*
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
   snprintf(text, size,
-    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d -DMCOR_CPU=%d "
+    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d "
     "-DMCOR_DOUBLE=%d "
     "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s "
     "-DMCOR_SUPPORT=%d.0%s "
     "-DMCOR_TENSOR=%d -DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
-    cl->lanes, cl->is_cpu, is_double, kernels[k].name, kernels[k].name, kernels[k].name,
-    kernels[k].norm, is_double ? "" : "f", kernels[k].support, is_double ? "" : "f",
-    kernels[k].tensor, (int)build->field, build->solids);
+    cl->lanes, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm,
+    is_double ? "" : "f", kernels[k].support, is_double ? "" : "f", kernels[k].tensor,
+    (int)build->field, build->solids);
 }
 
 static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
@@ -377,13 +391,13 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
   cl->build = *build;
   cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
   cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
-  const char* sources[] = { mcor_source_mcor_prelude_cl, mcor_source_mcor_sph_kernel_h,
-    mcor_source_mcor_query_cl, mcor_source_mcor_tile_cl, mcor_source_mcor_field_cl,
-    mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl, mcor_source_mcor_brick_cl,
-    mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl, mcor_source_mcor_block_cl,
-    mcor_source_mcor_march_cl, mcor_source_mcor_pair_cl, mcor_source_mcor_points_cl,
-    mcor_source_mcor_attribute_cl, mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl,
-    mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl };
+  const char* sources[] = { mcor_source_mcor_prelude_cl, mcor_source_mcor_intrinsic_cl,
+    mcor_source_mcor_sph_kernel_h, mcor_source_mcor_query_cl, mcor_source_mcor_tile_cl,
+    mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl,
+    mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl,
+    mcor_source_mcor_block_cl, mcor_source_mcor_march_cl, mcor_source_mcor_pair_cl,
+    mcor_source_mcor_points_cl, mcor_source_mcor_attribute_cl, mcor_source_mcor_correct_cl,
+    mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl };
   char options[512];
   mcor_build_options(cl, build, options, sizeof options);
   cl_int error;

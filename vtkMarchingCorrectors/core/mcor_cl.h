@@ -44,7 +44,8 @@ typedef struct mcor_cl
     cl_kernel kernel;
   } kernels[MCOR_KERNEL_LIMIT];
   int kernel_count;
-  bool is_cpu, has_fp64;
+  bool is_cpu; /* the kernels' form for CPUs is used */
+  bool has_fp64;
   int lanes;  /* MCOR_LANES of program */
   int chunks; /* runs into which scans and sorts cut their arrays */
   size_t real_size, fix_size;

@@ -291,6 +291,7 @@ typedef struct mcor_topology_table
 void mcor_make_topology_table(mcor_topology_table* table);
 
 extern const char mcor_source_mcor_prelude_cl[];
+extern const char mcor_source_mcor_intrinsic_cl[];
 extern const char mcor_source_mcor_points_cl[];
 extern const char mcor_source_mcor_sph_kernel_h[];
 extern const char mcor_source_mcor_query_cl[];

@@ -8,9 +8,9 @@
  *
  *   1 / sqrt(x) = y / sqrt(1 - e) = y (1 + e p(e))
  *
- * with p a minimax polynomial (2.4e-8), come results that are the same on every CPU, to 1 ulp or
- * so. */
-#if MCOR_CPU && !MCOR_DOUBLE
+ * with p a minimax polynomial (2.4e-8), come results to 1 ulp or so that are the same on every
+ * device, which OpenCL's rsqrt need not be. In double precision its root is exact to the last bit. */
+#if !MCOR_DOUBLE
 realv mcor_rsqrt_guess(realv x)
 {
   return MCOR_AS_REALV((fixv)0x5f375a86 - (MCOR_AS_FIXV(x) >> 1));
@@ -38,7 +38,7 @@ realv mcor_sqrt(realv x)
 #else
 realv mcor_rsqrt(realv x)
 {
-  return rsqrt(fmax(x, (realv)1e-30f));
+  return (real)1 / sqrt(fmax(x, (realv)1e-30f));
 }
 
 realv mcor_sqrt(realv x)

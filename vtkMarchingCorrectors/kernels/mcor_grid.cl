@@ -79,13 +79,6 @@ void mcor_grid_heap_sort(__global const fix* xyz, __global const real* inv_h,
   }
 }
 
-/* Asks for an element that will be needed. */
-#if MCOR_LANES > 1 && __has_builtin(__builtin_prefetch)
-#define MCOR_PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
-#else
-#define MCOR_PREFETCH(p)
-#endif
-
 /* Insertion sort in each of some cells; its limit. Particles lie far apart in the input arrays: all
  * are asked for before the first is needed. */
 #define MCOR_INSERTION_LIMIT (MCOR_LANES == 1 ? 64 : 128)

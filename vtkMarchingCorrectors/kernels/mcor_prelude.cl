@@ -5,7 +5,6 @@
  *
  *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, whose
  *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
- *   MCOR_CPU      1: the device is a CPU
  *   MCOR_DOUBLE   real is double instead of float
  *   MCOR_W, MCOR_DW, MCOR_DDW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
  *   MCOR_FIELD    0 Shepard, 1 sum, 2 weight sum
@@ -57,17 +56,6 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_GET(v, lane) (((const real*)&(v))[lane])
 #define MCOR_SET(v, lane) (((real*)&(v))[lane])
 #define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
-#endif
-
-/* MCOR_LANES elements from p[i] on. Compilers may make several accesses of vloadn and vstoren. */
-#if MCOR_LANES == 1
-#define MCOR_LOAD(i, p) ((p)[i])
-#define MCOR_LOAD_FIX(i, p) ((p)[i])
-#else
-typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
-typedef realv __attribute__((aligned(4))) mcor_loose_realv;
-#define MCOR_LOAD(i, p) MCOR_CAT(vload, MCOR_LANES)(0, (p) + (i))
-#define MCOR_LOAD_FIX(i, p) (*(__global const mcor_loose_fixv*)((p) + (i)))
 #endif
 
 /* 0, 1, ... MCOR_LANES - 1. */

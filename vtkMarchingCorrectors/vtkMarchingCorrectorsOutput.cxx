@@ -195,6 +195,10 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
   for (size_t i = 0; this->Surface.attributes && i < this->Input.Interpolated.size(); ++i)
   {
     vtkDataArray* from = this->Input.Interpolated[i];
+    if (this->Surface.attribute_not_finite[i] >= 0)
+    {
+      continue;
+    }
     add(from,
       AdoptReal(this->Surface.attributes[i], from->GetNumberOfComponents(), count,
         from->GetDataType() == VTK_FLOAT));

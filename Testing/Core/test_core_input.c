@@ -16,7 +16,6 @@ typedef struct bad_call
   core_set set;
   mcor_input input;
   mcor_options options;
-  mcor_array attribute;
   double iso[2];
   double* vector; /* [count][3] */
 } bad_call;
@@ -119,6 +118,8 @@ static void test_options(void** state)
   ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);
   ARGUMENT("-1 iso values", call.options.iso_count = -1);
   ARGUMENT("1 iso values", call.options.iso_values = NULL);
+  ARGUMENT("-1 attributes", call.input.attribute_count = -1);
+  ARGUMENT("2 attributes|NULL", call.input.attribute_count = 2);
   ARGUMENT("so value 1|finite", call.options.iso_count = 2; call.iso[1] = NAN);
   ARGUMENT("so value 0|finite", call.iso[0] = -INFINITY);
   ARGUMENT("free surface|above 0|0.5", call.options.field = MCOR_WEIGHT_SUM);
@@ -185,10 +186,6 @@ static void test_bad_elements(void** state)
     DATA(words, call.set.position[191] = bad[i]);
     snprintf(words, sizeof words, "scalar|p|particle 0|%s", how[i]);
     DATA(words, call.set.scalar[0] = bad[i]; call.input.scalar.name = "p");
-    snprintf(words, sizeof words, "attribute|speed|particle 21|%s", how[i]);
-    DATA(words, call.vector[65] = bad[i]; call.attribute = core_array(call.vector, 3);
-         call.attribute.name = "speed"; call.input.attributes = &call.attribute;
-         call.input.attribute_count = 1);
     snprintf(words, sizeof words, "particle 1|%s", how[i]);
     DATA(words, call.vector[5] = bad[i]; call.input.scalar = core_array(call.vector, 3);
          call.input.scalar_dot = core_array(call.vector, 3));
@@ -325,6 +322,69 @@ static void test_scalars_of_solids(void** state)
   mcor_free_surface(&surfaces[1]);
 }
 
+/* An attribute that is not finite is left out, and said to be; the others are not touched by it. */
+static void test_bad_attributes(void** state)
+{
+  const double bad[] = { NAN, INFINITY, -INFINITY };
+  for (int k = 0; k < 3; ++k)
+  {
+    bad_call call = make_call();
+    call.options.iso_values = call.iso;
+    const mcor_array attributes[] = { core_array(call.set.volume, 1), core_array(call.vector, 3),
+      { .constant = bad[k] }, core_array(call.set.scalar, 1) };
+    call.input.attributes = attributes;
+    call.input.attribute_count = 4;
+    mcor_surface good = core_extract(*state, &call.input, &call.options);
+    call.vector[3 * 21 + 2] = call.vector[3 * 40] = bad[k];
+    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    const size_t n = (size_t)surface.point_count;
+    CORE_CHECK(n > 20 && good.point_count == (int64_t)n, "%zu points", n);
+    const int64_t expected[] = { -1, 21, 0, -1 };
+    for (int a = 0; a < 4; ++a)
+    {
+      assert_int_equal(surface.attribute_not_finite[a], expected[a]);
+      assert_int_equal(surface.attributes[a] == NULL, expected[a] >= 0);
+    }
+    assert_int_equal(good.attribute_not_finite[1], -1);
+    assert_memory_equal(good.attributes[0], surface.attributes[0], n * sizeof(double));
+    assert_memory_equal(good.attributes[3], surface.attributes[3], n * sizeof(double));
+    mcor_free_surface(&good);
+    mcor_free_surface(&surface);
+    free_call(&call);
+  }
+  expect_good(*state);
+}
+
+/* What solids have of an attribute plays no part. */
+static void test_attributes_of_solids(void** state)
+{
+  const double bad[] = { 0.5, NAN, INFINITY, -1e300 };
+  mcor_surface surfaces[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    bad_call call = make_call();
+    call.options.iso_values = call.iso;
+    memset(call.set.solid, 0, (size_t)call.set.count);
+    call.set.solid[40] = 1;
+    call.input.solid = call.set.solid;
+    call.vector[3 * 40 + 1] = bad[k];
+    const mcor_array attribute = core_array(call.vector, 3);
+    call.input.attributes = &attribute;
+    call.input.attribute_count = 1;
+    surfaces[k] = core_extract(*state, &call.input, &call.options);
+    const size_t n = (size_t)surfaces[0].point_count;
+    CORE_CHECK(n > 20 && surfaces[k].point_count == (int64_t)n, "%zu points", n);
+    assert_int_equal(surfaces[k].attribute_not_finite[0], -1);
+    assert_memory_equal(
+      surfaces[0].attributes[0], surfaces[k].attributes[0], 3 * n * sizeof(double));
+    free_call(&call);
+  }
+  for (int k = 0; k < 4; ++k)
+  {
+    mcor_free_surface(&surfaces[k]);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
@@ -332,6 +392,7 @@ int main(void)
     cmocka_unit_test(test_components), cmocka_unit_test(test_bad_elements),
     cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
     cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results),
-    cmocka_unit_test(test_endless_range), cmocka_unit_test(test_scalars_of_solids) };
+    cmocka_unit_test(test_endless_range), cmocka_unit_test(test_scalars_of_solids),
+    cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

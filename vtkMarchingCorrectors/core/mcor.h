@@ -108,7 +108,8 @@ extern "C"
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
-    const void* data; /* [count][components], finite; borrowed until return; NULL: constant */
+    const void* data; /* [count][components], finite (but attributes); borrowed until return;
+                       * NULL: constant */
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */
     double constant;  /* the value of all particles where data is NULL */
@@ -150,7 +151,8 @@ extern "C"
     const uint8_t* solid;
     int ignore_solids;
 
-    /* Other per-particle arrays to interpolate to the surface (Shepard mean). */
+    /* Other per-particle arrays to interpolate to the surface (Shepard mean of fluid particles). One
+     * that is not finite for a fluid particle is left out, see attribute_not_finite. */
     const mcor_array* attributes; /* [attribute_count] */
     int attribute_count;
 
@@ -259,6 +261,10 @@ extern "C"
     double* iso_value;          /* [point_count] */
     int64_t* nearest_particle;  /* [point_count], index of the nearest fluid particle */
     double** attributes;        /* [attribute_count] -> [point_count][components] */
+    int64_t*
+      attribute_not_finite; /* [attribute_count], -1; or, of an attribute that holds NaN or an
+                             * infinite value, the first fluid particle that has it: this attribute
+                             * was left out, its entry in `attributes` is NULL */
     int attribute_count;
     mcor_statistics statistics;
   } mcor_surface;

@@ -14,15 +14,16 @@
 
 /* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
  * overflows whatever the device's precision. */
-static double mcor_component_scale(const mcor_array* array, int64_t count, int component)
+static double mcor_component_scale(const mcor_input* input, const mcor_array* array, int component)
 {
   int exponent = 0;
-  frexp(mcor_largest(array, count, component), &exponent);
+  frexp(mcor_largest(array, input->solid, input->count, component), &exponent);
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
 }
 
-/* Finds the components that vary. */
-mcor_status mcor_list_attributes(mcor_context* context, const mcor_input* input)
+/* Finds the attributes to leave out, and of the others the components that vary. */
+mcor_status mcor_list_attributes(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
   mcor_attributes* attributes = &context->attributes;
   size_t most = 1;
@@ -37,12 +38,13 @@ mcor_status mcor_list_attributes(mcor_context* context, const mcor_input* input)
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    for (int c = 0; c < mcor_components(array); ++c)
+    surface->attribute_not_finite[a] = mcor_find_not_finite(array, input->solid, input->count);
+    for (int c = 0; c < mcor_components(array) && surface->attribute_not_finite[a] < 0; ++c)
     {
       if (!mcor_is_constant(array, input->count, c))
       {
         attributes->varying[attributes->varying_count++] =
-          (mcor_component){ a, c, mcor_component_scale(array, input->count, c) };
+          (mcor_component){ a, c, mcor_component_scale(input, array, c) };
       }
     }
   }
@@ -136,7 +138,7 @@ static void mcor_put_constants(
   {
     const mcor_array* array = &input->attributes[a];
     const int width = mcor_components(array);
-    for (int c = 0; c < width; ++c)
+    for (int c = 0; c < width && surface->attributes[a]; ++c)
     {
       if (next < attributes->varying_count && attributes->varying[next].attribute == a &&
         attributes->varying[next].component == c)

@@ -134,6 +134,7 @@ void mcor_free_surface(mcor_surface* surface)
     free(surface->attributes[a]);
   }
   free(surface->attributes);
+  free(surface->attribute_not_finite);
   *surface = (mcor_surface){ 0 };
 }
 
@@ -300,16 +301,20 @@ static mcor_status mcor_finish_statistics(mcor_context* context)
 static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface)
 {
-  surface->attribute_count = input->attribute_count;
-  surface->attributes = calloc((size_t)input->attribute_count + 1, sizeof(double*));
-  MCOR_RETURN_IF(!surface->attributes, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   MCOR_TRY(mcor_check_input(context, input, options));
+  const size_t attributes = (size_t)input->attribute_count;
+  surface->attribute_count = input->attribute_count;
+  surface->attributes = calloc(attributes + 1, sizeof(double*));
+  surface->attribute_not_finite = malloc((attributes + 1) * sizeof(int64_t));
+  MCOR_RETURN_IF(!surface->attributes || !surface->attribute_not_finite, context,
+    MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  memset(surface->attribute_not_finite, 0xff, (attributes + 1) * sizeof(int64_t)); /* -1 */
   if (input->count == 0)
   {
     return MCOR_OK;
   }
   mcor_check_reuse(context, input, options);
-  MCOR_TRY(mcor_list_attributes(context, input));
+  MCOR_TRY(mcor_list_attributes(context, input, surface));
   MCOR_TRY(mcor_prepare(context, input, options));
   for (int i = 0; i < options->iso_count; ++i)
   {

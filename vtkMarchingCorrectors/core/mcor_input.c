@@ -1,22 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Reading and checking everything a caller hands in. */
+/* Reading the arrays that a caller hands in. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
-
-/* Kernels count in int, also a little beyond the last particle. */
-#define MCOR_PARTICLE_LIMIT 2000000000
-
-static const char* mcor_array_name(const mcor_array* array, const char* role)
-{
-  return array->name ? array->name : role;
-}
 
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out)
 {
@@ -78,44 +69,94 @@ static inline double mcor_largest_double(const double* data, int64_t count, int6
   return value;
 }
 
-double mcor_largest(const mcor_array* array, int64_t count, int component)
+typedef struct mcor_survey
 {
-  const int64_t stride = mcor_components(array);
+  const mcor_array* array;
+  const uint8_t* solid;
+  int component;
+  double largest[MCOR_SLICES];
+  bool varies[MCOR_SLICES];
+} mcor_survey;
+
+static void mcor_find_largest(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_survey* survey = data;
+  const mcor_array* array = survey->array;
+  const int64_t stride = mcor_components(array), at = first * stride + survey->component;
+  const int64_t count = last - first;
+  double largest = 0;
+  if (survey->solid)
+  {
+    for (int64_t i = first; i < last; ++i)
+    {
+      const double x = survey->solid[i] ? 0 : fabs(mcor_array_at(array, i, survey->component));
+      largest = x > largest ? x : largest;
+    }
+  }
+  else if (array->type == MCOR_FLOAT64)
+  {
+    largest = mcor_largest_double((const double*)array->data + at, count, stride);
+  }
+  else
+  {
+    largest = stride == 1 ? mcor_largest_float((const float*)array->data + at, count, 1)
+                          : mcor_largest_float((const float*)array->data + at, count, stride);
+  }
+  survey->largest[slice] = largest;
+}
+
+double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count, int component)
+{
+  mcor_survey survey = { .array = array, .solid = solid, .component = component };
   if (!array->data)
   {
     return fabs(array->constant);
   }
-  if (array->type == MCOR_FLOAT64)
+  const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_find_largest, &survey);
+  double largest = 0;
+  for (int s = 0; s < slices; ++s)
   {
-    return mcor_largest_double((const double*)array->data + component, count, stride);
+    largest = survey.largest[s] > largest ? survey.largest[s] : largest;
   }
-  return stride == 1 ? mcor_largest_float(array->data, count, 1)
-                     : mcor_largest_float((const float*)array->data + component, count, stride);
+  return largest;
 }
 
-bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
+static void mcor_find_other(void* data, int slice, int64_t first, int64_t last)
 {
-  const int64_t stride = mcor_components(array);
-  int64_t i = 1;
-  if (!array->data)
+  mcor_survey* survey = data;
+  const int64_t stride = mcor_components(survey->array);
+  int64_t i = first;
+  if (survey->array->type == MCOR_FLOAT64)
   {
-    return true;
-  }
-  if (array->type == MCOR_FLOAT64)
-  {
-    const double* data = (const double*)array->data + component;
-    for (; i < count && data[i * stride] == data[0]; ++i)
+    const double* x = (const double*)survey->array->data + survey->component;
+    for (; i < last && x[i * stride] == x[0]; ++i)
     {
     }
   }
   else
   {
-    const float* data = (const float*)array->data + component;
-    for (; i < count && data[i * stride] == data[0]; ++i)
+    const float* x = (const float*)survey->array->data + survey->component;
+    for (; i < last && x[i * stride] == x[0]; ++i)
     {
     }
   }
-  return i >= count;
+  survey->varies[slice] = i < last;
+}
+
+bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
+{
+  mcor_survey survey = { .array = array, .component = component };
+  if (!array->data)
+  {
+    return true;
+  }
+  const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_find_other, &survey);
+  bool varies = false;
+  for (int s = 0; s < slices; ++s)
+  {
+    varies = varies || survey.varies[s];
+  }
+  return !varies;
 }
 
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
@@ -146,224 +187,6 @@ double mcor_scalar_at(const mcor_input* input, int64_t i)
     return input->scalar_dot.data ? sum : sqrt(sum);
   }
   return mcor_array_at(a, i, components > 1 ? input->scalar_component : 0);
-}
-
-static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
-{
-#define MCOR_NEED(condition, ...)                                                                  \
-  MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
-  MCOR_NEED((unsigned)options->sph_kernel < MCOR_SPH_KERNEL_COUNT,
-    "There is no SPH kernel number %d.", (int)options->sph_kernel);
-  MCOR_NEED((unsigned)options->field <= MCOR_WEIGHT_SUM, "There is no field number %d.",
-    (int)options->field);
-  MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "There is no seed mode number %d.",
-    (int)options->seeds);
-  MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD, "There is no topology number %d.",
-    (int)options->topology);
-  MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
-    "There is no boundary detection number %d.", (int)options->boundary_detection);
-  MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64, "There is no precision number %d.",
-    (int)options->precision);
-  MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,
-    "The h scale factor is %g; it must be above 0.", options->h_scale);
-  MCOR_NEED(isfinite(options->cube_size) && options->cube_size >= 0,
-    "The cube size is %g; it must be above 0, or 0 to use the cube size factor.",
-    options->cube_size);
-  MCOR_NEED(options->cube_size > 0 ||
-      (isfinite(options->cube_size_factor) && options->cube_size_factor > 0),
-    "The cube size factor is %g; it must be above 0.", options->cube_size_factor);
-  MCOR_NEED(isfinite(options->node_threshold) && options->node_threshold >= 0 &&
-      isfinite(options->vertex_threshold) && options->vertex_threshold >= 0,
-    "The node threshold is %g and the vertex threshold %g; neither may be negative.",
-    options->node_threshold, options->vertex_threshold);
-  MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
-    "The tolerance is %g; it must be above 0.", options->tolerance);
-  MCOR_NEED(options->iteration_limit >= 1 && options->iteration_limit <= 255,
-    "The iteration limit is %d; it must be 1 to 255.", options->iteration_limit);
-  MCOR_NEED(options->memory_limit >= 0,
-    "The memory limit is %lld bytes; it must be above 0, or 0 for no limit.",
-    (long long)options->memory_limit);
-  MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
-    "There are %d iso values.", options->iso_count);
-  for (int i = 0; i < options->iso_count; ++i)
-  {
-    MCOR_NEED(isfinite(options->iso_values[i]), "Iso value %d is not a finite number.", i);
-    MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
-      "The iso value of the free surface is %g; it must be above 0 (0.5 is usual).",
-      options->iso_values[i]);
-  }
-  return MCOR_OK;
-#undef MCOR_NEED
-}
-
-typedef struct mcor_check
-{
-  const mcor_array* array;
-  bool positive;
-  bool illegal[MCOR_SLICES];
-} mcor_check;
-
-/* Whether elements are finite, and above 0 where they must be; written to be vectorised. */
-static void mcor_check_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_check* check = data;
-  const bool positive = check->positive;
-  int illegal = 0;
-  if (check->array->type == MCOR_FLOAT64)
-  {
-    const double *x = check->array->data, least = positive ? 0 : -DBL_MAX;
-    for (int64_t i = first; i < last; ++i)
-    {
-      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > least : x[i] >= least));
-    }
-  }
-  else
-  {
-    const float *x = check->array->data, least = positive ? 0 : -FLT_MAX;
-    for (int64_t i = first; i < last; ++i)
-    {
-      illegal |= !((x[i] <= FLT_MAX) & (positive ? x[i] > least : x[i] >= least));
-    }
-  }
-  check->illegal[slice] = illegal;
-}
-
-static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
-{
-  mcor_check check = { .array = array, .positive = positive };
-  const int slices = mcor_parallel_for(elements, MCOR_MEMORY_GRAIN, mcor_check_slice, &check);
-  bool illegal = false;
-  for (int s = 0; s < slices; ++s)
-  {
-    illegal = illegal || check.illegal[s];
-  }
-  return !illegal;
-}
-
-/* Index of the first particle, solids left out where `solid` is not NULL, of which a component is
- * not finite, or not above 0 where it must be; -1 if there is none. */
-static int64_t mcor_find_illegal(
-  const mcor_array* array, const uint8_t* solid, int64_t count, int component, bool positive)
-{
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const double x = mcor_array_at(array, i, component);
-    if ((!isfinite(x) || (positive && !(x > 0))) && !(solid && solid[i]))
-    {
-      return i;
-    }
-  }
-  return -1;
-}
-
-/* The array has as many components as it must, and every element that is used is finite, and above 0
- * where it must be. solid: NULL, or whose particles' elements are not used. */
-static mcor_status mcor_check_array(mcor_context* context, const mcor_array* array,
-  const uint8_t* solid, const char* role, int64_t count, int components, bool positive)
-{
-  const char* name = mcor_array_name(array, role);
-  const bool same = strcmp(name, role) == 0;
-  MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
-    "The %s array %s has an unknown element type.", role, name);
-  MCOR_RETURN_IF(array->components < 0 || mcor_components(array) != components, context,
-    MCOR_INVALID_ARGUMENT, "The %s array %s has %d components; it must have %d.", role, name,
-    array->components, components);
-  if (array->data && mcor_is_legal(array, count * components, positive))
-  {
-    return MCOR_OK;
-  }
-  for (int c = 0; c < components; ++c)
-  {
-    const int64_t i = mcor_find_illegal(array, solid, array->data ? count : 1, c, positive);
-    if (i < 0)
-    {
-      continue;
-    }
-    const double v = mcor_array_at(array, i, c);
-    const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
-    return array->data
-      ? mcor_fail(context, MCOR_INVALID_DATA,
-          "The %s%s%s of particle %lld is %s. Remove such particles or %s.", role,
-          same ? "" : " array ", same ? "" : name, (long long)i, problem,
-          strcmp(role, "attribute") == 0 ? "do not interpolate this array" : "choose another array")
-      : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
-  }
-  return MCOR_OK;
-}
-
-static mcor_status mcor_check_scalar(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    return MCOR_OK;
-  }
-  const int components = mcor_components(&input->scalar);
-  MCOR_RETURN_IF(!input->scalar.data, context, MCOR_INVALID_ARGUMENT,
-    "There is no scalar to contour. Choose a point array, or the free surface, which needs none.");
-  MCOR_RETURN_IF(components > 1 && !input->scalar_dot.data &&
-      input->scalar_component != MCOR_MAGNITUDE &&
-      (input->scalar_component < 0 || input->scalar_component >= components),
-    context, MCOR_INVALID_ARGUMENT,
-    "Component %d of array %s was asked for, but it has %d. Choose 0 to %d, or the magnitude.",
-    input->scalar_component, mcor_array_name(&input->scalar, "scalar"), components, components - 1);
-  MCOR_RETURN_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components,
-    context, MCOR_INVALID_ARGUMENT,
-    "The dot product needs two arrays with as many components each; %s has %d and %s has %d.",
-    mcor_array_name(&input->scalar, "the first"), components,
-    mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
-  MCOR_TRY(mcor_check_array(
-    context, &input->scalar, input->solid, "scalar", input->count, components, false));
-  return input->scalar_dot.data ? mcor_check_array(context, &input->scalar_dot, input->solid,
-                                    "scalar", input->count, components, false)
-                                : MCOR_OK;
-}
-
-mcor_status mcor_check_input(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  MCOR_TRY(mcor_check_options(context, options));
-  MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
-    MCOR_OUT_OF_CAPACITY, "There are %lld particles; %d is the limit.", (long long)input->count,
-    MCOR_PARTICLE_LIMIT);
-  if (input->count == 0)
-  {
-    return MCOR_OK;
-  }
-  const int64_t n = input->count;
-  MCOR_RETURN_IF(
-    !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  MCOR_TRY(mcor_check_array(context, &positions, NULL, "position", n, 3, false));
-  if (!input->estimate_smoothing_length)
-  {
-    MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
-      MCOR_INVALID_ARGUMENT,
-      "There is no smoothing length. Name its array, give a constant, or ask for an estimate.");
-    MCOR_TRY(
-      mcor_check_array(context, &input->smoothing_length, NULL, "smoothing length", n, 1, true));
-  }
-  if (input->has_volume)
-  {
-    MCOR_TRY(mcor_check_array(context, &input->volume, NULL, "volume", n, 1, true));
-  }
-  else if (input->has_mass)
-  {
-    MCOR_TRY(mcor_check_array(context, &input->mass, NULL, "mass", n, 1, true));
-    if (input->has_density)
-    {
-      MCOR_TRY(mcor_check_array(context, &input->density, NULL, "density", n, 1, true));
-    }
-  }
-  MCOR_TRY(mcor_check_scalar(context, input, options));
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const mcor_array* attribute = input->attributes + a;
-    MCOR_TRY(mcor_check_array(
-      context, attribute, NULL, "attribute", n, mcor_components(attribute), false));
-  }
-  return MCOR_OK;
 }
 
 void mcor_read_smoothing_length(

@@ -33,8 +33,13 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
-/* The largest absolute value of one component; all are finite. */
-double mcor_largest(const mcor_array* array, int64_t count, int component);
+/* The largest absolute value of one component, solids left out where `solid` is not NULL; all are
+ * finite. */
+double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count, int component);
+
+/* mcor_check.c. The first particle, solids left out, of which a component is not finite; -1 if there
+ * is none. */
+int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count);
 
 /* Whether all values of one component are equal. */
 bool mcor_is_constant(const mcor_array* array, int64_t count, int component);

@@ -209,7 +209,7 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
 
-/* mcor_input.c, mcor_measure.c */
+/* mcor_check.c, mcor_measure.c */
 mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(
@@ -253,7 +253,8 @@ mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
   const mcor_buffer* offset, int count, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
-mcor_status mcor_list_attributes(mcor_context* context, const mcor_input* input);
+mcor_status mcor_list_attributes(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface);
 bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
 mcor_status mcor_add_attributes(

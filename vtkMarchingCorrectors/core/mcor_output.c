@@ -136,9 +136,12 @@ static mcor_status mcor_grow_surface(
   }
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    const int components = mcor_components(&input->attributes[a]);
-    MCOR_TRY(mcor_grow(
-      context, (void**)&s->attributes[a], n, points, (size_t)components * sizeof(double)));
+    const size_t components = (size_t)mcor_components(&input->attributes[a]);
+    if (s->attribute_not_finite[a] < 0)
+    {
+      MCOR_TRY(
+        mcor_grow(context, (void**)&s->attributes[a], n, points, components * sizeof(double)));
+    }
   }
   return MCOR_OK;
 }

@@ -91,7 +91,7 @@ static double mcor_size_scale(const mcor_context* context, const mcor_input* inp
   {
     return 1;
   }
-  return 1 / mcor_largest(&input->mass, input->count, 0);
+  return 1 / mcor_largest(&input->mass, NULL, input->count, 0);
 }
 
 static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
@@ -341,7 +341,7 @@ static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t l
       used[n] = (chunk[source[begin + n] - from] - shift) * scale;
     }
     /* Those of solids play no part, whatever they are. */
-    for (int i = 0; i < n && !job->array && input->solid; ++i)
+    for (int i = 0; i < n && input->solid; ++i)
     {
       used[i] = input->solid[source[begin + i]] ? 0 : used[i];
     }

@@ -5,6 +5,7 @@
 #include "mcor.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMarchingCorrectorsInput.h"
@@ -106,6 +107,7 @@ vtkStandardNewMacro(vtkMarchingCorrectors);
 vtkMarchingCorrectors::vtkMarchingCorrectors()
   : Internals(new vtkInternals)
 {
+  this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->ContourValues->SetNumberOfContours(0);
   this->FreeSurfaceValues->SetValue(0, 0.5);
   this->SetInputArrayToProcess(
@@ -153,6 +155,12 @@ std::string vtkMarchingCorrectors::ListDevices()
   const std::string result = text ? text : "";
   std::free(text);
   return result;
+}
+
+//------------------------------------------------------------------------------
+vtkFieldData* vtkMarchingCorrectors::GetRunStatistics()
+{
+  return this->RunStatistics;
 }
 
 //------------------------------------------------------------------------------
@@ -273,6 +281,7 @@ int vtkMarchingCorrectors::RequestData(
   vtkPointSet* particles = vtkPointSet::GetData(inputVector[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   this->ErrorMessage.clear();
+  this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->SetUsedNames({ this, particles });
   if (!particles || !output || particles->GetNumberOfPoints() == 0)
   {
@@ -317,6 +326,7 @@ int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyDat
   {
     vtkMarchingCorrectorsOutput builder(this, input, options, surface);
     builder.BuildFieldData(output->GetFieldData());
+    builder.BuildRunStatistics(this->RunStatistics);
     builder.BuildMesh(output);
   }
   mcor_free_surface(&surface);

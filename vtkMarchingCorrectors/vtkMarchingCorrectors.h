@@ -61,21 +61,22 @@
  * The output point data holds "Normals", the arrays asked for ("Gradients", "WeightSum",
  * "BoundaryEigenvalue", "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). The output field data
- * holds the statistics of the run, one array each: "Device", "Platform", "Seconds" (one component
- * per phase and the total), "FluidParticles", "SolidParticles", "VirtualCells", "LatticeOrigin",
- * "LatticeCells", "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated",
- * "MarchRounds", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels", "Points",
- * "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
- * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
- * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
- * "DeviceBytesPeak", "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the
+ * holds the statistics of the run, one array each: "Device", "Platform", "FluidParticles",
+ * "SolidParticles", "VirtualCells", "LatticeOrigin", "LatticeCells", "CellsUsed", "AmbiguousFaces",
+ * "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "TrianglesBeforeTrimming",
+ * "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected",
+ * "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax",
+ * "TrimVertices", "TrimVerticesLinear", "SmoothingLengthRange", "ScalarRange" (not for the free
+ * surface), and the
  * parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
  * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
  * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "Kernel", "SeedMode",
  * "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
- * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Seconds are in
- * s, lengths (of the correction, too) in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of
- * the scalar; mcor_statistics in mcor.h says more of each.
+ * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
+ * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar;
+ * mcor_statistics in mcor.h says more of each. All of the output is a function of the input and the
+ * properties; what a run cost, which depends on what is kept of the run before, is told by
+ * GetRunStatistics().
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
@@ -115,10 +116,12 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkNew.h"                      // For members
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // For members
 
 #include <memory> // For the device state
 #include <string> // For members
 
+class vtkFieldData;
 class vtkMarchingCorrectorsInput;
 struct mcor_options;
 struct vtkMarchingCorrectorsRequest;
@@ -600,6 +603,15 @@ public:
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
   /**
+   * What the last update cost, one array each: "Seconds" (one component per phase, one for building
+   * the OpenCL program, and the total, by name), "DeviceBytesPeak", "SeedCells" (those examined),
+   * "SeedCellsNotIntersected", "Bricks", "NodesEvaluated" (those kept from earlier updates counted)
+   * and "MarchRounds". Empty where nothing ran. The next update makes another field data and leaves
+   * this one as it is.
+   */
+  vtkFieldData* GetRunStatistics();
+
+  /**
    * The OpenCL devices at hand, one line each: "number: device (platform)". Empty if there is none.
    */
   static std::string ListDevices();
@@ -720,6 +732,7 @@ private:
   int Fail(const std::string& message);
 
   std::string ErrorMessage;
+  vtkSmartPointer<vtkFieldData> RunStatistics;
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
 };

@@ -276,13 +276,14 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildFieldData(vtkFieldData* fieldData) const
 {
-  this->AddSeconds(fieldData);
+  AddText(fieldData, "Device", this->Surface.statistics.device);
+  AddText(fieldData, "Platform", this->Surface.statistics.platform);
   this->AddStatistics(fieldData);
   this->AddParameters(fieldData);
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectorsOutput::AddSeconds(vtkFieldData* fieldData) const
+void vtkMarchingCorrectorsOutput::BuildRunStatistics(vtkFieldData* run) const
 {
   const mcor_statistics& s = this->Surface.statistics;
   auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
@@ -299,9 +300,13 @@ void vtkMarchingCorrectorsOutput::AddSeconds(vtkFieldData* fieldData) const
   seconds->SetComponent(0, MCOR_PHASE_COUNT, s.build_seconds);
   seconds->SetComponentName(MCOR_PHASE_COUNT + 1, "total");
   seconds->SetComponent(0, MCOR_PHASE_COUNT + 1, total);
-  Add(fieldData, "Seconds", seconds);
-  AddText(fieldData, "Device", s.device);
-  AddText(fieldData, "Platform", s.platform);
+  Add(run, "Seconds", seconds);
+  AddCount(run, "SeedCells", { s.seed_cells });
+  AddCount(run, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
+  AddCount(run, "Bricks", { s.bricks });
+  AddCount(run, "NodesEvaluated", { s.nodes_evaluated });
+  AddCount(run, "MarchRounds", { s.march_rounds });
+  AddCount(run, "DeviceBytesPeak", { s.device_bytes_peak });
 }
 
 //------------------------------------------------------------------------------
@@ -321,12 +326,7 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   AddCount(
     fieldData, "LatticeCells", { s.lattice_cells[0], s.lattice_cells[1], s.lattice_cells[2] });
   AddCount(fieldData, "VirtualCells", { s.virtual_cells });
-  AddCount(fieldData, "SeedCells", { s.seed_cells });
-  AddCount(fieldData, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
   AddCount(fieldData, "CellsUsed", { s.cells_used });
-  AddCount(fieldData, "Bricks", { s.bricks });
-  AddCount(fieldData, "NodesEvaluated", { s.nodes_evaluated });
-  AddCount(fieldData, "MarchRounds", { s.march_rounds });
   AddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });
   AddCount(fieldData, "JoinedFaces", { s.joined_faces });
   AddCount(fieldData, "AmbiguousCells", { s.ambiguous_cells });
@@ -345,7 +345,6 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   AddReal(fieldData, "ResidualMax", { s.residual_max });
   AddCount(fieldData, "TrimVertices", { s.trim_vertices });
   AddCount(fieldData, "TrimVerticesLinear", { s.trim_vertices_linear });
-  AddCount(fieldData, "DeviceBytesPeak", { s.device_bytes_peak });
 }
 
 //------------------------------------------------------------------------------

@@ -23,7 +23,10 @@ public:
     const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface);
 
   void BuildMesh(vtkPolyData* output);
+  /** Statistics and parameters: a function of the input and the options alone. */
   void BuildFieldData(vtkFieldData* fieldData) const;
+  /** What the run cost: another one for the same surface may take longer. */
+  void BuildRunStatistics(vtkFieldData* run) const;
 
 private:
   void BuildTriangles(vtkPolyData* output);
@@ -31,7 +34,6 @@ private:
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);
   void AddStatistics(vtkFieldData* fieldData) const;
-  void AddSeconds(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 
   vtkMarchingCorrectors* Filter;

@@ -41,7 +41,7 @@ struct Step
 
 double PhaseSeconds(vtkMarchingCorrectors* filter, const char* phase)
 {
-  vtkDataArray* seconds = filter->GetOutput()->GetFieldData()->GetArray("Seconds");
+  vtkDataArray* seconds = filter->GetRunStatistics()->GetArray("Seconds");
   for (int i = 0; i < seconds->GetNumberOfComponents(); ++i)
   {
     if (std::strcmp(seconds->GetComponentName(i), phase) == 0)

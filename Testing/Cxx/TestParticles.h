@@ -13,12 +13,14 @@
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -205,6 +207,25 @@ inline bool SameSurface(vtkPolyData* a, vtkPolyData* b)
   {
     vtkDataArray* array = a->GetPointData()->GetArray(i);
     same = !array || SameValues(array, b->GetPointData()->GetArray(array->GetName()));
+  }
+  return same;
+}
+
+/** Bitwise, and of the same names in the same order; says what differs. */
+inline bool SameFieldData(vtkFieldData* a, vtkFieldData* b)
+{
+  bool same = a->GetNumberOfArrays() == b->GetNumberOfArrays();
+  for (int i = 0; same && i < a->GetNumberOfArrays(); ++i)
+  {
+    auto* text = vtkStringArray::SafeDownCast(a->GetAbstractArray(i));
+    auto* otherText = vtkStringArray::SafeDownCast(b->GetAbstractArray(i));
+    same = !std::strcmp(a->GetAbstractArray(i)->GetName(), b->GetAbstractArray(i)->GetName()) &&
+      SameValues(a->GetArray(i), b->GetArray(i)) && !text == !otherText &&
+      (!text || text->GetValue(0) == otherText->GetValue(0));
+    if (!same)
+    {
+      std::cerr << "field data differs: " << a->GetAbstractArray(i)->GetName() << std::endl;
+    }
   }
   return same;
 }

@@ -1,7 +1,6 @@
-# Sourced by Examples/quickstart.sh and Testing/run-tests.sh: the Debian packages they need.
+# Sourced by Examples/quickstart.sh and Testing/run-tests.sh: the Debian packages they need. Bash only.
 # Nothing is installed, and no network is used, where all of them are there already.
-
-mcor_die() { echo "$(basename "$0"): $*" >&2; exit 1; }
+. .ci/steps.sh
 
 mcor_is_installed() { # PACKAGE
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
@@ -56,29 +55,49 @@ mcor_sdk_packages() { # vtk | paraview
   fi
 }
 
+# What apt says of the sizes; its version 3 (Debian 13) has other words.
+mcor_sizes() { # PACKAGE...
+  LC_ALL=C apt-get install --assume-no --no-install-recommends "$@" 2>/dev/null |
+    sed -n -E 's/^ *(Need to get.*|After this operation.*|Download size.*|Space needed.*)$/  \1/p'
+}
+
+# Runs as root.
+mcor_apt_install() { # PACKAGE...
+  export DEBIAN_FRONTEND=noninteractive
+  mcor_step "Reading the lists of packages" apt-get update -q || return
+  mcor_sizes "$@"
+  mcor_step "Downloading packages" \
+    apt-get install -q -y --no-install-recommends --download-only "$@" || return
+  mcor_step must-finish "Unpacking packages" \
+    apt-get install -q -y --no-install-recommends "$@"
+}
+
+# Runs a function of this file as root.
+mcor_as_root() { # FUNCTION ARGUMENTS...
+  local sudo=()
+  if [ "$(id -u)" -ne 0 ]; then sudo=(sudo); fi
+  "${sudo[@]}" bash -c '. .ci/packages.sh && "$@"' "$(basename "$0")" "$@"
+}
+
 mcor_install() { # PACKAGE...
-  local package missing=() sudo=()
+  local package missing=() status=0
   command -v dpkg-query >/dev/null ||
     mcor_die "this is not a Debian system; CONTRIBUTING.md lists what to install by hand"
   for package in "$@"; do
     mcor_is_installed "$package" || missing+=("$package")
   done
   [ ${#missing[@]} -gt 0 ] || return 0
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null ||
-      mcor_die "needs root or sudo to install: ${missing[*]}"
-    sudo=(sudo)
-  fi
-  echo "Installing ${#missing[@]} packages: ${missing[*]}"
-  # apt's hundreds of lines are shown only if it fails.
-  local log
-  log=$(mktemp)
-  if ! { "${sudo[@]}" apt-get update -q &&
-    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
-      apt-get install -q -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null; then
-    tail -n 30 "$log" >&2
-    rm -f "$log"
-    mcor_die "the packages could not be installed (apt's last lines are above)"
-  fi
-  rm -f "$log"
+  [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null ||
+    mcor_die "needs root or sudo to install: ${missing[*]}"
+  echo "Installing ${#missing[@]} packages and what they need: ${missing[*]}"
+  mcor_as_root mcor_apt_install "${missing[@]}" || status=$?
+  [ "$status" -ne 130 ] || exit 130
+  [ "$status" -eq 0 ] || mcor_die "the packages could not be installed"
+}
+
+# Debian 13's ParaView SDK lacks files that its CMake files name.
+mcor_mend_sdk() { # vtk | paraview
+  [ "$1" = paraview ] && .ci/mend-paraview-sdk --needed || return 0
+  echo "Debian's ParaView SDK is packaged with files missing: making links in their place (.ci/mend-paraview-sdk)"
+  mcor_as_root .ci/mend-paraview-sdk
 }

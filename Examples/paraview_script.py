@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView, Python: an isosurface of the speed of a dam break inside its free surface, as a picture.
 
-pvpython paraview_script.py PLUGIN PICTURE.png      (without a display: xvfb-run -a pvpython ...)
+pvpython paraview_script.py PLUGIN PICTURE.png      (without a display: Testing/with-display.sh pvpython ...)
 
 PLUGIN is MarchingCorrectors.so, in the build tree or where it was installed.
 """

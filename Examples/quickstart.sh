@@ -13,7 +13,7 @@ sdk=
 while [ $# -gt 0 ]; do
   case "$1" in
     --sdk) sdk=${2:-}; shift $(($# > 1 ? 2 : 1)); [ -n "$sdk" ] || mcor_die "--sdk is vtk or paraview" ;;
-    --help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) mcor_help; exit 0 ;;
     *) mcor_die "unknown option $1 (see --help)" ;;
   esac
 done
@@ -21,14 +21,8 @@ done
 sdk=$(mcor_choose_sdk "$sdk")
 # shellcheck disable=SC2046  # the functions print lists of words
 mcor_install $(mcor_common_packages) $(mcor_sdk_packages "$sdk")
-
-# A build tree that is there already keeps its generator.
-export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
-# Debian's VTK and ParaView belong to Debian's python3, whatever other python3 is on the PATH.
-cmake -Wno-dev -S . -B build -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=OFF \
-  -DMCOR_BUILD_EXAMPLES=ON -DPython3_EXECUTABLE=/usr/bin/python3 --log-level=WARNING
-echo "Building for ${sdk}"
-cmake --build build -- --quiet
+mcor_mend_sdk "$sdk"
+mcor_build build "$sdk" -DMCOR_BUILD_TESTING=OFF
 
 out=build/quickstart
 mkdir -p "$out"

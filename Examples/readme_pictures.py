@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the pictures of README.md.
 
-readme_pictures.py DIRECTORY      (without a display: xvfb-run -a python3 readme_pictures.py ...)
+readme_pictures.py DIRECTORY      (without a display: Testing/with-display.sh python3 readme_pictures.py ...)
 
 PYTHONPATH must name the directory of the package marchingcorrectors.
 """

@@ -1,37 +1,76 @@
 #!/usr/bin/env bash
 # Installs what is needed (Debian 12 or 13; root, or a user with sudo), builds with warnings as
-# errors, and runs every test.
+# errors, and runs the tests.
 #
-#   ./Testing/run-tests.sh [--sdk vtk|paraview] [--build-dir DIR] [CTEST ARGUMENTS...]
+#   ./Testing/run-tests.sh [--sdk vtk|paraview] [--build-dir DIR] [-L | -LE | -R | -E PATTERN]...
+#                          [-- CTEST ARGUMENTS...]
 #
-# --sdk chooses on a machine that has neither; plain VTK is the default. DIR: build-tests. Without
-# ctest arguments, tests labelled slow are left out; "-L slow" runs those.
+# --sdk chooses on a machine that has neither; plain VTK is the default. DIR: build-tests. The
+# patterns choose tests as ctest's do, by label (-L, -LE) or name (-R, -E); any other argument of
+# ctest goes behind --. Without any of them, tests labelled slow are left out; "-L slow" runs those.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 . .ci/packages.sh
 
 sdk=
 build="build-tests"
+tests=()
 while [ $# -gt 0 ]; do
   case "$1" in
     --sdk) sdk=${2:-}; shift $(($# > 1 ? 2 : 1)); [ -n "$sdk" ] || mcor_die "--sdk is vtk or paraview" ;;
     --build-dir) build=${2:-}; shift $(($# > 1 ? 2 : 1)); [ -n "$build" ] || mcor_die "--build-dir needs a name" ;;
-    --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) break ;;
+    -h | --help) mcor_help; exit 0 ;;
+    -L | -LE | -R | -E) [ $# -ge 2 ] || mcor_die "$1 needs a pattern"; tests+=("$1" "$2"); shift 2 ;;
+    --) shift; tests+=("$@"); break ;;
+    *) mcor_die "unknown option $1 (see --help)" ;;
   esac
 done
+[ ${#tests[@]} -gt 0 ] || tests=(-LE slow)
 
 sdk=$(mcor_choose_sdk "$sdk")
 # shellcheck disable=SC2046  # the functions print lists of words
 mcor_install $(mcor_common_packages) $(mcor_test_packages) $(mcor_sdk_packages "$sdk")
+mcor_mend_sdk "$sdk"
+mcor_build "$build" "$sdk" -DMCOR_BUILD_TESTING=ON -DMCOR_WERROR=ON
 
-# A build tree that is there already keeps its generator.
-export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
-# Debian's VTK and ParaView belong to Debian's python3, whatever other python3 is on the PATH.
-cmake -Wno-dev -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_TESTING=ON \
-  -DMCOR_BUILD_EXAMPLES=ON -DMCOR_WERROR=ON -DPython3_EXECUTABLE=/usr/bin/python3 --log-level=WARNING
-cmake --build "$build"
-[ $# -gt 0 ] || set -- -LE slow
+test_names() { ctest --test-dir "$build" -N "$@" | sed -n 's/^ *Test *#[0-9]*: //p' | sort; }
+
+# What this run does not try: tests that the arguments leave out, and those that lack a program here.
+say_what_is_left_out() {
+  local left_out
+  mapfile -t left_out < <(comm -23 <(test_names) <(test_names "${tests[@]}"))
+  if [ ${#left_out[@]} -gt 12 ]; then left_out=("${#left_out[@]} tests"); fi
+  [ ${#left_out[@]} -eq 0 ] || echo "Left out by ${tests[*]}: ${left_out[*]}"
+  sed 's/^/Not possible here: /' "$build/Testing/tests_not_here.txt"
+}
+
+# Prints ctest's lines as they come and, while none comes, every minute which tests are running.
+show_progress() {
+  local line= part= status name
+  declare -A since=()
+  while :; do
+    status=0
+    IFS= read -r -t 60 part || status=$?
+    line+=$part
+    if [ "$status" -gt 128 ]; then
+      for name in "${!since[@]}"; do
+        echo "      ... $name is running, $((SECONDS - since[$name])) s so far"
+      done
+      continue
+    fi
+    [ "$status" -eq 0 ] || break
+    printf '%s\n' "$line"
+    if [[ $line =~ ^\ *Start\ +[0-9]+:\ (.*)$ ]]; then
+      since[${BASH_REMATCH[1]}]=$SECONDS
+    elif [[ $line =~ Test\ +#[0-9]+:\ ([^ ]+) ]]; then
+      unset "since[${BASH_REMATCH[1]}]"
+    fi
+    line=
+  done
+  printf '%s' "$line"
+}
+
+say_what_is_left_out
 # A virtual display even where there is a real one: pictures then do not depend on its driver.
 env -u DISPLAY Testing/with-display.sh \
-  ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@"
+  ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "${tests[@]}" | show_progress

@@ -1,6 +1,6 @@
 # Finds plain VTK, or ParaView and the VTK inside it. Sets MCOR_VTK_PACKAGE (VTK or ParaView) and
 # MCOR_WRAP_PYTHON, and offers MCOR_BUILD_PLUGIN: on where there is a ParaView, unless it was turned
-# off. On Debian only one of both SDKs can be installed.
+# off. On Debian only one of both SDKs can be installed; a build folder serves the one it was made for.
 #
 # Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
 set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc)
@@ -9,6 +9,21 @@ set(mcor_vtk_optional WrappingPythonCore Python FiltersSources IOXML IOLegacy IO
 
 # VTK 9.3 passes empty arguments on, which CMake 3.31 warns of unless told what to do.
 set(CMAKE_POLICY_DEFAULT_CMP0174 NEW)
+
+set(mcor_hint "")
+if (DEFINED MCOR_SDK)
+  string(CONCAT mcor_hint " This build folder was made for ${MCOR_SDK}. If that is no longer the one to "
+    "use, take another folder, or start this one anew with cmake --fresh and the same options.")
+endif ()
+# Debian 13's ParaView names files that are not there; its own message comes from deep inside.
+if (NOT MCOR_BUILD_PLUGIN STREQUAL "OFF" AND UNIX)
+  execute_process(COMMAND "${PROJECT_SOURCE_DIR}/.ci/mend-paraview-sdk" --needed
+    RESULT_VARIABLE mcor_mended OUTPUT_QUIET ERROR_QUIET)
+  if (mcor_mended EQUAL 0)
+    message(WARNING "Debian's ParaView SDK is packaged with files missing. If CMake stops with an error "
+      "in ParaView's files, run this as root: ${PROJECT_SOURCE_DIR}/.ci/mend-paraview-sdk")
+  endif ()
+endif ()
 
 macro(mcor_find_paraview)
   find_package(ParaView QUIET)
@@ -28,7 +43,7 @@ if (MCOR_BUILD_PLUGIN OR NOT DEFINED MCOR_BUILD_PLUGIN)
   mcor_find_paraview()
   if (MCOR_BUILD_PLUGIN AND NOT MCOR_VTK_PACKAGE)
     message(FATAL_ERROR "The plugin (MCOR_BUILD_PLUGIN) needs ParaView >= 5.11, which was not found. "
-      "Set ParaView_DIR, or turn MCOR_BUILD_PLUGIN off.")
+      "Set ParaView_DIR, or turn MCOR_BUILD_PLUGIN off.${mcor_hint}")
   endif ()
 endif ()
 if (NOT MCOR_VTK_PACKAGE)
@@ -42,8 +57,15 @@ if (NOT MCOR_VTK_PACKAGE)
 endif ()
 if (NOT MCOR_VTK_PACKAGE)
   message(FATAL_ERROR "Neither VTK >= 9.1 nor ParaView >= 5.11 was found (Debian: libvtk9-dev, or "
-    "paraview-dev). Set VTK_DIR or ParaView_DIR, or build the core alone with -DMCOR_BUILD_VTK=OFF.")
+    "paraview-dev). Set VTK_DIR or ParaView_DIR, or build the core alone with -DMCOR_BUILD_VTK=OFF."
+    "${mcor_hint}")
 endif ()
+string(REGEX REPLACE "^([0-9]+[.][0-9]+).*" "\\1" mcor_sdk "${${MCOR_VTK_PACKAGE}_VERSION}")
+set(mcor_sdk "${MCOR_VTK_PACKAGE} ${mcor_sdk}")
+if (DEFINED MCOR_SDK AND NOT MCOR_SDK STREQUAL mcor_sdk)
+  message(FATAL_ERROR "${mcor_sdk} was found.${mcor_hint}")
+endif ()
+set(MCOR_SDK "${mcor_sdk}" CACHE INTERNAL "What this build folder is made for")
 # Only now: a run that failed must not decide for the next one.
 option(MCOR_BUILD_PLUGIN "Build the ParaView plugin" "${ParaView_FOUND}")
 message(STATUS "Building for ${MCOR_VTK_PACKAGE} ${${MCOR_VTK_PACKAGE}_VERSION}")

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the snippets of a section of README.md as they stand there.
+
+test_readme.py SOURCE BUILD SCRATCH SECTION
+
+SCRATCH becomes what README.md calls "this folder": it shows the source tree's files and, as "build",
+the build tree. Fenced blocks with a file name behind the language are written to that file; then the
+blocks of language sh are run. They must succeed, leave every .vtp and .png that the section names, and
+print every "N triangles" that stands in a comment.
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+FENCE = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+COMMENT = re.compile(r"(?:#|//|/\*) *([0-9][0-9,]*) triangles")
+
+
+def section_of(readme, title):
+    match = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", readme, re.MULTILINE | re.DOTALL)
+    if not match:
+        sys.exit(f"README.md has no section '{title}'")
+    return FENCE.findall(match[1])
+
+
+def make_scratch(source, build, scratch):
+    shutil.rmtree(scratch, ignore_errors=True)
+    os.makedirs(scratch)
+    for name in ("Examples", "Testing", "vtkMarchingCorrectors"):
+        os.symlink(os.path.join(source, name), os.path.join(scratch, name))
+    os.symlink(build, os.path.join(scratch, "build"))
+
+
+def write_files(blocks, scratch):
+    for _, name, text in blocks:
+        if name:
+            path = os.path.join(scratch, name)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+
+
+def run(blocks, scratch):
+    """The shell blocks in their order; returns what they print."""
+    commands = "".join(text for language, name, text in blocks if language == "sh" and not name)
+    if not commands:
+        sys.exit("the section has no shell commands")
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "PYTHONPATH")}
+    result = subprocess.run(["bash", "-euxo", "pipefail", "-c", commands], cwd=scratch, env=environment,
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True, check=False)
+    print(result.stdout)
+    if result.returncode:
+        sys.exit(f"exit status {result.returncode}")
+    return result.stdout
+
+
+def faults(blocks, scratch, output):
+    text = "".join(text for _, _, text in blocks)
+    for count in COMMENT.findall(text):
+        if not re.search(rf"\b{count.replace(',', '')} triangles", output):
+            yield f"README.md says {count} triangles"
+    for name in sorted(set(re.findall(r"[\w/]+\.(?:vtp|png)\b", text))):
+        path = os.path.join(scratch, name)
+        if not (os.path.isfile(path) and os.path.getsize(path)):
+            yield f"{name} is not there"
+
+
+def main(source, build, scratch, title):
+    with open(os.path.join(source, "README.md"), encoding="utf-8") as file:
+        blocks = section_of(file.read(), title)
+    make_scratch(source, build, scratch)
+    write_files(blocks, scratch)
+    found = list(faults(blocks, scratch, run(blocks, scratch)))
+    sys.exit("\n".join(found) if found else 0)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 5:
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

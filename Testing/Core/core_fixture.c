@@ -242,7 +242,15 @@ uint64_t core_hash(const mcor_surface* s)
   hash = core_hash_bytes(hash, s->boundary_eigenvalue, n * sizeof(float));
   hash = core_hash_bytes(hash, s->correction_length, n * sizeof(float));
   hash = core_hash_bytes(hash, s->residual, n * sizeof(float));
-  return core_hash_bytes(hash, s->boundary_flag, n);
+  hash = core_hash_bytes(hash, s->boundary_flag, n);
+  hash = core_hash_bytes(hash, s->iso_value, n * sizeof(double));
+  hash = core_hash_bytes(hash, s->nearest_particle, n * sizeof(int64_t));
+  hash = core_hash_bytes(hash, &s->attribute_count, sizeof s->attribute_count);
+  for (int a = 0; a < s->attribute_count; ++a)
+  {
+    hash = core_hash_bytes(hash, s->attributes[a], n * sizeof(double)); /* at least */
+  }
+  return hash;
 }
 
 void core_build(

@@ -42,41 +42,6 @@ static uint64_t fresh_hash(const mcor_input* input, const mcor_options* options)
   return hash;
 }
 
-/* Reuse with every change that invalidates part of what is kept. */
-static void test_reuse_changes_nothing(void** state)
-{
-  core_set set = core_make_block(9, 0.3, 3, core_ball);
-  core_set other = core_make_block(9, 0.2, 4, core_slope);
-  double iso = 0;
-  mcor_input input = core_input(&set);
-  input.particles_version = input.scalar_version = 7;
-  mcor_options options = core_options(&iso);
-  ask_for_all(&options);
-  for (int step = 0; step < 14; ++step)
-  {
-    iso = step == 1 || step == 12 ? 2.5 : step == 13 ? -10 : 0;
-    options.seeds = step == 2 || step == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
-    options.cube_size_factor = step == 4 ? 0.8 : 0.5;
-    options.h_scale = step == 5 ? 0.8 : 1;
-    options.field = step == 6 ? MCOR_SUM : MCOR_SHEPARD;
-    options.preview = step == 7;
-    input.scalar = core_array(step == 8 ? other.scalar : set.scalar, 1);
-    input.scalar_version = step == 8 ? 8 : 7;
-    input.smoothing_length =
-      step == 9 ? (mcor_array){ .constant = 1.4 } : core_array(set.smoothing_length, 1);
-    input.has_volume = step != 10;
-    options.node_threshold = step == 11 ? 0.9 : 0.1;
-    options.boundary_detection = step == 13 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
-    const uint64_t expected = fresh_hash(&input, &options);
-    for (int again = 0; again < 2; ++again)
-    {
-      CORE_CHECK(hash_of(*state, &input, &options) == expected, "step %d, call %d", step, again);
-    }
-  }
-  core_free_set(&set);
-  core_free_set(&other);
-}
-
 /* Supports of many cubes, with which positions of particles are rounded: values of nodes do not
  * depend on the iso value for which they were first needed. */
 static void test_far_reach(void** state)
@@ -417,10 +382,10 @@ static void test_statistics(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_reuse_changes_nothing),
-    cmocka_unit_test(test_far_reach), cmocka_unit_test(test_several_iso_values),
-    cmocka_unit_test(test_order_of_input), cmocka_unit_test(test_cancel_in_every_phase),
-    cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_devices),
-    cmocka_unit_test(test_names), cmocka_unit_test(test_statistics) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_reach),
+    cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
+    cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_memory_limit),
+    cmocka_unit_test(test_devices), cmocka_unit_test(test_names),
+    cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

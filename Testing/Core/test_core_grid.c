@@ -192,14 +192,20 @@ static void test_query(void** state)
   }
 }
 
-/* Volumes by the naive double sum. mass: NULL for 1 each. */
-static void naive_volumes(core_set* set, mcor_sph_kernel kernel, const double* mass)
+/* Volumes by the naive double sum. mass: NULL for 1 each. Solids take part unless they are left
+ * out. */
+static void naive_volumes(
+  core_set* set, mcor_sph_kernel kernel, const double* mass, int leave_out_solids)
 {
   for (int64_t j = 0; j < set->count; ++j)
   {
     double sum = 0;
     for (int64_t k = 0; k < set->count; ++k)
     {
+      if (leave_out_solids && set->solid[k])
+      {
+        continue;
+      }
       double d[3];
       for (int a = 0; a < 3; ++a)
       {
@@ -262,10 +268,10 @@ static void check_volumes(mcor_context* context, double h_scale, double ratio)
   }
   check_weights(context, &set, &input, &options, "mass / density");
   input.has_density = 0;
-  naive_volumes(&set, MCOR_CUBIC_SPLINE, mass);
+  naive_volumes(&set, MCOR_CUBIC_SPLINE, mass, 0);
   check_weights(context, &set, &input, &options, "mass alone");
   input.has_mass = 0;
-  naive_volumes(&set, MCOR_CUBIC_SPLINE, NULL);
+  naive_volumes(&set, MCOR_CUBIC_SPLINE, NULL, 0);
   check_weights(context, &set, &input, &options, "neither");
   core_free_set(&set);
   free(mass);
@@ -278,6 +284,84 @@ static void test_volumes(void** state)
   check_volumes(*state, 1, 20);
   check_volumes(*state, 0.5, 4);
   check_volumes(*state, 1.5, 4);
+}
+
+/* Computed volumes next to solids, and of solids, which have volumes of their own in the trimming
+ * weight; or which are left out. The field tells the fluid's volumes, the weight all of them. */
+static void check_volumes_of_solids(mcor_context* context, int with_mass, int ignored)
+{
+  core_set set = core_make_block(8, 0.3, 4, core_slope);
+  double* mass = core_copy(set.volume, (size_t)set.count * sizeof(double));
+  const double iso = 0;
+  set.has_solids = 1;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.solid[i] = i % 3 == 0;
+    mass[i] = 1 + 0.01 * (double)(i % 50);
+  }
+  mcor_input input = core_input(&set);
+  input.has_volume = 0;
+  input.has_mass = with_mass;
+  input.mass = core_array(mass, 1);
+  input.ignore_solids = ignored;
+  mcor_options options = core_options(&iso);
+  options.weight_sum = 1;
+  naive_volumes(&set, MCOR_CUBIC_SPLINE, with_mass ? mass : NULL, ignored);
+  oracle_particles particles = core_oracle(&set);
+  particles.ignore_solids = ignored;
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  options.boundary_flag = 1;
+  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    oracle_sample sample;
+    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
+    CORE_CHECK(fabs((double)surface.weight_sum[i] - sample.trim_weight) < 1e-5,
+      "mass %d, ignored %d: weight %.9g, not %.9g", with_mass, ignored,
+      (double)surface.weight_sum[i], sample.trim_weight);
+    CORE_CHECK(surface.boundary_flag[i] == 2 || fabs(sample.value) < 1e-4,
+      "mass %d, ignored %d: value %g", with_mass, ignored, sample.value);
+  }
+  oracle_free_field(&field);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+  free(mass);
+}
+
+static void test_volumes_of_solids(void** state)
+{
+  for (int kind = 0; kind < 4; ++kind)
+  {
+    check_volumes_of_solids(*state, kind & 1, kind >> 1);
+  }
+}
+
+/* 1.3 times the spacing of a lattice, most of whose particles are far from its faces. */
+static void test_estimate(void** state)
+{
+  const double spacings[] = { 1, 1e-3, 250 };
+  for (int s = 0; s < 3; ++s)
+  {
+    core_set set = core_make_block(30, 0, 1, core_ball);
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      set.position[i] *= spacings[s];
+    }
+    const double iso = 9;
+    mcor_input input = core_input(&set);
+    input.has_volume = 0;
+    input.estimate_smoothing_length = 1;
+    const mcor_options options = core_options(&iso);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    const double h = surface.statistics.smoothing_length_min / spacings[s];
+    CORE_CHECK(
+      fabs(h / 1.3 - 1) < 0.02 && surface.statistics.smoothing_length_max / spacings[s] == h,
+      "estimated smoothing length %g spacings", h);
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
 }
 
 /* A smoothing length given as support radius, and one given as a constant. */
@@ -310,6 +394,7 @@ static void test_smoothing_lengths(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_query), cmocka_unit_test(test_volumes),
+    cmocka_unit_test(test_volumes_of_solids), cmocka_unit_test(test_estimate),
     cmocka_unit_test(test_smoothing_lengths) };
   return cmocka_run_group_tests_name("grid", tests, core_set_up, core_tear_down);
 }

@@ -265,11 +265,172 @@ static void test_orientation(void** state)
   core_free_set(&set);
 }
 
+/* ---- Node by node: a particle on a node reaches no other one, so that the value there is its own,
+ * and a node without a particle has no weight. Cells then are valid, or not, in any pattern. ---- */
+
+#define NODES 8
+
+typedef struct node_pattern
+{
+  int sign[NODES * NODES * NODES]; /* x fastest; 0: no particle */
+  int64_t points, triangles;       /* of its surface */
+  int64_t pinched[3][2];           /* edges by axis, and by which two of the cells are valid */
+} node_pattern;
+
+static int pattern_at(const node_pattern* p, const int at[3])
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    if (at[a] < 0 || at[a] >= NODES)
+    {
+      return 0;
+    }
+  }
+  return p->sign[(at[2] * NODES + at[1]) * NODES + at[0]];
+}
+
+/* The Marching Cubes case of a cell; -1 if it is not valid. */
+static int pattern_case(const node_pattern* p, const int cell[3])
+{
+  int result = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    const int node[3] = { cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2) };
+    const int sign = pattern_at(p, node);
+    if (sign == 0)
+    {
+      return -1;
+    }
+    result |= (sign > 0) << c;
+  }
+  return result;
+}
+
+/* Counts the vertices on the edge from a node: 0, 1, or 2 where only two cells around it are valid
+ * and touch in nothing else. */
+static void count_edge(node_pattern* p, const int node[3], int axis)
+{
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  int end[3] = { node[0], node[1], node[2] };
+  ++end[axis];
+  if (pattern_at(p, node) * pattern_at(p, end) >= 0)
+  {
+    return;
+  }
+  int valid[4], count = 0;
+  for (int c = 0; c < 4; ++c)
+  {
+    int cell[3] = { node[0], node[1], node[2] };
+    cell[u] -= c & 1;
+    cell[v] -= c >> 1;
+    valid[c] = pattern_case(p, cell) >= 0;
+    count += valid[c];
+  }
+  const int pinched = count == 2 && valid[0] == valid[3];
+  p->points += (count > 0) + pinched;
+  p->pinched[axis][valid[0]] += pinched;
+}
+
+static void make_pattern(node_pattern* p, uint64_t seed)
+{
+  uint8_t table[256][16];
+  mcor_make_case_table(table);
+  *p = (node_pattern){ 0 };
+  for (int n = 0; n < NODES * NODES * NODES; ++n)
+  {
+    p->sign[n] = random_unit(&seed) < 0.12 ? 0 : random_bits(&seed) % 2 ? 1 : -1;
+  }
+  for (int n = 0; n < NODES * NODES * NODES; ++n)
+  {
+    const int at[3] = { n % NODES, n / NODES % NODES, n / NODES / NODES };
+    const int cube_case = pattern_case(p, at);
+    p->triangles += cube_case >= 0 ? table[cube_case][15] : 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      count_edge(p, at, axis);
+    }
+  }
+}
+
+static core_set pattern_particles(const node_pattern* p)
+{
+  core_set set = core_make_set(NODES * NODES * NODES);
+  set.count = 0;
+  for (int n = 0; n < NODES * NODES * NODES; ++n)
+  {
+    const int at[3] = { n % NODES, n / NODES % NODES, n / NODES / NODES };
+    const int64_t i = set.count;
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = at[a] - 3; /* across the borders of bricks and of blocks */
+    }
+    set.smoothing_length[i] = 0.45;
+    set.volume[i] = 1;
+    set.scalar[i] = pattern_at(p, at) * (1 + 0.001 * n);
+    set.count += set.scalar[i] != 0;
+  }
+  return set;
+}
+
+static void check_pattern(
+  mcor_context* context, const node_pattern* p, const core_set* set, mcor_topology topology)
+{
+  const double iso = 0;
+  const mcor_input input = core_input(set);
+  mcor_options options = core_options(&iso);
+  options.cube_size = 1;
+  options.vertex_threshold = 0;
+  options.topology = topology;
+  mcor_surface surface = core_extract(context, &input, &options);
+  int64_t pinched = 0;
+  for (int k = 0; k < 6; ++k)
+  {
+    pinched += p->pinched[k / 2][k % 2];
+  }
+  assert_int_equal(surface.point_count, p->points);
+  CORE_CHECK(topology == MCOR_TOPOLOGY_FIELD || surface.triangle_count == p->triangles,
+    "%lld triangles, not %lld", (long long)surface.triangle_count, (long long)p->triangles);
+  mesh_report report;
+  assert_true(mesh_check(
+    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report));
+  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
+  {
+    /* The two vertices of a pinched edge lie in one place. */
+    CORE_CHECK(report.faults[fault] == (fault == MESH_COINCIDENT_POINT ? pinched : 0),
+      "topology %d, %lld of: %s; %s", (int)topology, (long long)report.faults[fault],
+      mesh_fault_name(fault), report.first[fault]);
+  }
+  mesh_free_report(&report);
+  mcor_free_surface(&surface);
+}
+
+static void test_node_by_node(void** state)
+{
+  int64_t pinched[6] = { 0 };
+  for (uint64_t seed = 1; seed <= 4; ++seed)
+  {
+    node_pattern p;
+    make_pattern(&p, seed);
+    core_set set = pattern_particles(&p);
+    check_pattern(*state, &p, &set, MCOR_TOPOLOGY_TABLE);
+    check_pattern(*state, &p, &set, MCOR_TOPOLOGY_FIELD);
+    core_free_set(&set);
+    for (int k = 0; k < 6; ++k)
+    {
+      pinched[k] += p.pinched[k / 2][k % 2];
+    }
+  }
+  for (int k = 0; k < 6; ++k)
+  {
+    CORE_CHECK(pinched[k] > 0, "no pinched edge along axis %d with diagonal %d", k / 2, k % 2);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks), cmocka_unit_test(test_sphere),
     cmocka_unit_test(test_torus_and_two_balls), cmocka_unit_test(test_free_surface_is_closed),
     cmocka_unit_test(test_nodes_at_iso), cmocka_unit_test(test_outlier),
-    cmocka_unit_test(test_orientation) };
+    cmocka_unit_test(test_orientation), cmocka_unit_test(test_node_by_node) };
   return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
 }

@@ -73,7 +73,43 @@ static void test_normals(void** state)
   check_normals(*state, MCOR_WENDLAND_C2, MCOR_SHEPARD, MCOR_FLOAT64);
 }
 
-/* Normals by triangles: unit length, on the side of the gradient's. */
+/* Normals by triangles: the sum of the cross products around each point, made unit length. */
+static void check_triangle_normals(const mcor_surface* surface)
+{
+  double* sums = calloc((size_t)surface->point_count, 3 * sizeof(double));
+  assert_non_null(sums);
+  for (int64_t t = 0; t < 3 * surface->triangle_count; t += 3)
+  {
+    const double* x[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = surface->points + 3 * surface->triangles[t + c];
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const int u = (a + 1) % 3, v = (a + 2) % 3;
+      const double cross =
+        (x[1][u] - x[0][u]) * (x[2][v] - x[0][v]) - (x[1][v] - x[0][v]) * (x[2][u] - x[0][u]);
+      for (int c = 0; c < 3; ++c)
+      {
+        sums[3 * surface->triangles[t + c] + a] += cross;
+      }
+    }
+  }
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const double wanted = sums[3 * i + a] / length_of(sums + 3 * i);
+      CORE_CHECK(fabs((double)surface->normals[3 * i + a] - wanted) < 1e-6,
+        "normal of point %lld: %.9g along axis %d, not %.9g", (long long)i,
+        (double)surface->normals[3 * i + a], a, wanted);
+    }
+  }
+  free(sums);
+}
+
+/* The same; and they look outwards. */
 static void test_triangle_normals(void** state)
 {
   core_set set = core_make_block(10, 0.1, 3, core_ball);
@@ -85,6 +121,8 @@ static void test_triangle_normals(void** state)
     options.preview = kind == 0;
     options.triangle_normals = kind == 1;
     mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
+    check_triangle_normals(&surface);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
       double n[3], outwards = 0;

@@ -229,10 +229,20 @@ static void test_shared_cuts(void** state)
   }
 }
 
-/* A slab of fluid whose isosurface meets its free surface: flags, weights and values there. */
-static void check_boundary(mcor_context* context, mcor_type precision, int preview)
+/* A block of fluid whose isosurface meets its free surface: flags, weights and values there. With
+ * solids its outermost layer is of them, so that most of the weight there is theirs. */
+static void check_boundary(mcor_context* context, mcor_type precision, int preview, int solids)
 {
   core_set set = core_make_block(10, 0.2, 3, core_slope);
+  set.has_solids = solids;
+  for (int i = 0; i < 1000; ++i)
+  {
+    const int at[3] = { i % 10, i / 10 % 10, i / 100 };
+    for (int a = 0; a < 3; ++a)
+    {
+      set.solid[i] = set.solid[i] || at[a] % 9 == 0;
+    }
+  }
   const double iso = 0;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -240,7 +250,9 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
   options.precision = precision;
   options.preview = preview;
   mcor_surface surface = core_extract(context, &input, &options);
-  const oracle_particles particles = core_oracle(&set);
+  oracle_particles particles = core_oracle(&set);
+  uint8_t none[1000] = { 0 };
+  particles.solid = solids ? set.solid : none;
   oracle_field field;
   assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
   const double range = oracle_scalar_range(&particles);
@@ -275,9 +287,16 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
 
 static void test_boundary(void** state)
 {
-  check_boundary(*state, MCOR_FLOAT32, 0);
-  check_boundary(*state, MCOR_FLOAT64, 0);
-  check_boundary(*state, MCOR_FLOAT32, 1);
+  check_boundary(*state, MCOR_FLOAT32, 0, 0);
+  check_boundary(*state, MCOR_FLOAT64, 0, 0);
+  check_boundary(*state, MCOR_FLOAT32, 1, 0);
+}
+
+/* Without the solids' part in the weight's gradient most cuts would stay linear. */
+static void test_boundary_with_solids(void** state)
+{
+  check_boundary(*state, MCOR_FLOAT32, 0, 1);
+  check_boundary(*state, MCOR_FLOAT32, 1, 1);
 }
 
 /* Thresholds of 0 trim nothing, high ones everything; in between the surface shrinks. */
@@ -315,6 +334,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_figure_3),
     cmocka_unit_test(test_shared_cuts), cmocka_unit_test(test_boundary),
-    cmocka_unit_test(test_thresholds) };
+    cmocka_unit_test(test_boundary_with_solids), cmocka_unit_test(test_thresholds) };
   return cmocka_run_group_tests_name("trim", tests, core_set_up, core_tear_down);
 }

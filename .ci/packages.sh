@@ -2,6 +2,12 @@
 # Nothing is installed, and no network is used, where all of them are there already.
 . .ci/steps.sh
 
+# CMakeLists.txt says the same; here it is said before anything is installed.
+case "$PWD" in
+  *[\(\)\&\'\#\$\;\,\"\*\?\<\>\|\`]*)
+    mcor_die "VTK's build tools cannot work in a folder with a character like ( & ' # $ , in its path: $PWD" ;;
+esac
+
 mcor_is_installed() { # PACKAGE
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }

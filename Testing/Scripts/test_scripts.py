@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What quickstart.sh, run-tests.sh and CMake do with a wrong start. Nothing is installed or built.
+
+test_scripts.py SOURCE SCRATCH [TESTS]
+"""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+SOURCE, SCRATCH = sys.argv[1:3]
+
+
+def run(*command, cwd=SOURCE):
+    return subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, timeout=600, check=False)
+
+
+class Arguments(unittest.TestCase):
+    def check_refused(self, sentence, *command):
+        before = time.time()
+        result = run(*command)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual(result.stdout.count("\n"), 1, result.stdout)
+        self.assertIn(sentence, result.stdout)
+        self.assertLess(time.time() - before, 60)  # nothing was built or installed
+
+    def test_unknown_options_are_refused_at_once(self):
+        self.check_refused("unknown option --bogus", "Testing/run-tests.sh", "--bogus")
+        self.check_refused("unknown option -x", "Testing/run-tests.sh", "-L", "unit", "-x")
+        self.check_refused("unknown option word", "Examples/quickstart.sh", "word")
+
+    def test_missing_values_are_named(self):
+        self.check_refused("-L needs a pattern", "Testing/run-tests.sh", "-L")
+        self.check_refused("--sdk is vtk or paraview", "Testing/run-tests.sh", "--sdk")
+        self.check_refused("not 'qt'", "Examples/quickstart.sh", "--sdk", "qt")
+
+    def test_help(self):
+        for script in ("Testing/run-tests.sh", "Examples/quickstart.sh"):
+            for option in ("-h", "--help"):
+                result = run(script, option)
+                self.assertEqual(result.returncode, 0)
+                self.assertIn(f"./{script} [--sdk vtk|paraview]", result.stdout)
+                self.assertNotIn("set -e", result.stdout)
+
+
+class Steps(unittest.TestCase):
+    def setUp(self):
+        shutil.rmtree(SCRATCH, ignore_errors=True)
+        os.makedirs(SCRATCH)
+
+    def run_steps(self, commands, interrupt_after=None):
+        """Runs commands in bash with the steps; Ctrl-C goes to all processes of the terminal."""
+        with subprocess.Popen(
+                ["bash", "-c", "set -euo pipefail; . .ci/steps.sh; " + commands, "script"], cwd=SOURCE,
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                start_new_session=True,
+                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)) as process:
+            if interrupt_after is not None:
+                time.sleep(interrupt_after)
+                os.killpg(process.pid, signal.SIGINT)
+            output = process.communicate(timeout=300)[0]
+            return process.returncode, output
+
+    def test_a_good_step_says_one_line(self):
+        status, output = self.run_steps("mcor_step Working echo hidden; echo after")
+        self.assertEqual((status, output), (0, "Working\nafter\n"))
+
+    def test_a_failed_step_shows_its_output_and_ends_the_script(self):
+        status, output = self.run_steps("mcor_step Working sh -c 'echo shown; exit 7'; echo after")
+        self.assertEqual(status, 7)
+        self.assertIn("shown\n", output)
+        self.assertIn("failed: Working", output)
+        self.assertNotIn("after", output)
+
+    def test_interrupt_ends_step_and_script(self):
+        before = time.time()
+        status, output = self.run_steps("mcor_step Working sh -c 'sleep 200; true'; echo after", 2)
+        self.assertEqual(status, 130)
+        self.assertNotIn("after", output)
+        self.assertLess(time.time() - before, 100)
+
+    def test_what_must_finish_does_and_then_the_script_ends(self):
+        done = os.path.join(SCRATCH, "done")
+        status, output = self.run_steps(
+            f"mcor_step must-finish Working sh -c 'sleep 8; touch {done}'; echo after", 2)
+        self.assertEqual(status, 130)
+        self.assertTrue(os.path.exists(done))
+        self.assertIn("it is finished first", output)
+        self.assertNotIn("after", output)
+
+
+class Configuration(unittest.TestCase):
+    def configure(self, *options, source=SOURCE):
+        return run("cmake", "-Wno-dev", "-S", source, "-B", os.path.join(SCRATCH, "configured"), *options)
+
+    def check_stops(self, result, *words):
+        self.assertNotEqual(result.returncode, 0)
+        for word in words:
+            self.assertIn(word, " ".join(result.stdout.split()))
+
+    def test_a_path_that_the_wrapper_cannot_take(self):
+        folder = os.path.join(SCRATCH, "copy (1)")
+        shutil.copytree(os.path.join(SOURCE, ".ci"), os.path.join(folder, ".ci"))
+        for name in ("CMakeLists.txt", "Examples/quickstart.sh", "Testing/run-tests.sh"):
+            os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
+            shutil.copy(os.path.join(SOURCE, name), os.path.join(folder, name))
+        self.check_stops(self.configure(source=folder), "cannot work in a folder with '('")
+        for script in ("Examples/quickstart.sh", "Testing/run-tests.sh"):
+            self.check_stops(run(os.path.join(folder, script)), "cannot work in a folder")
+
+    def test_unit_tests_do_not_vanish(self):
+        result = self.configure("-DMCOR_BUILD_VTK=OFF", "-DMCOR_BUILD_EXAMPLES=OFF", "-DMCOR_WERROR=ON",
+                                "-DCMAKE_DISABLE_FIND_PACKAGE_cmocka=ON")
+        self.check_stops(result, "cmocka (Debian: libcmocka-dev) was not found")
+
+    def test_a_folder_of_another_sdk(self):
+        result = self.configure("-DMCOR_SDK=Another 1.0", "-DMCOR_BUILD_TESTING=OFF",
+                                "-DPython3_EXECUTABLE=/usr/bin/python3")
+        self.check_stops(result, "This build folder was made for Another 1.0", "--fresh")
+
+    def setUp(self):
+        shutil.rmtree(SCRATCH, ignore_errors=True)
+        os.makedirs(SCRATCH)
+
+
+if __name__ == "__main__":
+    os.makedirs(SCRATCH, exist_ok=True)
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -372,10 +372,41 @@ static void test_error_names(void** state)
   mcor_release(context, &buffer);
 }
 
+/* A context that could not be made: its sentence says why, and a run on it fails. */
+static void test_no_context(void** state)
+{
+  (void)state;
+  static const double iso = 0;
+  core_set set = core_make_block(4, 0, 1, core_slope);
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  for (int n = 0, done = 0; !done; ++n)
+  {
+    mcor_context* context = NULL;
+    set_fault(n, CL_OUT_OF_RESOURCES);
+    const mcor_status status = mcor_create_context(NULL, &context);
+    fail_at = -1;
+    done = !failed_call[0];
+    CORE_CHECK(done == (status == MCOR_OK), "call %d: %s", n, mcor_status_name(status));
+    CORE_CHECK(!done || n >= 2, "only %d calls", n);
+    if (!done)
+    {
+      mcor_surface surface = { .point_count = 7 };
+      mcor_release_memory(context);
+      assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
+      CORE_CHECK(strstr(mcor_last_error(context), "CL_OUT_OF_RESOURCES"), "%s: %s", failed_call,
+        mcor_last_error(context));
+      assert_int_equal(surface.point_count, 0);
+    }
+    mcor_free_context(context);
+  }
+  core_free_set(&set);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_call_fails_once),
-    cmocka_unit_test(test_extend), cmocka_unit_test(test_build_fails),
-    cmocka_unit_test(test_error_names) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_context),
+    cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_extend),
+    cmocka_unit_test(test_build_fails), cmocka_unit_test(test_error_names) };
   return cmocka_run_group_tests_name("fault", tests, core_set_up, core_tear_down);
 }

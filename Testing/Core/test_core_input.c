@@ -229,6 +229,7 @@ static void test_null_arguments(void** state)
   assert_int_equal(mcor_create_context(NULL, NULL), MCOR_INVALID_ARGUMENT);
   assert_int_equal(mcor_list_devices(NULL), MCOR_INVALID_ARGUMENT);
   assert_true(strlen(mcor_last_error(NULL)) > 0);
+  mcor_set_default_options(NULL);
   mcor_free_context(NULL);
   mcor_free_surface(NULL);
   mcor_release_memory(NULL);
@@ -385,6 +386,148 @@ static void test_attributes_of_solids(void** state)
   }
 }
 
+/* Each particle's scalar, above 0, as a vector of that magnitude. */
+static void make_vectors(bad_call* call, double unit)
+{
+  for (int64_t i = 0; i < call->set.count; ++i)
+  {
+    const double s = unit * (call->set.scalar[i] + 10);
+    call->vector[3 * i] = 0.6 * s;
+    call->vector[3 * i + 1] = i % 2 ? -0.8 * s : 0.8 * s;
+    call->vector[3 * i + 2] = 0;
+  }
+  call->input.scalar = core_array(call->vector, 3);
+  call->input.scalar.name = "flow";
+  call->input.scalar_component = MCOR_MAGNITUDE;
+  call->iso[0] = 10 * unit;
+  call->options.iso_values = call->iso;
+  call->options.precision = MCOR_FLOAT64;
+}
+
+/* Magnitudes that exist are found though their squares do not. */
+static void test_magnitudes(void** state)
+{
+  const double units[] = { 1, 0x1p530, 0x1p-560, 0x1p-900 };
+  int64_t points = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    bad_call call = make_call();
+    make_vectors(&call, units[k]);
+    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    points = k == 0 ? surface.point_count : points;
+    CORE_CHECK(points > 20 && surface.point_count == points, "unit %g: %lld points, not %lld",
+      units[k], (long long)surface.point_count, (long long)points);
+    const double most = surface.statistics.scalar_max / units[k];
+    CORE_CHECK(most > 10 && most < 20, "unit %g: magnitudes up to %g", units[k], most);
+    mcor_free_surface(&surface);
+    free_call(&call);
+  }
+}
+
+/* Finite components of which the magnitude, or the dot product, is no number. */
+static void test_bad_products(void** state)
+{
+  const double far = 1.7e308;
+  DATA("magnitude of array flow|particle 21|unit", make_vectors(&call, 1);
+       call.vector[63] = call.vector[64] = call.vector[90] = call.vector[91] = far);
+  DATA("dot product of arrays flow and force|particle 21|unit", make_vectors(&call, 1);
+       call.vector[64] = 1e200; call.input.scalar_dot = call.input.scalar;
+       call.input.scalar_dot.name = "force");
+  DATA("dot product|particle 1", make_vectors(&call, 1); call.options.precision = MCOR_FLOAT32;
+       call.vector[3] = 1e250; call.vector[4] = 1e249; call.input.scalar_dot = call.input.scalar);
+  /* On the way, inf - inf; in the end, a number. */
+  bad_call call = make_call();
+  make_vectors(&call, 1);
+  double* other = core_copy(call.vector, (size_t)call.set.count * 3 * sizeof(double));
+  call.input.scalar_dot = core_array(other, 3);
+  call.iso[0] = 100;
+  call.vector[3] = call.vector[4] = other[3] = 1e200;
+  other[4] = -1e200;
+  mcor_surface surface = core_extract(*state, &call.input, &call.options);
+  CORE_CHECK(surface.point_count > 20 && surface.statistics.scalar_min == 0, "%lld points, from %g",
+    (long long)surface.point_count, surface.statistics.scalar_min);
+  for (int64_t i = 0; i < 3 * surface.point_count; ++i)
+  {
+    CORE_CHECK(isfinite(surface.points[i]) && isfinite(surface.normals[i]), "not finite");
+  }
+  mcor_free_surface(&surface);
+  free(other);
+  free_call(&call);
+  expect_good(*state);
+}
+
+/* What is too little for a computed volume is not blamed on the kernel. */
+static void test_computed_volumes(void** state)
+{
+  DATA("particle 5|mass|times the largest|volumes", call.input.has_volume = 0;
+       call.input.has_mass = 1; call.input.mass = core_array(call.set.volume, 1);
+       call.set.volume[5] = 5e-324; call.set.position[15] = 40);
+  ARGUMENT("h scale factor|1e-13|volumes", call.input.has_volume = 0; call.options.h_scale = 1e-13;
+           call.input.smoothing_length = (mcor_array){ .constant = 1.3e13 };
+           call.options.cube_size = 0.5);
+  expect_good(*state);
+}
+
+/* Lengths of any unit give the same surface, computed smoothing lengths and normals included. */
+static void test_units_of_length(void** state)
+{
+  const double units[] = { 1, 0x1p-300, 0x1p300, 0x1p-340, 0x1p340 };
+  mcor_surface first = { 0 };
+  for (int k = 0; k < 5; ++k)
+  {
+    bad_call call = make_call();
+    for (int64_t i = 0; i < 3 * call.set.count; ++i)
+    {
+      call.set.position[i] *= units[k];
+    }
+    call.input.has_volume = 0;
+    call.input.estimate_smoothing_length = 1;
+    call.options.iso_values = call.iso;
+    call.options.triangle_normals = 1;
+    if (k > 2)
+    {
+      expect(*state, &call, MCOR_OUT_OF_CAPACITY, "cube size|between|unit of length");
+      free_call(&call);
+      continue;
+    }
+    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_CHECK(surface.point_count > 20, "%lld points", (long long)surface.point_count);
+    for (int64_t i = 0; k > 0 && i < 3 * surface.point_count; ++i)
+    {
+      CORE_CHECK(
+        surface.points[i] == first.points[i] * units[k], "unit %g: another point", units[k]);
+      CORE_CHECK(surface.normals[i] == first.normals[i], "unit %g: another normal", units[k]);
+    }
+    k == 0 ? (void)(first = surface) : mcor_free_surface(&surface);
+    free_call(&call);
+  }
+  mcor_free_surface(&first);
+  expect_good(*state);
+}
+
+/* Iso values and thresholds that the device's precision has not. */
+static void test_far_options(void** state)
+{
+  const double far[] = { 1e36, 1e39, 1e308 };
+  for (int k = 0; k < 24; ++k)
+  {
+    bad_call call = make_call();
+    call.iso[0] = k < 12 ? (k % 2 ? -1 : 1) * far[k % 3] : 0;
+    call.options.node_threshold = k >= 12 && k % 2 ? far[k % 3] : 0.1;
+    call.options.vertex_threshold = k >= 12 && k % 2 == 0 ? far[k % 3] : 0.5;
+    call.options.boundary_detection =
+      k % 4 / 2 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
+    call.options.field = k / 6 % 2 ? MCOR_SUM : MCOR_SHEPARD;
+    call.options.iso_values = call.iso;
+    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_CHECK(
+      surface.triangle_count == 0, "case %d: %lld triangles", k, (long long)surface.triangle_count);
+    mcor_free_surface(&surface);
+    free_call(&call);
+  }
+  expect_good(*state);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
@@ -393,6 +536,9 @@ int main(void)
     cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
     cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results),
     cmocka_unit_test(test_endless_range), cmocka_unit_test(test_scalars_of_solids),
-    cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids) };
+    cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids),
+    cmocka_unit_test(test_magnitudes), cmocka_unit_test(test_bad_products),
+    cmocka_unit_test(test_computed_volumes), cmocka_unit_test(test_units_of_length),
+    cmocka_unit_test(test_far_options) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

@@ -330,10 +330,37 @@ static void test_thresholds(void** state)
   core_free_set(&set);
 }
 
+/* Vertices of the trim boundary are counted on top of those of the surface. */
+static void test_vertex_limit(void** state)
+{
+  mcor_context* context = *state;
+  static const int corners[3] = { 0, 1, 2 };
+  static const float weights[3] = { 0.2f, 0.8f, 0.9f };
+  const double iso = 0;
+  core_set set = core_make_block(3, 0, 1, core_slope);
+  const mcor_input input = core_input_to_keep(&set);
+  mcor_options options = core_options(&iso);
+  mcor_surface surface = core_extract(context, &input, &options);
+  mcor_mesh* mesh = &context->mesh;
+  CORE_OK(context, mcor_write(context, &mesh->vertex_weight, weights, sizeof weights));
+  CORE_OK(context, mcor_write(context, &mesh->triangles, corners, sizeof corners));
+  mesh->triangle_count = 1;
+  mesh->march_count = mesh->vertex_count = MCOR_COUNT_LIMIT - 1;
+  context->options = &options;
+  context->statistics = &surface.statistics;
+  assert_int_equal(mcor_trim(context, 0), MCOR_OUT_OF_CAPACITY);
+  CORE_CHECK(
+    strstr(mcor_last_error(context), "2147479553 vertices"), "%s", mcor_last_error(context));
+  mcor_release_memory(context);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_figure_3),
     cmocka_unit_test(test_shared_cuts), cmocka_unit_test(test_boundary),
-    cmocka_unit_test(test_boundary_with_solids), cmocka_unit_test(test_thresholds) };
+    cmocka_unit_test(test_boundary_with_solids), cmocka_unit_test(test_thresholds),
+    cmocka_unit_test(test_vertex_limit) };
   return cmocka_run_group_tests_name("trim", tests, core_set_up, core_tear_down);
 }

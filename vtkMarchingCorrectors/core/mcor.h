@@ -220,7 +220,7 @@ extern "C"
     double scalar_min, scalar_max;                     /* over fluid particles */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
     int64_t lattice_cells[3];
-    int64_t virtual_cells;                          /* product of lattice_cells (saturates) */
+    int64_t virtual_cells;                          /* product of lattice_cells, below 2^63 */
     int64_t seed_cells, seed_cells_not_intersected; /* summed over iso values, as are the next */
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */

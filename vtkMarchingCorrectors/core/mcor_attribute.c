@@ -167,6 +167,26 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, int groups)
     MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
+typedef struct mcor_nearest
+{
+  const cl_int *scanned, *index;
+  const int32_t* source;
+  int64_t* to;
+} mcor_nearest;
+
+static void mcor_put_nearest(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_nearest* job = data;
+  for (int64_t v = first; v < last; ++v)
+  {
+    if (mcor_is_put(job->scanned, v))
+    {
+      job->to[job->scanned[v]] = job->index[v] < 0 ? -1 : job->source[job->index[v]];
+    }
+  }
+  (void)slice;
+}
+
 static mcor_status mcor_add_nearest(
   mcor_context* context, const cl_int* scanned, int groups, mcor_surface* surface)
 {
@@ -181,15 +201,9 @@ static mcor_status mcor_add_nearest(
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
   void* view;
   MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
-  const cl_int* index = view;
-  int64_t* to = surface->nearest_particle + surface->point_count;
-  for (int v = 0; v < mesh->vertex_count; ++v)
-  {
-    if (mcor_is_put(scanned, v))
-    {
-      to[scanned[v]] = index[v] < 0 ? -1 : context->source[index[v]];
-    }
-  }
+  mcor_nearest job = { scanned, view, context->source,
+    surface->nearest_particle + surface->point_count };
+  mcor_parallel_for(mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_put_nearest, &job);
   return mcor_unmap(context, indices, &view);
 }
 

@@ -13,11 +13,6 @@
 /* Kernels count in int, also a little beyond the last particle. */
 #define MCOR_PARTICLE_LIMIT 2000000000
 
-static const char* mcor_array_name(const mcor_array* array, const char* role)
-{
-  return array->name ? array->name : role;
-}
-
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
 #define MCOR_NEED(condition, ...)                                                                  \

@@ -4,7 +4,9 @@
 /* The smoothing length of particles that have none. */
 
 #include "mcor_input.h"
+#include "mcor_parallel.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,69 +40,133 @@ static int mcor_compare_double(const void* a, const void* b)
 #define MCOR_SAMPLES 256
 #define MCOR_SAMPLE_NEIGHBOURS 32
 
-/* Distance from x to its 32nd nearest other particle, or the farthest if there are fewer. */
-static double mcor_neighbour_distance(const mcor_input* input, const double x[3], double* nearest)
+/* Those of a slice of the particles, in order. */
+typedef struct mcor_samples
 {
-  int found = 0;
-  for (int64_t i = 0; i < input->count; ++i)
+  int count;
+  mcor_sample sample[MCOR_SAMPLES];
+} mcor_samples;
+
+typedef struct mcor_sampling
+{
+  const mcor_input* input;
+  mcor_array positions;
+  double scale;          /* a power of 2 that brings all coordinates below 1 */
+  mcor_samples* samples; /* [MCOR_SLICES]; in the end the first has those of all */
+  double spacing[MCOR_SAMPLES];
+} mcor_sampling;
+
+/* Keeps a sample if it is among the first. */
+static void mcor_add_sample(mcor_samples* samples, const mcor_sample* sample)
+{
+  const bool full = samples->count == MCOR_SAMPLES;
+  if (full && sample->hash >= samples->sample[MCOR_SAMPLES - 1].hash)
   {
-    double d2 = 0;
+    return;
+  }
+  int to = full ? MCOR_SAMPLES - 1 : samples->count++;
+  for (; to > 0 && samples->sample[to - 1].hash > sample->hash; --to)
+  {
+    samples->sample[to] = samples->sample[to - 1];
+  }
+  samples->sample[to] = *sample;
+}
+
+static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_sampling* job = data;
+  mcor_samples* samples = &job->samples[slice];
+  samples->count = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    mcor_sample sample;
     for (int a = 0; a < 3; ++a)
     {
-      const double d = mcor_array_at(&input->positions, i, a) - x[a];
-      d2 += d * d;
+      sample.x[a] = mcor_array_at(&job->positions, i, a);
     }
-    if (found < MCOR_SAMPLE_NEIGHBOURS + 1 || d2 < nearest[found - 1])
+    sample.hash = mcor_hash_position(sample.x);
+    mcor_add_sample(samples, &sample);
+  }
+}
+
+/* Distance from x to its 32nd nearest other particle, or the farthest if there are fewer, over the
+ * number of particles within: the spacing there. All times the scale. */
+static double mcor_spacing_at(const mcor_sampling* job, const double x[3])
+{
+  const double scale = job->scale;
+  double nearest[MCOR_SAMPLE_NEIGHBOURS + 2], chunk[MCOR_CHUNK], d2[MCOR_CHUNK];
+  int found = 0;
+  for (int64_t first = 0, count; first < job->input->count; first += count)
+  {
+    const int64_t rest = job->input->count - first;
+    count = rest < MCOR_CHUNK ? rest : MCOR_CHUNK;
+    memset(d2, 0, sizeof d2);
+    for (int a = 0; a < 3; ++a)
     {
-      int to = found < MCOR_SAMPLE_NEIGHBOURS + 1 ? found++ : found - 1;
-      for (; to > 0 && nearest[to - 1] > d2; --to)
+      mcor_read_array(&job->positions, first, (int)count, a, chunk);
+      for (int i = 0; i < count; ++i)
       {
-        nearest[to] = nearest[to - 1];
+        const double d = chunk[i] * scale - x[a] * scale;
+        d2[i] += d * d;
       }
-      nearest[to] = d2;
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      const bool full = found == MCOR_SAMPLE_NEIGHBOURS + 1;
+      if (!full || d2[i] < nearest[found - 1])
+      {
+        int to = full ? found - 1 : found++;
+        for (; to > 0 && nearest[to - 1] > d2[i]; --to)
+        {
+          nearest[to] = nearest[to - 1];
+        }
+        nearest[to] = d2[i];
+      }
     }
   }
   return sqrt(nearest[found - 1]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / found);
 }
 
+static void mcor_space_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_sampling* job = data;
+  for (int64_t s = first; s < last; ++s)
+  {
+    job->spacing[s] = mcor_spacing_at(job, job->samples[0].sample[s].x);
+  }
+  (void)slice;
+}
+
 /* 1.3 times the median, over a sample of particles, of the spacing of a lattice that has as many
  * particles within the distance of the 32nd neighbour. */
-double mcor_estimate_smoothing_length(const mcor_input* input)
+mcor_status mcor_estimate_smoothing_length(
+  mcor_context* context, const mcor_input* input, double* estimate)
 {
-  mcor_sample samples[MCOR_SAMPLES];
-  int count = 0;
-  const int64_t affordable = 1 + 300000000 / (input->count + 1);
-  const int most = (int)(affordable < 16 ? 16
-      : affordable > MCOR_SAMPLES        ? MCOR_SAMPLES
-                                         : affordable);
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  mcor_input view = *input;
-  view.positions = positions;
-  for (int64_t i = 0; i < input->count; ++i)
+  mcor_sampling job = { .input = input, .positions = input->positions };
+  int exponent = 0, most = INT_MIN;
+  job.positions.components = 3;
+  for (int a = 0; a < 3; ++a)
   {
-    mcor_sample sample;
-    for (int a = 0; a < 3; ++a)
-    {
-      sample.x[a] = mcor_array_at(&positions, i, a);
-    }
-    sample.hash = mcor_hash_position(sample.x);
-    if (count == most && sample.hash >= samples[count - 1].hash)
-    {
-      continue;
-    }
-    int to = count < most ? count++ : count - 1;
-    for (; to > 0 && samples[to - 1].hash > sample.hash; --to)
-    {
-      samples[to] = samples[to - 1];
-    }
-    samples[to] = sample;
+    frexp(mcor_largest(&job.positions, NULL, input->count, a), &exponent);
+    most = exponent > most ? exponent : most;
   }
-  double spacing[MCOR_SAMPLES], nearest[MCOR_SAMPLE_NEIGHBOURS + 2];
-  for (int s = 0; s < count; ++s)
+  job.scale = ldexp(1, most > -1000 ? -most : 1000);
+  job.samples = malloc(MCOR_SLICES * sizeof *job.samples);
+  MCOR_RETURN_IF(!job.samples, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, &job);
+  for (int s = 1; s < slices; ++s)
   {
-    spacing[s] = mcor_neighbour_distance(&view, samples[s].x, nearest);
+    for (int i = 0; i < job.samples[s].count; ++i)
+    {
+      mcor_add_sample(&job.samples[0], &job.samples[s].sample[i]);
+    }
   }
-  qsort(spacing, (size_t)count, sizeof spacing[0], mcor_compare_double);
-  return 1.3 * spacing[count / 2];
+  const int count = job.samples[0].count;
+  mcor_parallel_for(count, 1, mcor_space_slice, &job);
+  free(job.samples);
+  qsort(job.spacing, (size_t)count, sizeof job.spacing[0], mcor_compare_double);
+  *estimate = 1.3 * job.spacing[count / 2] / job.scale;
+  MCOR_RETURN_IF(!(*estimate > 0), context, MCOR_INVALID_DATA,
+    "The smoothing length cannot be estimated: most particles lie at one point.");
+  return MCOR_OK;
 }

@@ -13,6 +13,10 @@
 
 void mcor_set_default_options(mcor_options* options)
 {
+  if (!options)
+  {
+    return;
+  }
   *options = (mcor_options){ .sph_kernel = MCOR_CUBIC_SPLINE,
     .field = MCOR_SHEPARD,
     .seeds = MCOR_COMPLETE,
@@ -39,13 +43,14 @@ mcor_status mcor_create_context(const char* device, mcor_context** context)
   {
     return MCOR_OUT_OF_CAPACITY;
   }
-  const mcor_status status = mcor_open_device(*context, device);
+  mcor_status status = mcor_open_device(*context, device);
   if (status == MCOR_OK)
   {
     uint8_t table[256][16];
     mcor_make_case_table(table);
-    return mcor_write(*context, &(*context)->case_table, table, sizeof table);
+    status = mcor_write(*context, &(*context)->case_table, table, sizeof table);
   }
+  (*context)->created = status == MCOR_OK;
   return status;
 }
 
@@ -359,7 +364,10 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   }
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
-  MCOR_RETURN_IF(!context->cl.queue, context, MCOR_DEVICE_ERROR, "The context has no device.");
+  if (!context->created)
+  {
+    return MCOR_DEVICE_ERROR; /* its sentence says why */
+  }
   mcor_cl* cl = &context->cl;
   const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
   cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;

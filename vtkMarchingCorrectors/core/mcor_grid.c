@@ -6,6 +6,7 @@
 #include "mcor_input.h"
 #include "mcor_stage.h"
 
+#include <float.h>
 #include <math.h>
 
 /* The paper's cells are as large as the support. Smaller ones fit the round reach of a query better
@@ -130,8 +131,27 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   return MCOR_OK;
 }
 
+/* Why a particle's volume cannot be computed. */
+static mcor_status mcor_refuse_density(
+  mcor_context* context, const mcor_input* input, int64_t particle)
+{
+  const bool single = context->cl.real_size == sizeof(float);
+  const double mass = input->has_mass
+    ? mcor_array_at(&input->mass, particle, 0) * mcor_size_scale(context, input)
+    : 1;
+  MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
+    "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too "
+    "little "
+    "for %s precision. Give volumes, or masses and densities, or remove such particles.",
+    (long long)particle, mass, single ? "single" : "double");
+  return mcor_fail(context, MCOR_INVALID_DATA,
+    "The volume of particle %lld cannot be computed: with kernel %s, which has negative parts, the "
+    "density there is too low, or negative. Give volumes, or masses and densities.",
+    (long long)particle, mcor_sph_kernel_name(context->options->sph_kernel));
+}
+
 /* V = m / sum_k m_k W(x_j - x_k, h_j), own and unscaled h; m = 1 where no mass is known. */
-static mcor_status mcor_compute_volumes(mcor_context* context)
+static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
@@ -155,11 +175,7 @@ static mcor_status mcor_compute_volumes(mcor_context* context)
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
   MCOR_TRY(mcor_read(context, without, 0, &first, sizeof first));
-  MCOR_RETURN_IF(first != INT32_MAX, context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: with kernel %s, which has negative parts, the "
-    "density there is too low, or negative. Give volumes, or masses and densities.",
-    (long long)context->source[first], mcor_sph_kernel_name(context->options->sph_kernel));
-  return MCOR_OK;
+  return first == INT32_MAX ? MCOR_OK : mcor_refuse_density(context, input, context->source[first]);
 }
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
@@ -177,7 +193,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   const mcor_status unmapped = mcor_unmap_staging(context, &staging);
   MCOR_TRY(status);
   MCOR_TRY(unmapped);
-  return mcor_needs_density(input) ? mcor_compute_volumes(context) : MCOR_OK;
+  return mcor_needs_density(input) ? mcor_compute_volumes(context, input) : MCOR_OK;
 }
 
 /* A Shepard mean shifts with its values. A - A0 with A0 where most values are keeps the digits of a

@@ -159,34 +159,69 @@ bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
   return !varies;
 }
 
-void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
+/* The power of 2 just above all components of particle i; 0 if they are 0 or not finite. */
+static int mcor_exponent_of(const mcor_array* array, int64_t i)
 {
-  if (mcor_components(&input->scalar) == 1 && !input->scalar_dot.data)
+  double largest = 0;
+  int exponent = 0;
+  for (int c = 0; c < mcor_components(array); ++c)
   {
-    mcor_read_array(&input->scalar, first, count, 0, out);
-    return;
+    largest = fmax(largest, fabs(mcor_array_at(array, i, c)));
   }
-  for (int i = 0; i < count; ++i)
+  if (isfinite(largest))
   {
-    out[i] = mcor_scalar_at(input, first + i);
+    frexp(largest, &exponent);
   }
+  return exponent;
 }
 
-double mcor_scalar_at(const mcor_input* input, int64_t i)
+/* Of particle i, a^T b or its root, by powers of 2 that keep what exists from overflowing, or
+ * vanishing, on the way. */
+static double mcor_scaled_product(
+  const mcor_array* a, const mcor_array* b, int64_t i, bool magnitude)
 {
-  const mcor_array* a = &input->scalar;
-  const int components = mcor_components(a);
-  if (input->scalar_dot.data || (components > 1 && input->scalar_component == MCOR_MAGNITUDE))
+  const int ea = mcor_exponent_of(a, i), eb = mcor_exponent_of(b, i);
+  double sum = 0;
+  for (int c = 0; c < mcor_components(a); ++c)
   {
-    const mcor_array* b = input->scalar_dot.data ? &input->scalar_dot : a;
-    double sum = 0;
-    for (int c = 0; c < components; ++c)
-    {
-      sum += mcor_array_at(a, i, c) * mcor_array_at(b, i, c);
-    }
-    return input->scalar_dot.data ? sum : sqrt(sum);
+    sum += ldexp(mcor_array_at(a, i, c), -ea) * ldexp(mcor_array_at(b, i, c), -eb);
   }
-  return mcor_array_at(a, i, components > 1 ? input->scalar_component : 0);
+  return magnitude ? ldexp(sqrt(sum), ea) : ldexp(sum, ea + eb);
+}
+
+/* Sums of squares between these lost nothing. */
+#define MCOR_SQUARE_MIN 1e-280
+#define MCOR_SQUARE_MAX 1e280
+
+void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
+{
+  const mcor_array *a = &input->scalar, *b = input->scalar_dot.data ? &input->scalar_dot : a;
+  const int components = mcor_components(a);
+  if (!mcor_scalar_is_derived(input))
+  {
+    mcor_read_array(a, first, count, components > 1 ? input->scalar_component : 0, out);
+    return;
+  }
+  double x[MCOR_CHUNK], y[MCOR_CHUNK];
+  memset(out, 0, (size_t)count * sizeof *out);
+  for (int c = 0; c < components; ++c)
+  {
+    mcor_read_array(a, first, count, c, x);
+    mcor_read_array(b, first, count, c, y);
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] += x[i] * y[i];
+    }
+  }
+  const bool magnitude = !input->scalar_dot.data;
+  for (int i = 0; i < count; ++i)
+  {
+    const bool good =
+      magnitude ? out[i] > MCOR_SQUARE_MIN && out[i] < MCOR_SQUARE_MAX : isfinite(out[i]);
+    out[i] = !good ? mcor_scaled_product(a, b, first + i, magnitude)
+      : magnitude  ? sqrt(out[i])
+                   : out[i];
+  }
 }
 
 void mcor_read_smoothing_length(

@@ -30,7 +30,13 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
 
 #define MCOR_CHUNK 1024
 
+static inline const char* mcor_array_name(const mcor_array* array, const char* role)
+{
+  return array->name ? array->name : role;
+}
+
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
+/* At most MCOR_CHUNK of them. Not finite where a derived scalar does not exist as a number. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
 /* The largest absolute value of one component, solids left out where `solid` is not NULL; all are
@@ -44,12 +50,18 @@ int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int6
 /* Whether all values of one component are equal. */
 bool mcor_is_constant(const mcor_array* array, int64_t count, int component);
 
-/* The scalar A of particle i. */
-double mcor_scalar_at(const mcor_input* input, int64_t i);
+/* Whether the scalar is a magnitude or a dot product. */
+static inline bool mcor_scalar_is_derived(const mcor_input* input)
+{
+  return input->scalar_dot.data ||
+    (mcor_components(&input->scalar) > 1 && input->scalar_component == MCOR_MAGNITUDE);
+}
+
 /* About the median of the scalar of fluid particles; measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
 /* One for all particles, from their spacing. */
-double mcor_estimate_smoothing_length(const mcor_input* input);
+mcor_status mcor_estimate_smoothing_length(
+  mcor_context* context, const mcor_input* input, double* estimate);
 /* Smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);

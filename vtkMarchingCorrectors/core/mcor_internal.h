@@ -53,7 +53,8 @@ typedef struct mcor_measure
   double h_min, h_max;             /* smoothing length of fluid particles */
   double support_min, support_max; /* scaled support radius of all particles */
   double scalar_min, scalar_max;
-  double h_estimate; /* where it was asked for */
+  int64_t not_finite; /* first fluid particle of which the scalar is not, INT64_MAX: none */
+  double h_estimate;  /* where it was asked for */
   double cube;
 } mcor_measure;
 
@@ -143,6 +144,7 @@ typedef struct mcor_attributes
 
 struct mcor_context
 {
+  bool created; /* false: mcor_create_context failed */
   mcor_cl cl;
   mcor_grid grid;
   mcor_bricks bricks;
@@ -187,6 +189,9 @@ static inline double mcor_get_real(const mcor_context* context, const void* arra
   return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
                                                 : ((const double*)array)[i];
 }
+
+/* Elements that kernels count: rounded up to any work-group or batch, it still is an int. */
+#define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
 
 /* Whether vertex v is put out, being used by a triangle: as point scanned[v] of its mesh. */
 static inline bool mcor_is_put(const cl_int* scanned, int64_t v)

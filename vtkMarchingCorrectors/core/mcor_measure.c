@@ -15,6 +15,10 @@
 /* Support radius in cubes at least: below, no node is likely to see a particle. */
 #define MCOR_LEAST_SUPPORT 1e-3
 
+/* Cube sizes whose cubes, areas and gradients are numbers. */
+#define MCOR_LEAST_CUBE 1e-100
+#define MCOR_MOST_CUBE 1e100
+
 /* One chunk of the particles, as double. */
 typedef struct mcor_chunk
 {
@@ -76,7 +80,8 @@ static const mcor_measure mcor_nothing = { .low = { DBL_MAX, DBL_MAX, DBL_MAX },
   .h_min = DBL_MAX,
   .support_min = DBL_MAX,
   .scalar_min = DBL_MAX,
-  .scalar_max = -DBL_MAX };
+  .scalar_max = -DBL_MAX,
+  .not_finite = INT64_MAX };
 
 static void mcor_merge_measure(mcor_measure* m, const mcor_measure* other)
 {
@@ -93,6 +98,7 @@ static void mcor_merge_measure(mcor_measure* m, const mcor_measure* other)
   m->support_max = mcor_most(m->support_max, other->support_max);
   m->scalar_min = mcor_least(m->scalar_min, other->scalar_min);
   m->scalar_max = mcor_most(m->scalar_max, other->scalar_max);
+  m->not_finite = other->not_finite < m->not_finite ? other->not_finite : m->not_finite;
 }
 
 typedef struct mcor_measuring
@@ -122,6 +128,10 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
       if (mcor_is_used(job->context, input, begin + i))
       {
         mcor_measure_particle(&m, &chunk, i, solid, has_scalar, job->reach);
+        if (!solid && has_scalar && !isfinite(chunk.scalar[i]) && begin + i < m.not_finite)
+        {
+          m.not_finite = begin + i;
+        }
       }
     }
   }
@@ -138,30 +148,34 @@ static void mcor_measure_particles(mcor_context* context, const mcor_input* inpu
   }
 }
 
-/* Bounds, ranges and the virtual grid's cube size; then the lattice. */
-mcor_status mcor_measure_input(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+/* The components are finite, but the magnitude or the dot product may not be. */
+static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* input)
+{
+  const char* name = mcor_array_name(&input->scalar, "scalar");
+  const char* other = mcor_array_name(&input->scalar_dot, "scalar");
+  const long long i = context->measure.not_finite;
+  MCOR_RETURN_IF(i < INT64_MAX && input->scalar_dot.data, context, MCOR_INVALID_DATA,
+    "The dot product of arrays %s and %s of particle %lld is too large for a number. Use other "
+    "units, or remove such particles.",
+    name, other, i);
+  MCOR_RETURN_IF(i < INT64_MAX, context, MCOR_INVALID_DATA,
+    "The magnitude of array %s of particle %lld is too large for a number. Use another unit, or "
+    "remove such particles.",
+    name, i);
+  return MCOR_OK;
+}
+
+/* The virtual grid that covers what the particles' supports reach. */
+static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
 {
   mcor_measure* m = &context->measure;
-  *m = mcor_nothing;
-  if (input->estimate_smoothing_length)
-  {
-    m->h_estimate = mcor_estimate_smoothing_length(input);
-    MCOR_RETURN_IF(!(m->h_estimate > 0), context, MCOR_INVALID_DATA,
-      "The smoothing length cannot be estimated: most particles lie at one point.");
-  }
-  mcor_measure_particles(
-    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale);
-  MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
-    "None of the %lld particles is marked as fluid.", (long long)input->count);
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    m->scalar_min = 0;
-    m->scalar_max = 1;
-  }
   mcor_lattice* lattice = &context->lattice;
   const double cube =
     options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  MCOR_RETURN_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
+    "The cube size is %g; it must be between %g and %g. Use another cube size, or another unit of "
+    "length.",
+    cube, MCOR_LEAST_CUBE, MCOR_MOST_CUBE);
   MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
     "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
     "or remove particles of such a smoothing length.",
@@ -190,4 +204,27 @@ mcor_status mcor_measure_input(
     --lattice->fix_bits;
   }
   return MCOR_OK;
+}
+
+/* Bounds and ranges; then the lattice. */
+mcor_status mcor_measure_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  mcor_measure* m = &context->measure;
+  *m = mcor_nothing;
+  if (input->estimate_smoothing_length)
+  {
+    MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));
+  }
+  mcor_measure_particles(
+    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale);
+  MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
+    "None of the %lld particles is marked as fluid.", (long long)input->count);
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    m->scalar_min = 0;
+    m->scalar_max = 1;
+  }
+  MCOR_TRY(mcor_check_derived(context, input));
+  return mcor_measure_lattice(context, options);
 }

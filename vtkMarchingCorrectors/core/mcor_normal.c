@@ -5,17 +5,45 @@
  * vanishes. The length of the cross product weighs a triangle by its area. */
 
 #include "mcor_internal.h"
+#include "mcor_parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-static void mcor_triangle_normal(const mcor_surface* surface, const int32_t* t, double n[3])
+typedef struct mcor_normals
+{
+  mcor_surface* surface;
+  double* sums; /* [point_count][3] */
+  double scale; /* a power of 2 that brings lengths to about 1 */
+  bool all;
+  bool missing[MCOR_SLICES];
+} mcor_normals;
+
+static bool mcor_is_missing(const float n[3])
+{
+  return n[0] == 0 && n[1] == 0 && n[2] == 0;
+}
+
+static void mcor_find_missing(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_normals* job = data;
+  int64_t i = first;
+  while (i < last && !mcor_is_missing(job->surface->normals + 3 * i))
+  {
+    ++i;
+  }
+  job->missing[slice] = i < last;
+}
+
+static void mcor_triangle_normal(
+  const mcor_surface* surface, const int32_t* t, double scale, double n[3])
 {
   double u[3], v[3];
   for (int a = 0; a < 3; ++a)
   {
-    u[a] = surface->points[3 * (int64_t)t[1] + a] - surface->points[3 * (int64_t)t[0] + a];
-    v[a] = surface->points[3 * (int64_t)t[2] + a] - surface->points[3 * (int64_t)t[0] + a];
+    const double corner = surface->points[3 * (int64_t)t[0] + a];
+    u[a] = (surface->points[3 * (int64_t)t[1] + a] - corner) * scale;
+    v[a] = (surface->points[3 * (int64_t)t[2] + a] - corner) * scale;
   }
   for (int a = 0; a < 3; ++a)
   {
@@ -23,46 +51,56 @@ static void mcor_triangle_normal(const mcor_surface* surface, const int32_t* t, 
   }
 }
 
+static void mcor_put_sums(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_normals* job = data;
+  for (int64_t i = first; i < last; ++i)
+  {
+    float* n = job->surface->normals + 3 * i;
+    const double* s = job->sums + 3 * i;
+    const double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    const bool wanted = job->all || mcor_is_missing(n);
+    for (int a = 0; a < 3 && wanted; ++a)
+    {
+      n[a] = length > 0 ? (float)(s[a] / length) : (a == 2 ? 1.0f : 0.0f);
+    }
+  }
+  (void)slice;
+}
+
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
 {
-  const bool all = context->options->preview || context->options->triangle_normals;
-  bool some = all;
-  for (int64_t i = 0; !some && i < surface->point_count; ++i)
+  int exponent = 0;
+  frexp(context->lattice.cube, &exponent);
+  mcor_normals job = { .surface = surface,
+    .scale = ldexp(1, -exponent),
+    .all = context->options->preview || context->options->triangle_normals };
+  const int slices =
+    mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_find_missing, &job);
+  bool some = job.all;
+  for (int s = 0; s < slices; ++s)
   {
-    const float* n = surface->normals + 3 * i;
-    some = n[0] == 0 && n[1] == 0 && n[2] == 0;
+    some = some || job.missing[s];
   }
   if (!some)
   {
     return MCOR_OK;
   }
-  double* sums = calloc((size_t)surface->point_count * 3 + 1, sizeof(double));
-  MCOR_RETURN_IF(
-    !sums, context, MCOR_OUT_OF_CAPACITY, "Host memory for the normals could not be allocated.");
+  job.sums = calloc((size_t)surface->point_count * 3 + 1, sizeof(double));
+  MCOR_RETURN_IF(!job.sums, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for the normals could not be allocated.");
+  /* One thread: the order in which a point's triangles are added must not change. */
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
     double n[3];
-    mcor_triangle_normal(surface, t, n);
+    mcor_triangle_normal(surface, t, job.scale, n);
     for (int c = 0; c < 9; ++c)
     {
-      sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
+      job.sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
     }
   }
-  for (int64_t i = 0; i < surface->point_count; ++i)
-  {
-    float* n = surface->normals + 3 * i;
-    const double* s = sums + 3 * i;
-    const double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-    if (!all && (n[0] != 0 || n[1] != 0 || n[2] != 0))
-    {
-      continue;
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      n[a] = length > 0 ? (float)(s[a] / length) : (a == 2 ? 1.0f : 0.0f);
-    }
-  }
-  free(sums);
+  mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_put_sums, &job);
+  free(job.sums);
   return MCOR_OK;
 }

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Output [III-D.4]: compaction, transfer, and what a surface carries besides its geometry. */
+/* Output [III-D.4]: hands the vertices that triangles use, renumbered, and the triangles to the
+ * caller's surface, and adds up what the correction did. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"

@@ -3,8 +3,6 @@
 
 #include "mcor_internal.h"
 
-#include <limits.h>
-
 /* Chunks into which `count` elements are cut: none is so short that walking it takes less time than
  * the launches that several need. */
 static int mcor_chunks(const mcor_context* context, int count)
@@ -31,10 +29,10 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
     MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
   MCOR_TRY(
     mcor_read(context, &context->scan_sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
-  MCOR_RETURN_IF(sum > INT_MAX, context, MCOR_OUT_OF_CAPACITY,
+  MCOR_RETURN_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The surface is too large: a table would need %lld entries, %d is the limit. Use a larger cube "
     "size.",
-    (long long)sum, INT_MAX);
+    (long long)sum, MCOR_COUNT_LIMIT);
   *total = (int)sum;
   return MCOR_OK;
 }

@@ -80,7 +80,7 @@ static void mcor_put_fixed(const mcor_context* context, void* array, int64_t fir
 
 /* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume in
  * cubes, the mass over the largest one, or 1. */
-static double mcor_size_scale(const mcor_context* context, const mcor_input* input)
+double mcor_size_scale(const mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
   if (input->has_volume || (input->has_mass && input->has_density))
@@ -153,8 +153,14 @@ static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input*
   }
 }
 
-/* Weight of particle i of a chunk on the device. One that is huge against the smoothing length
- * would be infinite there. */
+/* A weight beyond would be infinite on the device. */
+static double mcor_weight_limit(const mcor_context* context)
+{
+  return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
+}
+
+/* Weight of particle i of a chunk on the device: large where the volume is huge against the smoothing
+ * length. */
 static double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
 {
   const double inv_h = context->lattice.cube / context->options->h_scale / chunk->h[i];
@@ -166,7 +172,7 @@ static double mcor_stage_weight(const mcor_context* context, const mcor_stage_ch
 static int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
   const mcor_stage_chunk* chunk, double* heaviest)
 {
-  const double limit = context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
+  const double limit = mcor_weight_limit(context);
   for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
   {
     const double weight = mcor_stage_weight(context, chunk, i);
@@ -301,6 +307,10 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
   mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, &job);
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
   context->heaviest = mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
+  MCOR_RETURN_IF(!(context->heaviest < mcor_weight_limit(context)), context, MCOR_INVALID_ARGUMENT,
+    "The h scale factor is %g, too little for computed volumes. Give volumes, or choose a larger "
+    "one.",
+    context->options->h_scale);
   for (int s = 0; s < slices; ++s)
   {
     if (job.heavy[s] >= 0)

@@ -31,6 +31,8 @@ static inline bool mcor_needs_density(const mcor_input* input)
   return !input->has_volume && !(input->has_mass && input->has_density);
 }
 
+/* What the input's volume or mass is multiplied by on the way to the device. */
+double mcor_size_scale(const mcor_context* context, const mcor_input* input);
 mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);
 

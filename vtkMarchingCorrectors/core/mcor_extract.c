@@ -167,7 +167,7 @@ static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
 /* What of the last call still holds. The caller's version numbers stand for the arrays' content;
  * all else that the search grid, the scalar and the node values depend on is compared. */
 static void mcor_check_reuse(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
 {
   const mcor_input* last = &context->last_input;
   const mcor_options* o = &context->last_options;
@@ -184,7 +184,8 @@ static void mcor_check_reuse(
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision;
-  context->grid_valid = context->grid_valid && particles && parameters;
+  context->grid_valid =
+    context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
   context->value_valid = context->value_valid && context->grid_valid &&
     input->scalar_version != 0 && input->scalar_version == last->scalar_version &&
     input->scalar_component == last->scalar_component &&
@@ -192,15 +193,17 @@ static void mcor_check_reuse(
   context->nodes_valid = context->nodes_valid && context->value_valid;
 }
 
-static mcor_status mcor_prepare(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+/* Search grid and scalar for these options, from the last call where they still hold. */
+mcor_status mcor_prepare(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
 {
+  mcor_check_reuse(context, input, options, uses_solids);
+  context->uses_solids = uses_solids;
   if (!context->value_valid)
   {
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
-  context->grid.has_solids =
-    context->measure.solid_count > 0 && !input->ignore_solids && options->field != MCOR_WEIGHT_SUM;
+  context->grid.has_solids = context->measure.solid_count > 0 && uses_solids;
   const mcor_build build = { .sph_kernel = options->sph_kernel,
     .field = options->field,
     .precision = options->precision,
@@ -303,9 +306,11 @@ static mcor_status mcor_finish_statistics(mcor_context* context)
   return MCOR_OK;
 }
 
-static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_surface* surface)
+static mcor_status mcor_run(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
 {
+  mcor_surface* surface = result;
+  mcor_free_surface(surface); /* of an attempt before */
   MCOR_TRY(mcor_check_input(context, input, options));
   const size_t attributes = (size_t)input->attribute_count;
   surface->attribute_count = input->attribute_count;
@@ -318,9 +323,9 @@ static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
   {
     return MCOR_OK;
   }
-  mcor_check_reuse(context, input, options);
   MCOR_TRY(mcor_list_attributes(context, input, surface));
-  MCOR_TRY(mcor_prepare(context, input, options));
+  MCOR_TRY(mcor_prepare(
+    context, input, options, !input->ignore_solids && options->field != MCOR_WEIGHT_SUM));
   for (int i = 0; i < options->iso_count; ++i)
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
@@ -333,24 +338,50 @@ static mcor_status mcor_run(mcor_context* context, const mcor_input* input,
   return mcor_finish_statistics(context);
 }
 
-/* One attempt; on failure the surface is empty and nothing is kept as valid. */
-static mcor_status mcor_try_extract(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_surface* surface)
+/* One attempt; on failure nothing is kept as valid. */
+static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
 {
   context->error[0] = '\0';
   context->options = options;
-  context->statistics = &surface->statistics;
+  context->statistics = statistics;
   context->phase = MCOR_PHASE_INPUT;
   context->phase_begin = mcor_seconds();
   context->correction_count = context->correction_sum = context->correction_squares = 0;
   context->cl.bytes_peak = context->cl.bytes;
-  const mcor_status status = mcor_run(context, input, options, surface);
+  const mcor_status status = body(context, input, options, result);
   context->last_input = *input;
   context->last_options = *options;
   if (status != MCOR_OK)
   {
     context->grid_valid = context->value_valid = context->nodes_valid = false;
-    mcor_free_surface(surface);
+  }
+  return status;
+}
+
+mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
+{
+  if (!context->created)
+  {
+    return MCOR_DEVICE_ERROR; /* its sentence says why */
+  }
+  mcor_cl* cl = &context->cl;
+  const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
+  cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
+  const int64_t held = cl->bytes;
+  mcor_status status = mcor_try_call(context, input, options, statistics, body, result);
+  if (status == MCOR_OUT_OF_CAPACITY)
+  {
+    mcor_release_memory(context);
+    if (held > cl->bytes)
+    {
+      status = mcor_try_call(context, input, options, statistics, body, result);
+    }
+  }
+  if (status == MCOR_OUT_OF_CAPACITY)
+  {
+    mcor_release_memory(context); /* not in the way of a smaller one */
   }
   return status;
 }
@@ -364,26 +395,11 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   }
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
-  if (!context->created)
+  const mcor_status status =
+    mcor_run_call(context, input, options, &surface->statistics, mcor_run, surface);
+  if (status != MCOR_OK)
   {
-    return MCOR_DEVICE_ERROR; /* its sentence says why */
-  }
-  mcor_cl* cl = &context->cl;
-  const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
-  cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
-  const int64_t held = cl->bytes;
-  mcor_status status = mcor_try_extract(context, input, options, surface);
-  if (status == MCOR_OUT_OF_CAPACITY)
-  {
-    mcor_release_memory(context);
-    if (held > cl->bytes)
-    {
-      status = mcor_try_extract(context, input, options, surface);
-    }
-  }
-  if (status == MCOR_OUT_OF_CAPACITY)
-  {
-    mcor_release_memory(context); /* not in the way of a smaller one */
+    mcor_free_surface(surface);
   }
   return status;
 }

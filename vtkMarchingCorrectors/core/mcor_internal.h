@@ -165,6 +165,7 @@ struct mcor_context
   mcor_options last_options;
   bool grid_valid, value_valid;
   const mcor_options* options; /* of the call under way */
+  bool uses_solids;            /* solid particles are on the device */
   mcor_statistics* statistics;
   mcor_phase phase;
   double phase_begin;
@@ -210,6 +211,16 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
 {
   return context->options->seeds == MCOR_PAIRS && context->options->field != MCOR_WEIGHT_SUM;
 }
+
+/* The work of one call; what an attempt before left in the result is to be freed first. */
+typedef mcor_status (*mcor_body)(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* result);
+
+/* Runs the body, and once more where memory ran out but some could be given back. */
+mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result);
+mcor_status mcor_prepare(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
 
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);

@@ -89,50 +89,64 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-/* Distance from x to its 32nd nearest other particle, or the farthest if there are fewer, over the
- * number of particles within: the spacing there. All times the scale. */
-static double mcor_spacing_at(const mcor_sampling* job, const double x[3])
+/* Squared distances, times the squared scale, from a sample to the particle itself and its 32 nearest
+ * others, or all there are; the least first. */
+typedef struct mcor_neighbours
 {
-  const double scale = job->scale;
-  double nearest[MCOR_SAMPLE_NEIGHBOURS + 2], chunk[MCOR_CHUNK], d2[MCOR_CHUNK];
-  int found = 0;
-  for (int64_t first = 0, count; first < job->input->count; first += count)
+  int count;
+  double d2[MCOR_SAMPLE_NEIGHBOURS + 1];
+} mcor_neighbours;
+
+static void mcor_add_neighbours(mcor_neighbours* nearest, const double* d2, int count)
+{
+  for (int i = 0; i < count; ++i)
   {
-    const int64_t rest = job->input->count - first;
-    count = rest < MCOR_CHUNK ? rest : MCOR_CHUNK;
-    memset(d2, 0, sizeof d2);
-    for (int a = 0; a < 3; ++a)
+    const bool full = nearest->count == MCOR_SAMPLE_NEIGHBOURS + 1;
+    if (!full || d2[i] < nearest->d2[MCOR_SAMPLE_NEIGHBOURS])
     {
-      mcor_read_array(&job->positions, first, (int)count, a, chunk);
-      for (int i = 0; i < count; ++i)
+      int to = full ? MCOR_SAMPLE_NEIGHBOURS : nearest->count++;
+      for (; to > 0 && nearest->d2[to - 1] > d2[i]; --to)
       {
-        const double d = chunk[i] * scale - x[a] * scale;
-        d2[i] += d * d;
+        nearest->d2[to] = nearest->d2[to - 1];
       }
-    }
-    for (int i = 0; i < count; ++i)
-    {
-      const bool full = found == MCOR_SAMPLE_NEIGHBOURS + 1;
-      if (!full || d2[i] < nearest[found - 1])
-      {
-        int to = full ? found - 1 : found++;
-        for (; to > 0 && nearest[to - 1] > d2[i]; --to)
-        {
-          nearest[to] = nearest[to - 1];
-        }
-        nearest[to] = d2[i];
-      }
+      nearest->d2[to] = d2[i];
     }
   }
-  return sqrt(nearest[found - 1]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / found);
 }
 
+/* The spacing at each sample of a slice: the distance of the farthest of these neighbours, over how
+ * many lie within. */
 static void mcor_space_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_sampling* job = data;
+  const double scale = job->scale;
+  mcor_neighbours nearest[MCOR_SAMPLES / MCOR_SLICES] = { 0 };
+  double x[3][MCOR_CHUNK], d2[MCOR_CHUNK];
+  for (int64_t begin = 0; begin < job->input->count; begin += MCOR_CHUNK)
+  {
+    const int64_t rest = job->input->count - begin;
+    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_read_array(&job->positions, begin, count, a, x[a]);
+    }
+    for (int64_t s = first; s < last; ++s)
+    {
+      const double* at = job->samples[0].sample[s].x;
+      for (int i = 0; i < count; ++i)
+      {
+        const double dx = x[0][i] * scale - at[0] * scale, dy = x[1][i] * scale - at[1] * scale,
+                     dz = x[2][i] * scale - at[2] * scale;
+        d2[i] = dx * dx + dy * dy + dz * dz;
+      }
+      mcor_add_neighbours(&nearest[s - first], d2, count);
+    }
+  }
   for (int64_t s = first; s < last; ++s)
   {
-    job->spacing[s] = mcor_spacing_at(job, job->samples[0].sample[s].x);
+    const mcor_neighbours* n = &nearest[s - first];
+    job->spacing[s] =
+      sqrt(n->d2[n->count - 1]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / n->count);
   }
   (void)slice;
 }

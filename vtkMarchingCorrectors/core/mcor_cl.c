@@ -391,13 +391,14 @@ mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
   cl->build = *build;
   cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
   cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
-  const char* sources[] = { mcor_source_mcor_prelude_cl, mcor_source_mcor_intrinsic_cl,
-    mcor_source_mcor_sph_kernel_h, mcor_source_mcor_query_cl, mcor_source_mcor_tile_cl,
-    mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl, mcor_source_mcor_grid_cl,
-    mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl, mcor_source_mcor_seed_cl,
-    mcor_source_mcor_block_cl, mcor_source_mcor_march_cl, mcor_source_mcor_pair_cl,
-    mcor_source_mcor_points_cl, mcor_source_mcor_attribute_cl, mcor_source_mcor_correct_cl,
-    mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl, mcor_source_mcor_trim_cl };
+  const char* sources[] = { mcor_source_mcor_shared_h, mcor_source_mcor_prelude_cl,
+    mcor_source_mcor_intrinsic_cl, mcor_source_mcor_sph_kernel_h, mcor_source_mcor_query_cl,
+    mcor_source_mcor_tile_cl, mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl,
+    mcor_source_mcor_grid_cl, mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl,
+    mcor_source_mcor_seed_cl, mcor_source_mcor_block_cl, mcor_source_mcor_march_cl,
+    mcor_source_mcor_pair_cl, mcor_source_mcor_points_cl, mcor_source_mcor_attribute_cl,
+    mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl,
+    mcor_source_mcor_trim_cl };
   char options[512];
   mcor_build_options(cl, build, options, sizeof options);
   cl_int error;

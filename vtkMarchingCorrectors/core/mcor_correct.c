@@ -5,8 +5,6 @@
 
 #include "mcor_internal.h"
 
-#define MCOR_GROUP_CHUNK 512 /* as in mcor_points.cl */
-
 /* Cuts points [first, first + count) into groups that are evaluated together. */
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)

@@ -7,13 +7,9 @@
 
 #include "mcor.h"
 #include "mcor_cl.h"
+#include "mcor_shared.h"
 
 #define MCOR_LEVEL_LIMIT 32
-#define MCOR_PADDING 16 /* elements beyond the end of particle arrays, for vector loads */
-#define MCOR_BLOCK_CUBES 32
-#define MCOR_BLOCK_BRICKS 512
-#define MCOR_BLOCK_WORDS 16
-#define MCOR_NEIGHBOURS 14
 
 #define MCOR_TRY(call)                                                                             \
   do                                                                                               \
@@ -34,16 +30,6 @@
       return mcor_fail(context, status, __VA_ARGS__);                                              \
     }                                                                                              \
   } while (0)
-
-/* Twin of the struct in mcor_query.cl. */
-typedef struct mcor_level
-{
-  cl_ulong base;
-  cl_int cells[3];
-  cl_float inv_cell;
-  cl_float support;
-  cl_int unused;
-} mcor_level;
 
 /* The particles as the input gives them, checked and measured. Lengths in L. */
 typedef struct mcor_measure
@@ -131,8 +117,6 @@ typedef struct mcor_component
   double scale; /* of the values on the device */
 } mcor_component;
 
-#define MCOR_ATTRIBUTE_LIMIT 8 /* components evaluated together, see mcor_attribute.cl */
-
 /* The components that vary, and those of them that are on the device. */
 typedef struct mcor_attributes
 {
@@ -200,10 +184,10 @@ static inline bool mcor_is_put(const cl_int* scanned, int64_t v)
   return scanned[v] != scanned[v + 1];
 }
 
-/* Batches of so many particles or triangles, above 0. Twin of MCOR_BATCH in mcor_prelude.cl. */
+/* Batches of so many particles or triangles, above 0. */
 static inline int mcor_batches(const mcor_context* context, int count)
 {
-  return (count - 1) / (context->cl.lanes == 1 ? 1 : 64) + 1;
+  return (count - 1) / MCOR_BATCH_OF(context->cl.lanes) + 1;
 }
 
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
@@ -280,19 +264,8 @@ mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 
-/* 256 rows of 16: up to 15 edges, 3 a triangle; then the number of triangles. An edge is
- * axis << 3 | lower corner; corner and axis bits 1 x, 2 y, 4 z. */
+/* 256 rows of 16: up to 15 edges, 3 a triangle, see mcor_cell_row; then the number of triangles. */
 void mcor_make_case_table(uint8_t table[256][16]);
-
-/* One way to triangulate a cell. Twin of the offsets in mcor_topology.cl. */
-typedef struct mcor_cell_row
-{
-  uint8_t edges[36]; /* as above */
-  uint8_t triangles;
-  uint8_t tunnel[2]; /* the row of the same case, counted from its first, where a tunnel joins two
-                      * regions below, above; 0: there is none */
-  uint8_t unused;
-} mcor_cell_row;
 
 #define MCOR_TOPOLOGY_ROWS 1200
 typedef struct mcor_topology_table
@@ -307,6 +280,7 @@ typedef struct mcor_topology_table
 
 void mcor_make_topology_table(mcor_topology_table* table);
 
+extern const char mcor_source_mcor_shared_h[];
 extern const char mcor_source_mcor_prelude_cl[];
 extern const char mcor_source_mcor_intrinsic_cl[];
 extern const char mcor_source_mcor_points_cl[];

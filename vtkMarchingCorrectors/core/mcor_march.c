@@ -100,7 +100,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   const int count = bricks->now.count;
   const size_t n = (size_t)count;
   const bool resolved = context->options->topology == MCOR_TOPOLOGY_FIELD;
-  MCOR_TRY(mcor_reserve(context, &mesh->edges, n * 9 * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &mesh->edges, n * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_LIGHT, count, MCOR_INT(count),

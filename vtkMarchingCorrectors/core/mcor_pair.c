@@ -5,8 +5,6 @@
 
 #include "mcor_internal.h"
 
-#define MCOR_PAIR_GROUPS 8 /* as in mcor_pair.cl */
-
 /* Places the bricks that have nodes of cells between pairs, and marks these cells. iso: relative to
  * A0. */
 mcor_status mcor_mark_pairs(mcor_context* context, double iso)

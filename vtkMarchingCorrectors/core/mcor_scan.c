@@ -48,7 +48,7 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
  * histogram no larger than what is sorted. */
 static int mcor_digit_bits(const mcor_context* context, int chunks, int count, uint64_t key_limit)
 {
-  int most = context->cl.lanes == 1 ? 8 : 11; /* MCOR_DIGIT_BITS of mcor_scan.cl */
+  int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
   int bits = 1;
   while (most > 8 && chunks << most > count)
   {

@@ -5,9 +5,6 @@
 
 #include "mcor_internal.h"
 
-#define MCOR_CHUNK_PARTICLES 16 /* MCOR_CHUNK of mcor_seed.cl */
-#define MCOR_BLOCK_REGIONS 64   /* as there */
-
 /* Asks for bricks beside those with `fresh` nodes, which these show to be needed. */
 static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
 {
@@ -81,7 +78,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
 static mcor_status mcor_find_sides(mcor_context* context, double iso)
 {
   mcor_grid* grid = &context->grid;
-  const int chunks = grid->count / MCOR_CHUNK_PARTICLES + 1;
+  const int chunks = grid->count / MCOR_SIDE_PARTICLES + 1;
   MCOR_TRY(mcor_reserve(context, &grid->sides, (size_t)chunks));
   return context->options->field == MCOR_WEIGHT_SUM
     ? MCOR_OK

@@ -8,8 +8,6 @@
 
 #include <stdlib.h>
 
-#define MCOR_DECISION_MASKS 5 /* as in mcor_topology.cl */
-
 static mcor_status mcor_upload_topology_table(mcor_context* context)
 {
   if (context->topology_rows.mem)

@@ -3,7 +3,6 @@
 
 /* Other particle arrays at the surface's points [III-D.4]. */
 
-#define MCOR_ATTRIBUTE_LIMIT 8
 
 /* A lower sum of weights has no digits that could be divided by. */
 #define MCOR_LEAST_SUM ((real)1e-30f)

@@ -5,10 +5,6 @@
  * brick has a slot (values, masks) where it is needed. Blocks are sorted by key, bricks by block,
  * then z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
 
-#define MCOR_BLOCK_BRICKS 512
-#define MCOR_BLOCK_WORDS 16 /* words of 32 bricks: x 0..7, y 0..3 or 4..7, one z */
-#define MCOR_BLOCK_CUBES 32
-
 #define MCOR_BLOCK_PARAMS                                                                          \
   const int block_count, const int block_shift, const int blocks_x, const int blocks_y,            \
     const int blocks_z, __global const ulong *block_keys, __global const int *block_buckets

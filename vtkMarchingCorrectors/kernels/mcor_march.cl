@@ -164,11 +164,10 @@ void mcor_march_around(const ulong* m, int axis, ulong* q)
                    : mcor_from_last_y(q[1], mcor_from_last_x(m[2], m[3]));
 }
 
-/* Masks per brick and axis: crossed edges; of these, those next to a cell that is not used; of
+/* MCOR_EDGE_MASKS, three an axis: crossed edges; of these, those next to a cell that is not used; of
  * these, pinched ones: only two cells are used, opposite to each other. Their triangles form two
  * fans, so that such an edge has two vertices, the second one for the cell below in the first other
  * axis. */
-#define MCOR_EDGE_MASKS 9
 
 /* One work-item = one brick. Reads used cells and node masks. Writes the edge masks for edges that
  * have their lower node in the brick and a used cell around them; counts vertices and triangles. */

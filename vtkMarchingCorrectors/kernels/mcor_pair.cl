@@ -156,11 +156,8 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
   }
 }
 
-/* Groups of MCOR_LANES particles that one work-item looks at together first: most particles are far
- * from the surface. */
-#define MCOR_PAIR_GROUPS 8
-
-/* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles. Reads the particles
+/* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles, looked at together first,
+ * as most particles are far from the surface. Reads the particles
  * within the smoothing length of each. Marks the cells between pairs that straddle the iso
  * value. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* sides,

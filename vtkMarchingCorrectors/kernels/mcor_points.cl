@@ -14,9 +14,6 @@
 #define MCOR_GROUP_EDGE 7
 #define MCOR_GROUP_EDGES 12
 
-/* Points that one work-item cuts into groups. */
-#define MCOR_GROUP_CHUNK 512
-
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
 /* Points: lattice node plus offset in cubes. */

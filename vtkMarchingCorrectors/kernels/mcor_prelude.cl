@@ -84,16 +84,9 @@ real mcor_lane_sum(realv v)
  * memory per work-item. */
 #define MCOR_TILE (MCOR_LANES == 1 ? 32 : 1024)
 
-/* Particles or triangles that one work-item treats in turn where that spares work: a CPU hides
- * little of what single ones wait for. Twin in mcor_internal.h. */
-#define MCOR_BATCH (MCOR_LANES == 1 ? 1 : 64)
+#define MCOR_BATCH MCOR_BATCH_OF(MCOR_LANES)
 
-/* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest node they are. Node or cell
- * (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
-#define MCOR_BRICK 4
-
-/* A region is 2 x 2 x 2 bricks. */
-#define MCOR_REGION_BRICKS 2
+/* Masks of a brick's nodes or cells, see mcor_shared.h. */
 #define MCOR_LOW_X 0x1111111111111111UL
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL

@@ -8,15 +8,6 @@
  * cell and, in a cell, by position, x first, so that a row of cells is sorted by x: the order of
  * every sum is fixed by the particles alone. */
 
-typedef struct
-{
-  ulong base;     /* key of the level's cell (0, 0, 0) */
-  int cells[3];   /* extent of the level, in its cells */
-  float inv_cell; /* 1 / cell size, in fixed-point units */
-  float support;  /* largest support radius of the level's particles, cubes, rounded up */
-  int unused;
-} mcor_level;
-
 #define MCOR_GRID_PARAMS                                                                           \
   const int particle_count, const int level_count, const int bucket_shift, const int fix_bits,     \
     __global const mcor_level *levels, __global const int *buckets,                                \
@@ -24,7 +15,7 @@ typedef struct
     __global const fix *pz, __global const real *p_inv_h, __global const real *p_weight,           \
     __global const real *p_trim_weight, __global const real *p_value
 
-/* Arrays are padded by 16 elements, so that a vector load may run over the end. */
+/* Arrays are padded by MCOR_PADDING elements, so that a vector load may run over the end. */
 typedef struct
 {
   int particle_count, level_count, bucket_shift, fix_bits;

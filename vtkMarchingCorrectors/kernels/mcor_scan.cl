@@ -4,8 +4,7 @@
 /* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `chunks` runs of
  * equal length; one work-item walks one run. */
 
-/* Bits that one round of the radix sort treats, at most. Twin in mcor_scan.c. */
-#define MCOR_DIGIT_BITS (MCOR_LANES == 1 ? 8 : 11)
+#define MCOR_DIGIT_BITS MCOR_DIGIT_BITS_OF(MCOR_LANES)
 
 int mcor_chunk_begin(int chunk, int chunks, int count)
 {

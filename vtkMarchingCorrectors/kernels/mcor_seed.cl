@@ -58,7 +58,7 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv i
 /* Sides of the iso value on which particles are: bit 0 above, bit 1 below; both where it is so close
  * that a mean of such values may round to the other side. Kept for every MCOR_CHUNK successive
  * sorted particles, so that most queries need not look at particles. */
-#define MCOR_CHUNK 16
+#define MCOR_CHUNK MCOR_SIDE_PARTICLES
 #define MCOR_SIDE_MARGIN ((real)1e-5f)
 
 /* One work-item = one chunk. Writes its fluid particles' sides. */
@@ -264,7 +264,6 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 }
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
-#define MCOR_BLOCK_REGIONS 64
 
 /* Mark of a region's first brick, and offsets of the marks of all of them. */
 int mcor_region_mark(int region)

@@ -7,15 +7,6 @@
  * lowest node, so that both cells read the same answer. Then cells with two loops are asked in the
  * same way, at the saddles of the trilinear interpolant, whether the loops make a tunnel. */
 
-/* Masks per brick: ambiguous faces with their lowest node in the brick, by axis of their normal, of
- * which those stay whose nodes above are joined; cells whose samples are all below, all above. */
-#define MCOR_DECISION_MASKS 5
-
-/* Twin of mcor_cell_row: bytes of a row, and where its triangle count and its tunnels are. */
-#define MCOR_ROW 40
-#define MCOR_ROW_TRIANGLES 36
-#define MCOR_ROW_TUNNEL 37
-
 /* What the field is at a sample. */
 #define MCOR_SAMPLE_BELOW 0
 #define MCOR_SAMPLE_ABOVE 1
@@ -193,7 +184,7 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
  * tunnel, and the number of their samples, two each. */
 __kernel void mcor_topology_cells(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const int* cases,
-  __global const uchar* rows, __global ulong* decisions, __global int* counts)
+  __global const mcor_cell_row* rows, __global ulong* decisions, __global int* counts)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -205,10 +196,9 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   mcor_cell_corners(m);
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
-    __global const uchar* row = rows +
-      mcor_topology_row(m, neighbours, decisions, cases, slot, mcor_ctz(rest)) * MCOR_ROW +
-      MCOR_ROW_TUNNEL;
-    cells |= row[0] | row[1] ? rest & -rest : 0;
+    __global const mcor_cell_row* row =
+      rows + mcor_topology_row(m, neighbours, decisions, cases, slot, mcor_ctz(rest));
+    cells |= row->tunnel[0] | row->tunnel[1] ? rest & -rest : 0;
   }
   decisions[slot * (long)MCOR_DECISION_MASKS + 3] = cells;
   counts[slot] = 2 * (int)popcount(cells);
@@ -349,24 +339,24 @@ __kernel void mcor_topology_agree(const int brick_count, __global const int* bas
 }
 
 /* The row of a cell with all that was decided. *tunnel: whether it has a tunnel. */
-__global const uchar* mcor_topology_cell(const ulong* corners, __global const int* neighbours,
-  __global const ulong* decisions, __global const int* cases, __global const uchar* rows, int slot,
-  int cell, int* tunnel)
+__global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
+  __global const int* neighbours, __global const ulong* decisions, __global const int* cases,
+  __global const mcor_cell_row* rows, int slot, int cell, int* tunnel)
 {
   __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
   const int first = cases[mcor_march_case(corners, cell)] >> 6;
   const int row = mcor_topology_row(corners, neighbours, decisions, cases, slot, cell);
-  __global const uchar* choice = rows + row * MCOR_ROW + MCOR_ROW_TUNNEL;
+  __global const uchar* choice = rows[row].tunnel;
   const int other = cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
   *tunnel = other != 0;
-  return rows + (other ? first + other : row) * MCOR_ROW;
+  return rows + (other ? first + other : row);
 }
 
 /* One work-item = one brick. Reads all decisions. Writes the numbers of triangles and of
  * tunnels. */
 __kernel void mcor_topology_count(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
-  __global const int* cases, __global const uchar* rows, __global int* triangle_count,
+  __global const int* cases, __global const mcor_cell_row* rows, __global int* triangle_count,
   __global int* tunnel_count)
 {
   const int slot = get_global_id(0);
@@ -380,8 +370,9 @@ __kernel void mcor_topology_count(const int brick_count, __global const int* nei
   int triangles = 0, tunnels = 0, tunnel;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
-    triangles += mcor_topology_cell(
-      m, neighbours, decisions, cases, rows, slot, mcor_ctz(rest), &tunnel)[MCOR_ROW_TRIANGLES];
+    triangles +=
+      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, mcor_ctz(rest), &tunnel)
+        ->triangles;
     tunnels += tunnel;
   }
   triangle_count[slot] = triangles;
@@ -391,7 +382,7 @@ __kernel void mcor_topology_count(const int brick_count, __global const int* nei
 /* One work-item = one brick. Reads all decisions and the edge numbering. Writes triangles. */
 __kernel void mcor_topology_triangles(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
-  __global const ulong* edges, __global const int* cases, __global const uchar* rows,
+  __global const ulong* edges, __global const int* cases, __global const mcor_cell_row* rows,
   __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
 {
   const int slot = get_global_id(0);
@@ -409,8 +400,8 @@ __kernel void mcor_topology_triangles(const int brick_count, __global const int*
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    __global const uchar* row =
+    __global const mcor_cell_row* row =
       mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel);
-    to = mcor_march_emit(row, row[MCOR_ROW_TRIANGLES], numbers, cell, to);
+    to = mcor_march_emit(row->edges, row->triangles, numbers, cell, to);
   }
 }

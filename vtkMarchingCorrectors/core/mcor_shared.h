@@ -1,0 +1,77 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_shared_h
+#define mcor_shared_h
+
+/* Constants and structs that the host and its kernels must see alike. The first of the OpenCL
+ * sources; lanes: see mcor_prelude.cl. */
+
+#ifdef __OPENCL_VERSION__
+#define MCOR_TYPE(type) type
+#else
+#define MCOR_TYPE(type) cl_##type
+#endif
+
+/* Search grid. Arrays of particles are padded by as many elements as the widest vector load takes. */
+#define MCOR_PADDING 16
+
+typedef struct mcor_level
+{
+  MCOR_TYPE(ulong) base;     /* key of the level's cell (0, 0, 0) */
+  MCOR_TYPE(int) cells[3];   /* extent of the level, in its cells */
+  MCOR_TYPE(float) inv_cell; /* 1 / cell size, in fixed-point units */
+  MCOR_TYPE(float) support; /* largest support radius of the level's particles, cubes, rounded up */
+  MCOR_TYPE(int) unused;
+} mcor_level;
+
+/* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest node they are. Node or cell
+ * (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
+#define MCOR_BRICK 4
+#define MCOR_BRICK_NODES 64
+#define MCOR_NEIGHBOURS                                                                            \
+  14 /* bricks beside one that share cells with it, see mcor_brick_neighbours */
+
+/* A region is 2 x 2 x 2 bricks, a block 4 x 4 x 4 regions. */
+#define MCOR_REGION_BRICKS 2
+#define MCOR_BLOCK_REGIONS 64
+#define MCOR_BLOCK_BRICKS 512
+#define MCOR_BLOCK_WORDS 16 /* of a bit per brick: x 0..7, y 0..3 or 4..7, one z */
+#define MCOR_BLOCK_CUBES 32 /* along an edge */
+
+/* Particles or triangles that one work-item treats in turn where that spares work: a CPU hides
+ * little of what single ones wait for. */
+#define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
+
+/* Bits that one round of the radix sort treats, at most. */
+#define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 11)
+
+/* Seeds: successive particles with one flag for the sides they are on; vectors of particles whose
+ * pairs one work-item finds. */
+#define MCOR_SIDE_PARTICLES 16
+#define MCOR_PAIR_GROUPS 8
+
+/* Masks per brick: of lattice edges with a vertex, see mcor_march_count, and of decisions about the
+ * topology: ambiguous faces with their lowest node in the brick, by axis of their normal, of which
+ * those stay whose nodes above are joined; cells whose samples are all below, all above. */
+#define MCOR_EDGE_MASKS 9
+#define MCOR_DECISION_MASKS 5
+
+/* One way to triangulate a cell. An edge is axis << 3 | lower corner; corner and axis bits 1 x, 2 y,
+ * 4 z. */
+typedef struct mcor_cell_row
+{
+  MCOR_TYPE(uchar) edges[36]; /* 3 a triangle */
+  MCOR_TYPE(uchar) triangles;
+  MCOR_TYPE(uchar)
+  tunnel[2]; /* the row of the same case, counted from its first, where a tunnel
+                               * joins two regions below, above; 0: there is none */
+  MCOR_TYPE(uchar) unused;
+} mcor_cell_row;
+
+/* Points that one work-item cuts into groups. */
+#define MCOR_GROUP_CHUNK 512
+
+/* Components of attributes that are evaluated together. */
+#define MCOR_ATTRIBUTE_LIMIT 8
+
+#endif

@@ -3,20 +3,25 @@
 #include "vtkMarchingCorrectors.h"
 
 #include "mcor.h"
-#include "vtkDataObject.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkObjectFactory.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 //------------------------------------------------------------------------------
 // What outlives a run: the core's context, and what the last run's particles and scalar were.
@@ -26,8 +31,9 @@ public:
   ~vtkInternals() { mcor_free_context(this->Context); }
 
   mcor_context* Context = nullptr;
-  std::string Device;           // what the context was created for
-  double DefaultIsoValue = 0.0; // of the last run that was given none
+  std::string Device; // what the context was created for
+  bool InRun = false;
+  bool ReleaseAfterRun = false; // asked for by an observer, while the memory is in use
 
   std::vector<std::uint64_t> Particles, Scalar;
   std::uint64_t ParticlesVersion = 0, ScalarVersion = 0;
@@ -80,17 +86,53 @@ int IsOn(vtkTypeBool value)
   return value ? 1 : 0;
 }
 
+bool IsAborted(vtkMarchingCorrectors* filter)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230101)
+  return filter->CheckAbort();
+#else
+  return filter->GetAbortExecute() != 0;
+#endif
+}
+
 // Runs between device launches; returns nonzero to stop.
 int ReportProgress(void* user, double fraction, const char* phase)
 {
   auto* filter = static_cast<vtkMarchingCorrectors*>(user);
   filter->SetProgressText(phase);
   filter->UpdateProgress(fraction);
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230101)
-  return filter->CheckAbort() ? 1 : 0;
-#else
-  return filter->GetAbortExecute() ? 1 : 0;
-#endif
+  return IsAborted(filter) ? 1 : 0;
+}
+
+// What to call the blocks, in the order of their iteration: by name if there is one, of the block
+// or of what it is a partition of, and by flat index, as ParaView does.
+std::vector<std::string> NameBlocks(vtkDataObjectTree* tree)
+{
+  std::vector<std::string> names;
+  std::string whole; // of which the blocks up to index `last` are partitions
+  unsigned int last = 0;
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(tree->NewTreeIterator());
+  iterator->VisitOnlyLeavesOff();
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    const unsigned int index = iterator->GetCurrentFlatIndex();
+    vtkInformation* about =
+      iterator->HasCurrentMetaData() ? iterator->GetCurrentMetaData() : nullptr;
+    const char* own = about ? about->Get(vtkCompositeDataSet::NAME()) : nullptr;
+    if (auto* parts = vtkPartitionedDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
+    {
+      whole = own ? own : "";
+      last = index + parts->GetNumberOfPartitions();
+    }
+    else if (!iterator->GetCurrentDataObject()->IsA("vtkCompositeDataSet"))
+    {
+      const std::string name = own ? own : index <= last ? whole : "";
+      names.push_back(
+        "Block " + (name.empty() ? "" : "'" + name + "', ") + "index " + std::to_string(index));
+    }
+  }
+  return names;
 }
 
 void PrintName(ostream& os, vtkIndent indent, const char* label, const std::string& name)
@@ -131,6 +173,34 @@ void vtkMarchingCorrectors::SetFreeSurfaceValue(double value)
 }
 
 //------------------------------------------------------------------------------
+void vtkMarchingCorrectors::AddExcludedArray(const std::string& name)
+{
+  this->ExcludedArrays.push_back(name);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::ClearExcludedArrays()
+{
+  this->ExcludedArrays.clear();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::GetNumberOfExcludedArrays() const
+{
+  return static_cast<int>(this->ExcludedArrays.size());
+}
+
+//------------------------------------------------------------------------------
+const char* vtkMarchingCorrectors::GetExcludedArray(int i) const
+{
+  return i >= 0 && i < this->GetNumberOfExcludedArrays()
+    ? this->ExcludedArrays[static_cast<size_t>(i)].c_str()
+    : nullptr;
+}
+
+//------------------------------------------------------------------------------
 bool vtkMarchingCorrectors::SetKernelByName(const char* name)
 {
   const int kernel = name ? mcor_find_sph_kernel(name) : -1;
@@ -166,9 +236,14 @@ vtkFieldData* vtkMarchingCorrectors::GetRunStatistics()
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectors::ReleaseDeviceMemory()
 {
-  if (this->Internals->Context)
+  vtkInternals& internals = *this->Internals;
+  if (internals.InRun)
   {
-    mcor_release_memory(this->Internals->Context);
+    internals.ReleaseAfterRun = true;
+  }
+  else if (internals.Context)
+  {
+    mcor_release_memory(internals.Context);
   }
 }
 
@@ -176,13 +251,47 @@ void vtkMarchingCorrectors::ReleaseDeviceMemory()
 int vtkMarchingCorrectors::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkMarchingCorrectors::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->RequestDataObject(inputVector, outputVector);
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+//------------------------------------------------------------------------------
+// A poly data, or blocks of them as the input has.
+int vtkMarchingCorrectors::RequestDataObject(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (!output || !output->IsA(blocks ? blocks->GetClassName() : "vtkPolyData"))
+  {
+    auto made = vtkSmartPointer<vtkDataObject>::Take(
+      blocks ? static_cast<vtkDataObject*>(blocks->NewInstance()) : vtkPolyData::New());
+    outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+  }
   return 1;
 }
 
 //------------------------------------------------------------------------------
 // Superclasses would report an error for a second array that was never asked for.
-vtkMarchingCorrectorsRequest vtkMarchingCorrectors::FindRequest(
-  int index, vtkInformationVector** inputVector)
+vtkMarchingCorrectorsRequest vtkMarchingCorrectors::FindRequest(int index, vtkPointSet* particles)
 {
   vtkMarchingCorrectorsRequest request;
   vtkInformationVector* all = this->GetInformation()->Get(INPUT_ARRAYS_TO_PROCESS());
@@ -196,17 +305,19 @@ vtkMarchingCorrectorsRequest vtkMarchingCorrectors::FindRequest(
   if (!request.Name.empty() || info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
   {
     int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    request.Array = this->GetInputAbstractArrayToProcess(index, inputVector, association);
+    request.Array = this->GetInputAbstractArrayToProcess(index, particles, association);
     request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
   }
   return request;
 }
 
 //------------------------------------------------------------------------------
+// The sentences of all blocks are kept, one a line.
 int vtkMarchingCorrectors::Fail(const std::string& message)
 {
-  this->ErrorMessage = message;
-  vtkErrorMacro(<< message);
+  const std::string sentence = this->BlockName + message;
+  this->ErrorMessage += (this->ErrorMessage.empty() ? "" : "\n") + sentence;
+  vtkErrorMacro(<< sentence);
   return 0;
 }
 
@@ -230,10 +341,8 @@ bool vtkMarchingCorrectors::PrepareDevice()
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::FillOptions(
-  mcor_options& options, const vtkMarchingCorrectorsInput& input)
+void vtkMarchingCorrectors::FillOptions(mcor_options& options) const
 {
-  vtkContourValues* values = this->FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
   mcor_set_default_options(&options);
   options.sph_kernel = static_cast<mcor_sph_kernel>(this->Kernel);
   options.field = this->FreeSurface ? MCOR_WEIGHT_SUM
@@ -244,14 +353,6 @@ void vtkMarchingCorrectors::FillOptions(
   options.h_scale = this->HScaleFactor;
   options.cube_size_factor = this->CubeSizeFactor;
   options.cube_size = this->CubeSize;
-  options.iso_values = values->GetValues();
-  options.iso_count = static_cast<int>(values->GetNumberOfContours());
-  if (options.iso_count == 0)
-  {
-    this->Internals->DefaultIsoValue = this->FreeSurface ? 0.5 : input.MiddleOfScalarRange();
-    options.iso_values = &this->Internals->DefaultIsoValue;
-    options.iso_count = 1;
-  }
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection =
     this->BoundaryDetection == EIGENVALUE ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
@@ -269,74 +370,173 @@ void vtkMarchingCorrectors::FillOptions(
   options.residual = IsOn(this->ComputeResidual);
   options.boundary_flag = IsOn(this->ComputeBoundaryFlag);
   options.iso_value = IsOn(this->ComputeScalars);
-  options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
-  options.progress = ReportProgress;
-  options.progress_user = this;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
+{
+  choice.Scalar = this->FindRequest(0, particles);
+  choice.ScalarDot = this->FindRequest(1, particles);
+  choice.ScalarComponent = this->ScalarComponent;
+  choice.FreeSurface = this->FreeSurface != 0;
+  choice.SmoothingLengthArrayName = this->SmoothingLengthArrayName;
+  choice.SmoothingLength = this->SmoothingLength;
+  choice.EstimateSmoothingLength = this->EstimateSmoothingLength != 0;
+  choice.SmoothingLengthIsSupportRadius = this->SmoothingLengthIsSupportRadius != 0;
+  choice.VolumeArrayName = this->VolumeArrayName;
+  choice.MassArrayName = this->MassArrayName;
+  choice.DensityArrayName = this->DensityArrayName;
+  choice.Mass = this->Mass;
+  choice.Density = this->Density;
+  choice.DetectArrays = this->DetectArrays != 0;
+  choice.FluidArrayName = this->FluidArrayName;
+  choice.FluidValue = this->FluidValue;
+  choice.IgnoreSolids = this->IgnoreSolids != 0;
+  choice.Kernel = this->Kernel;
+  choice.InterpolateAttributes = this->InterpolateAttributes != 0;
+  choice.ExcludedArrays = this->ExcludedArrays;
+  choice.ComputeScalars = this->ComputeScalars != 0;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrectorsInput& input)
+{
+  vtkContourValues* values =
+    input.Choice.FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
+  if (values->GetNumberOfContours() == 0)
+  {
+    return { input.Choice.FreeSurface ? 0.5 : input.MiddleOfScalarRange() };
+  }
+  return { values->GetValues(), values->GetValues() + values->GetNumberOfContours() };
 }
 
 //------------------------------------------------------------------------------
 int vtkMarchingCorrectors::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPointSet* particles = vtkPointSet::GetData(inputVector[0]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  vtkInternals& internals = *this->Internals;
   this->ErrorMessage.clear();
+  this->BlockName.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
-  this->SetUsedNames({ this, particles });
-  if (!particles || !output || particles->GetNumberOfPoints() == 0)
+  internals.InRun = true;
+  const int done = vtkDataObjectTree::GetData(inputVector[0])
+    ? this->ExtractBlocks(
+        vtkDataObjectTree::GetData(inputVector[0]), vtkDataObjectTree::GetData(outputVector))
+    : this->ExtractFrom(vtkPointSet::GetData(inputVector[0]), vtkPolyData::GetData(outputVector));
+  internals.InRun = false;
+  if (internals.ReleaseAfterRun)
   {
-    return 1;
+    internals.ReleaseAfterRun = false;
+    this->ReleaseDeviceMemory();
   }
-  vtkMarchingCorrectorsInput input(this, particles);
-  if (!input.Collect(this->FindRequest(0, inputVector), this->FindRequest(1, inputVector)))
-  {
-    return this->Fail(input.Error);
-  }
-  this->SetUsedNames(input);
-  if (input.FluidCount == 0)
-  {
-    vtkWarningMacro("No particle has " << this->FluidArrayName << " = " << this->FluidValue
-                                       << ", so there is no fluid and no surface.");
-    return 1;
-  }
-  if (!this->PrepareDevice())
-  {
-    return 0;
-  }
-  return this->Extract(input, output);
+  return done;
 }
 
 //------------------------------------------------------------------------------
-int vtkMarchingCorrectors::Extract(vtkMarchingCorrectorsInput& input, vtkPolyData* output)
+// A block that fails leaves its place empty, and the others as they are.
+int vtkMarchingCorrectors::ExtractBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
+  output->CopyStructure(input);
+  const std::vector<std::string> names = NameBlocks(input);
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(input->NewTreeIterator());
+  iterator->InitTraversal();
+  const double share = 1.0 / static_cast<double>(names.size());
+  for (size_t i = 0; i < names.size(); ++i, iterator->GoToNextItem())
+  {
+    this->SetProgressShiftScale(static_cast<double>(i) * share, share);
+    this->BlockName = names[i] + ": ";
+    vtkDataObject* block = iterator->GetCurrentDataObject();
+    vtkNew<vtkPolyData> surface;
+    surface->GetFieldData()->PassData(block->GetFieldData());
+    if (auto* particles = vtkPointSet::SafeDownCast(block))
+    {
+      this->ExtractFrom(particles, surface);
+    }
+    else
+    {
+      vtkWarningMacro(<< this->BlockName << "A " << block->GetClassName()
+                      << " has no points of its own, and so no surface.");
+    }
+    output->SetDataSetFrom(iterator, surface);
+  }
+  this->SetProgressShiftScale(0.0, 1.0);
+  if (IsAborted(this))
+  {
+    output->CopyStructure(input); // not some blocks of a surface
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::ExtractFrom(vtkPointSet* particles, vtkPolyData* output)
+{
+  if (!particles || !output || particles->GetNumberOfPoints() == 0 || IsAborted(this))
+  {
+    this->SetUsedNames({ {}, particles });
+    return 1;
+  }
   mcor_options options;
-  mcor_surface surface = {};
-  this->FillOptions(options, input);
-  if (this->KeepDeviceData)
+  vtkMarchingCorrectorsChoice choice;
+  this->FillOptions(options);
+  this->FillChoice(choice, particles);
+  choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
+  vtkMarchingCorrectorsInput input(choice, particles);
+  const bool usable = input.Collect();
+  this->SetUsedNames(input);
+  if (!usable)
+  {
+    return this->Fail(input.Error);
+  }
+  if (input.FluidCount == 0)
+  {
+    vtkWarningMacro(<< this->BlockName << "No particle has " << choice.FluidArrayName << " = "
+                    << choice.FluidValue << ", so there is no fluid and no surface.");
+    return 1;
+  }
+  return this->PrepareDevice() ? this->Extract(input, options, output) : 0;
+}
+
+//------------------------------------------------------------------------------
+// What an observer of the progress may change is read before the run.
+int vtkMarchingCorrectors::Extract(
+  vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
+{
+  const int precision = this->OutputPointsPrecision;
+  const bool keep = this->KeepDeviceData != 0;
+  const std::vector<double> isoValues = this->ListIsoValues(input);
+  options.iso_values = isoValues.data();
+  options.iso_count = static_cast<int>(isoValues.size());
+  options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
+  options.progress = ReportProgress;
+  options.progress_user = this;
+  if (keep)
   {
     this->Internals->SetVersions(input);
   }
-  const mcor_status status =
-    mcor_extract(this->Internals->Context, &input.Core, &options, &surface);
-  if (!this->KeepDeviceData)
+  mcor_context* context = this->Internals->Context;
+  mcor_surface surface = {};
+  const mcor_status status = mcor_extract(context, &input.Core, &options, &surface);
+  if (!keep)
   {
-    this->ReleaseDeviceMemory();
+    mcor_release_memory(context);
   }
-  if (status == MCOR_OK)
+  if (status != MCOR_OK)
   {
-    vtkMarchingCorrectorsOutput builder(this, input, options, surface);
-    builder.BuildFieldData(output->GetFieldData());
-    builder.BuildRunStatistics(this->RunStatistics);
-    builder.BuildMesh(output);
+    const std::string message = mcor_last_error(context);
+    this->Internals->Forget(status);
+    return status == MCOR_CANCELLED ? 1 : this->Fail(message);
   }
+  vtkMarchingCorrectorsOutput builder(input, options, surface);
+  for (const std::string& sentence : builder.ListLeftOut())
+  {
+    vtkWarningMacro(<< this->BlockName << sentence);
+  }
+  builder.BuildFieldData(output->GetFieldData());
+  builder.AddRunStatistics(this->RunStatistics);
+  builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
-  if (status == MCOR_OK)
-  {
-    return 1;
-  }
-  const std::string message = mcor_last_error(this->Internals->Context);
-  this->Internals->Forget(status);
-  return status == MCOR_CANCELLED ? 1 : this->Fail(message);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -397,6 +597,10 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Compute Residual: " << this->ComputeResidual << "\n";
   os << indent << "Compute Boundary Flag: " << this->ComputeBoundaryFlag << "\n";
   os << indent << "Interpolate Attributes: " << this->InterpolateAttributes << "\n";
+  for (const std::string& name : this->ExcludedArrays)
+  {
+    PrintName(os, indent, "Excluded Array", name);
+  }
   os << indent << "Output Points Precision: " << this->OutputPointsPrecision << "\n";
   os << indent << "Precision: " << this->Precision << "\n";
   PrintName(os, indent, "Device", this->Device);

@@ -80,6 +80,9 @@
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
+ * Composite data give composite data: each block that is a point set is contoured by itself, in its
+ * place. A block that fails leaves its place empty; the error names it.
+ *
  * @warning
  * Every piece or block is contoured by itself. Particles of a neighbouring piece, also those marked
  * as ghosts, are particles like all others: without them the surface is trimmed at the cut, and with
@@ -105,6 +108,14 @@
  * In-place changes of input arrays are seen only if Modified() is called on the array or the data
  * set, as everywhere in VTK.
  *
+ * @warning
+ * An observer of the progress may change the filter while an update runs, which counts from the next
+ * update on, but not the values in the input's arrays.
+ *
+ * @warning
+ * The input is checked for sizes, types and values, but a reader that is given a damaged file may
+ * crash before the filter is asked.
+ *
  * @sa
  * vtkSPHInterpolator vtkContourFilter vtkFlyingEdges3D vtkContourValues
  */
@@ -120,10 +131,14 @@
 
 #include <memory> // For the device state
 #include <string> // For members
+#include <vector> // For members
 
+class vtkDataObjectTree;
 class vtkFieldData;
 class vtkMarchingCorrectorsInput;
+class vtkPointSet;
 struct mcor_options;
+struct vtkMarchingCorrectorsChoice;
 struct vtkMarchingCorrectorsRequest;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkPolyDataAlgorithm
@@ -502,8 +517,8 @@ public:
   /**
    * Add the iso value as a point array. For a scalar array it takes the name of this array; else
    * the name is that of the vector and the component or "Magnitude" ("Velocity_Magnitude"), of both
-   * vectors for a dot product ("A_Dot_B"), or "IsoValue" in free-surface mode. It becomes the
-   * active scalars. On by default.
+   * vectors for a dot product ("A_Dot_B"), or "IsoValue" in free-surface mode and where a computed
+   * array ("Normals", ...) has that name. It becomes the active scalars. On by default.
    */
   vtkSetMacro(ComputeScalars, vtkTypeBool);
   vtkGetMacro(ComputeScalars, vtkTypeBool);
@@ -562,11 +577,23 @@ public:
   /**
    * Interpolate all other point arrays to the surface. float and double arrays by Shepard's method
    * with the kernel; integers, identifiers and strings from the nearest particle. Names, component
-   * names and types are kept. On by default.
+   * names and types are kept. An array that is NaN or infinite at a fluid particle is left out, with
+   * a warning; one that has the name of an array that is computed (or of the iso value) gives way to
+   * it. On by default.
    */
   vtkSetMacro(InterpolateAttributes, vtkTypeBool);
   vtkGetMacro(InterpolateAttributes, vtkTypeBool);
   vtkBooleanMacro(InterpolateAttributes, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Arrays that InterpolateAttributes leaves out, by name. None by default.
+   */
+  void AddExcludedArray(const std::string& name);
+  void ClearExcludedArrays();
+  int GetNumberOfExcludedArrays() const;
+  const char* GetExcludedArray(int i) const;
   ///@}
 
   ///@{
@@ -598,7 +625,7 @@ public:
 
   /**
    * The sentence that says why the last run failed; empty if it did not. It is also reported as a
-   * VTK error.
+   * VTK error. For composite data, one line for each block that failed, which it names.
    */
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
@@ -665,6 +692,9 @@ protected:
   ~vtkMarchingCorrectors() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -712,6 +742,7 @@ protected:
   vtkTypeBool ComputeResidual = 0;
   vtkTypeBool ComputeBoundaryFlag = 0;
   vtkTypeBool InterpolateAttributes = 1;
+  std::vector<std::string> ExcludedArrays;
   int OutputPointsPrecision = DEFAULT_PRECISION;
   int Precision = SINGLE_PRECISION;
   std::string Device;
@@ -724,14 +755,20 @@ private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
-  vtkMarchingCorrectorsRequest FindRequest(int index, vtkInformationVector** inputVector);
+  int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  int ExtractBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
+  int ExtractFrom(vtkPointSet* particles, vtkPolyData* output);
+  int Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
+  vtkMarchingCorrectorsRequest FindRequest(int index, vtkPointSet* particles);
+  void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
+  void FillOptions(mcor_options& options) const;
+  std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
   bool PrepareDevice();
-  void FillOptions(mcor_options& options, const vtkMarchingCorrectorsInput& input);
-  int Extract(vtkMarchingCorrectorsInput& input, vtkPolyData* output);
   void SetUsedNames(const vtkMarchingCorrectorsInput& input);
   int Fail(const std::string& message);
 
   std::string ErrorMessage;
+  std::string BlockName; // begins the messages about a block of composite data
   vtkSmartPointer<vtkFieldData> RunStatistics;
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

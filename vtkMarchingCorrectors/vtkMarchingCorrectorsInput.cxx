@@ -3,14 +3,17 @@
 #include "vtkMarchingCorrectorsInput.h"
 
 #include "vtkAOSDataArrayTemplate.h"
+#include "vtkArrayDispatch.h"
+#include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
-#include "vtkMarchingCorrectors.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -65,6 +68,66 @@ std::uint64_t BitsOf(double value)
   return bits;
 }
 
+bool Contains(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/** work(values, index of the first) for all values of an array of any layout, in parallel. */
+template <typename WorkT>
+void ForValues(vtkDataArray* array, const WorkT& work)
+{
+  const auto run = [&work](auto* typed)
+  {
+    vtkSMPTools::For(0, typed->GetNumberOfValues(), 65536,
+      [&](vtkIdType begin, vtkIdType end)
+      { work(vtk::DataArrayValueRange(typed, begin, end), begin); });
+  };
+  if (!vtkArrayDispatch::Dispatch::Execute(array, run))
+  {
+    run(array);
+  }
+}
+
+vtkSmartPointer<vtkDataArray> CopyAsDouble(vtkDataArray* array)
+{
+  auto copy = vtkSmartPointer<vtkDoubleArray>::New();
+  copy->SetNumberOfComponents(array->GetNumberOfComponents());
+  copy->SetNumberOfTuples(array->GetNumberOfTuples());
+  double* to = copy->GetPointer(0);
+  ForValues(array,
+    [to](auto values, vtkIdType first)
+    {
+      std::transform(values.begin(), values.end(), to + first,
+        [](auto value) { return static_cast<double>(value); });
+    });
+  return copy;
+}
+
+/** Value i of what View() has made. */
+double ValueOf(const mcor_array& array, vtkIdType i)
+{
+  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
+                                    : static_cast<const double*>(array.data)[i];
+}
+
+double ScalarOf(const mcor_input& core, vtkIdType particle)
+{
+  const int components = core.scalar.components;
+  const vtkIdType first = particle * components;
+  if (core.scalar_component >= 0 && !core.scalar_dot.data)
+  {
+    return ValueOf(core.scalar, first + core.scalar_component);
+  }
+  double sum = 0.0;
+  for (vtkIdType i = first; i < first + components; ++i)
+  {
+    sum +=
+      ValueOf(core.scalar, i) * ValueOf(core.scalar_dot.data ? core.scalar_dot : core.scalar, i);
+  }
+  return core.scalar_dot.data ? sum : std::sqrt(sum);
+}
+
 /** VTK's modification times are unique in a process, so that object and time identify a state. */
 void SignObject(std::vector<std::uint64_t>& signature, vtkObject* object)
 {
@@ -75,21 +138,20 @@ void SignObject(std::vector<std::uint64_t>& signature, vtkObject* object)
 
 //------------------------------------------------------------------------------
 vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
-  vtkMarchingCorrectors* filter, vtkPointSet* points)
-  : Filter(filter)
+  const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points)
+  : Choice(choice)
   , Points(points)
 {
 }
 
 //------------------------------------------------------------------------------
-bool vtkMarchingCorrectorsInput::Collect(
-  const vtkMarchingCorrectorsRequest& scalar, const vtkMarchingCorrectorsRequest& dot)
+bool vtkMarchingCorrectorsInput::Collect()
 {
   this->Core.count = this->Points->GetNumberOfPoints();
   this->Core.positions = this->View(this->Points->GetPoints()->GetData());
   this->Core.positions.name = nullptr; // VTK's "Points" says no more than "position"
-  if ((!this->Filter->GetFreeSurface() && !this->CollectScalar(scalar, dot)) ||
-    !this->CollectSmoothingLength() || !this->CollectVolume() || !this->CollectSolids())
+  if ((!this->Choice.FreeSurface && !this->CollectScalar()) || !this->CollectSmoothingLength() ||
+    !this->CollectVolume() || !this->CollectSolids())
   {
     return false;
   }
@@ -100,9 +162,9 @@ bool vtkMarchingCorrectorsInput::Collect(
 }
 
 //------------------------------------------------------------------------------
-bool vtkMarchingCorrectorsInput::CollectScalar(
-  const vtkMarchingCorrectorsRequest& scalar, const vtkMarchingCorrectorsRequest& dot)
+bool vtkMarchingCorrectorsInput::CollectScalar()
 {
+  const vtkMarchingCorrectorsRequest &scalar = this->Choice.Scalar, &dot = this->Choice.ScalarDot;
   if (scalar.Name.empty() && !scalar.Array)
   {
     this->Error = "No scalar to contour was chosen: choose a point array, or turn the free surface "
@@ -122,7 +184,7 @@ bool vtkMarchingCorrectorsInput::CollectScalar(
     return false;
   }
   const int components = this->Scalar->GetNumberOfComponents();
-  const int component = this->Filter->GetScalarComponent();
+  const int component = this->Choice.ScalarComponent;
   if (!RealName(dot.Name).empty())
   {
     this->ScalarDot = this->Check("second vector of the dot product", dot.Name, dot.Array);
@@ -140,7 +202,7 @@ bool vtkMarchingCorrectorsInput::CollectScalar(
     }
     this->Core.scalar_dot = this->View(this->ScalarDot);
   }
-  else if (components > 1 && component != vtkMarchingCorrectors::MAGNITUDE &&
+  else if (components > 1 && component != MCOR_MAGNITUDE &&
     (component < 0 || component >= components))
   {
     this->Error = "The scalar " + Quote(NameOf(this->Scalar)) + " has no component " +
@@ -157,15 +219,15 @@ bool vtkMarchingCorrectorsInput::CollectScalar(
 bool vtkMarchingCorrectorsInput::CollectSmoothingLength()
 {
   this->Core.smoothing_length_is_support_radius =
-    this->Filter->GetSmoothingLengthIsSupportRadius() ? 1 : 0;
-  this->Core.estimate_smoothing_length = this->Filter->GetEstimateSmoothingLength() ? 1 : 0;
+    this->Choice.SmoothingLengthIsSupportRadius ? 1 : 0;
+  this->Core.estimate_smoothing_length = this->Choice.EstimateSmoothingLength ? 1 : 0;
   if (this->Core.estimate_smoothing_length)
   {
     return true;
   }
   int given = 0;
-  if (!this->CollectQuantity("smoothing length", this->Filter->GetSmoothingLengthArrayName(),
-        this->Filter->GetSmoothingLength(), SmoothingLengthNames, this->SmoothingLength,
+  if (!this->CollectQuantity("smoothing length", this->Choice.SmoothingLengthArrayName,
+        this->Choice.SmoothingLength, SmoothingLengthNames, this->SmoothingLength,
         this->Core.smoothing_length, given))
   {
     return false;
@@ -185,11 +247,11 @@ bool vtkMarchingCorrectorsInput::CollectSmoothingLength()
 // happens to be there is not used.
 bool vtkMarchingCorrectorsInput::CollectVolume()
 {
-  vtkMarchingCorrectors* f = this->Filter;
+  const vtkMarchingCorrectorsChoice& f = this->Choice;
   const std::vector<std::string> none;
-  const bool massOrDensitySet = !RealName(f->GetMassArrayName()).empty() ||
-    !RealName(f->GetDensityArrayName()).empty() || f->GetMass() != 0.0 || f->GetDensity() != 0.0;
-  if (!this->CollectQuantity("volume", f->GetVolumeArrayName(), 0.0,
+  const bool massOrDensitySet = !RealName(f.MassArrayName).empty() ||
+    !RealName(f.DensityArrayName).empty() || f.Mass != 0.0 || f.Density != 0.0;
+  if (!this->CollectQuantity("volume", f.VolumeArrayName, 0.0,
         massOrDensitySet ? none : VolumeNames, this->Volume, this->Core.volume,
         this->Core.has_volume))
   {
@@ -199,10 +261,10 @@ bool vtkMarchingCorrectorsInput::CollectVolume()
   {
     return true;
   }
-  if (!this->CollectQuantity("mass", f->GetMassArrayName(), f->GetMass(), MassNames, this->Mass,
+  if (!this->CollectQuantity("mass", f.MassArrayName, f.Mass, MassNames, this->Mass,
         this->Core.mass, this->Core.has_mass) ||
-    !this->CollectQuantity("density", f->GetDensityArrayName(), f->GetDensity(), DensityNames,
-      this->Density, this->Core.density, this->Core.has_density))
+    !this->CollectQuantity("density", f.DensityArrayName, f.Density, DensityNames, this->Density,
+      this->Core.density, this->Core.has_density))
   {
     return false;
   }
@@ -221,7 +283,7 @@ bool vtkMarchingCorrectorsInput::CollectVolume()
 // nothing.
 bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role,
   const std::string& setName, double constant, const std::vector<std::string>& usualNames,
-  vtkDataArray*& array, mcor_array& core, int& given)
+  vtkSmartPointer<vtkDataArray>& array, mcor_array& core, int& given)
 {
   const std::string name = RealName(setName);
   if (constant != 0.0)
@@ -242,7 +304,7 @@ bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role,
       return false;
     }
   }
-  else if (this->Filter->GetDetectArrays())
+  else if (this->Choice.DetectArrays)
   {
     array = this->Detect(usualNames);
   }
@@ -258,8 +320,8 @@ bool vtkMarchingCorrectorsInput::CollectQuantity(const std::string& role,
 bool vtkMarchingCorrectorsInput::CollectSolids()
 {
   this->FluidCount = static_cast<vtkIdType>(this->Core.count);
-  this->Core.ignore_solids = this->Filter->GetIgnoreSolids() ? 1 : 0;
-  const std::string name = RealName(this->Filter->GetFluidArrayName());
+  this->Core.ignore_solids = this->Choice.IgnoreSolids ? 1 : 0;
+  const std::string name = RealName(this->Choice.FluidArrayName);
   if (name.empty())
   {
     return true;
@@ -269,25 +331,33 @@ bool vtkMarchingCorrectorsInput::CollectSolids()
   {
     return false;
   }
-  const double fluid = this->Filter->GetFluidValue();
   this->Solid.resize(static_cast<size_t>(this->Core.count));
-  this->FluidCount = 0;
-  for (vtkIdType i = 0; i < this->Core.count; ++i)
-  {
-    const bool isFluid = this->Fluid->GetComponent(i, 0) == fluid;
-    this->Solid[static_cast<size_t>(i)] = isFluid ? 0 : 1;
-    this->FluidCount += isFluid ? 1 : 0;
-  }
+  std::atomic<vtkIdType> fluidCount{ 0 };
+  ForValues(this->Fluid,
+    [&](auto values, vtkIdType first)
+    {
+      vtkIdType n = 0;
+      std::uint8_t* solid = this->Solid.data() + first;
+      for (const auto value : values)
+      {
+        const bool isFluid = static_cast<double>(value) == this->Choice.FluidValue;
+        *solid++ = isFluid ? 0 : 1;
+        n += isFluid ? 1 : 0;
+      }
+      fluidCount += n;
+    });
+  this->FluidCount = fluidCount;
   this->Core.solid = this->Solid.data();
   return true;
 }
 
 //------------------------------------------------------------------------------
+// The iso value leaves their names to computed arrays, which users look for by name.
 void vtkMarchingCorrectorsInput::NameScalar()
 {
-  if (this->Filter->GetFreeSurface())
+  this->IsoValueName = "IsoValue";
+  if (this->Choice.FreeSurface)
   {
-    this->ScalarName = "IsoValue";
     return;
   }
   const int component = this->Core.scalar_component;
@@ -301,33 +371,47 @@ void vtkMarchingCorrectorsInput::NameScalar()
     const char* label = component >= 0 ? this->Scalar->GetComponentName(component) : "Magnitude";
     this->ScalarName += "_" + (label ? std::string(label) : std::to_string(component));
   }
+  if (!this->ScalarName.empty() && !Contains(this->Choice.ComputedArrays, this->ScalarName))
+  {
+    this->IsoValueName = this->ScalarName;
+  }
+}
+
+//------------------------------------------------------------------------------
+// Computed arrays and the iso value go before arrays of the same name. Ghost marks would hide
+// triangles.
+bool vtkMarchingCorrectorsInput::IsCarried(vtkAbstractArray* array) const
+{
+  const std::string name = NameOf(array);
+  const bool replaced = Contains(this->Choice.ComputedArrays, name) ||
+    (this->Choice.ComputeScalars && name == this->IsoValueName);
+  return !name.empty() && !replaced && name != vtkDataSetAttributes::GhostArrayName() &&
+    !Contains(this->Choice.ExcludedArrays, name) && array->GetNumberOfTuples() == this->Core.count;
 }
 
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectorsInput::CollectAttributes()
 {
   vtkPointData* pointData = this->Points->GetPointData();
-  for (int i = 0; this->Filter->GetInterpolateAttributes() && i < pointData->GetNumberOfArrays();
-       ++i)
+  const int count = this->Choice.InterpolateAttributes ? pointData->GetNumberOfArrays() : 0;
+  for (int i = 0; i < count; ++i)
   {
     vtkAbstractArray* array = pointData->GetAbstractArray(i);
-    const std::string name = NameOf(array);
-    // The scalar's place is taken by the iso value. Ghost marks would hide triangles.
-    const bool replaced = this->Filter->GetComputeScalars() && name == this->ScalarName;
-    if (name.empty() || replaced || name == vtkDataSetAttributes::GhostArrayName() ||
-      array->GetNumberOfTuples() != this->Core.count)
+    if (!this->IsCarried(array))
     {
       continue;
     }
+    const vtkMarchingCorrectorsAttribute attribute = { array, NameOf(array),
+      array->GetNumberOfComponents() };
     vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
     if (numbers && IsReal(numbers))
     {
-      this->Interpolated.push_back(numbers);
+      this->Interpolated.push_back(attribute);
       this->Attributes.push_back(this->View(numbers));
     }
     else
     {
-      this->FromNearest.push_back(array);
+      this->FromNearest.push_back(attribute);
     }
   }
   this->Core.attributes = this->Attributes.data();
@@ -346,13 +430,13 @@ void vtkMarchingCorrectorsInput::Sign()
   SignObject(particles, this->Mass);
   SignObject(particles, this->Density);
   SignObject(particles, this->Fluid);
-  particles.push_back(BitsOf(this->Filter->GetFluidValue()));
+  particles.push_back(BitsOf(this->Choice.FluidValue));
   particles.push_back(BitsOf(this->Core.smoothing_length.constant));
   particles.push_back(BitsOf(this->Core.mass.constant));
   particles.push_back(BitsOf(this->Core.density.constant));
   for (const int flag : { this->Core.smoothing_length_is_support_radius,
          this->Core.estimate_smoothing_length, this->Core.ignore_solids, this->Core.has_volume,
-         this->Core.has_mass, this->Core.has_density, this->Filter->GetKernel() })
+         this->Core.has_mass, this->Core.has_density, this->Choice.Kernel })
   {
     particles.push_back(static_cast<std::uint64_t>(flag));
   }
@@ -366,24 +450,24 @@ void vtkMarchingCorrectorsInput::Sign()
 mcor_array vtkMarchingCorrectorsInput::View(vtkDataArray* array)
 {
   mcor_array view = {};
-  view.name = array->GetName();
+  this->Names.push_back(NameOf(array));
+  view.name = array->GetName() ? this->Names.back().c_str() : nullptr;
   view.components = array->GetNumberOfComponents();
   if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array))
   {
     view.type = MCOR_FLOAT32;
     view.data = floats->GetPointer(0);
+    this->Viewed.push_back(array);
     return view;
   }
-  auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array);
-  if (!doubles)
+  vtkSmartPointer<vtkDataArray> doubles = array;
+  if (!vtkAOSDataArrayTemplate<double>::FastDownCast(array))
   {
-    vtkSmartPointer<vtkDoubleArray> copy = vtkSmartPointer<vtkDoubleArray>::New();
-    copy->DeepCopy(array);
-    doubles = copy;
-    this->Converted.push_back(copy);
+    doubles = CopyAsDouble(array);
   }
   view.type = MCOR_FLOAT64;
-  view.data = doubles->GetPointer(0);
+  view.data = doubles->GetVoidPointer(0);
+  this->Viewed.push_back(doubles);
   return view;
 }
 
@@ -463,34 +547,26 @@ std::string vtkMarchingCorrectorsInput::ListPointArrays() const
 }
 
 //------------------------------------------------------------------------------
-double vtkMarchingCorrectorsInput::ScalarOf(vtkIdType particle) const
-{
-  if (this->Core.scalar_component >= 0 && !this->ScalarDot)
-  {
-    return this->Scalar->GetComponent(particle, this->Core.scalar_component);
-  }
-  double sum = 0.0;
-  for (int c = 0; c < this->Scalar->GetNumberOfComponents(); ++c)
-  {
-    const double value = this->Scalar->GetComponent(particle, c);
-    sum += value * (this->ScalarDot ? this->ScalarDot->GetComponent(particle, c) : value);
-  }
-  return this->ScalarDot ? sum : std::sqrt(sum);
-}
-
-//------------------------------------------------------------------------------
 double vtkMarchingCorrectorsInput::MiddleOfScalarRange() const
 {
-  std::vector<double> values;
-  values.reserve(static_cast<size_t>(this->FluidCount));
-  for (vtkIdType i = 0; i < this->Core.count; ++i)
-  {
-    const double value = this->ScalarOf(i);
-    if (std::isfinite(value) && (this->Solid.empty() || !this->Solid[static_cast<size_t>(i)]))
+  std::vector<double> values(static_cast<size_t>(this->Core.count));
+  vtkSMPTools::For(0, this->Core.count,
+    [&](vtkIdType begin, vtkIdType end)
     {
-      values.push_back(value);
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        values[static_cast<size_t>(i)] = ScalarOf(this->Core, i);
+      }
+    });
+  size_t count = 0;
+  for (size_t i = 0; i < values.size(); ++i)
+  {
+    if (std::isfinite(values[i]) && (this->Solid.empty() || !this->Solid[i]))
+    {
+      values[count++] = values[i];
     }
   }
+  values.resize(count);
   if (values.empty())
   {
     return 0.0;
@@ -499,5 +575,5 @@ double vtkMarchingCorrectorsInput::MiddleOfScalarRange() const
   std::nth_element(values.begin(), values.begin() + margin, values.end());
   const double low = values[static_cast<size_t>(margin)];
   std::nth_element(values.begin(), values.end() - 1 - margin, values.end());
-  return 0.5 * (low + *(values.end() - 1 - margin));
+  return 0.5 * low + 0.5 * *(values.end() - 1 - margin);
 }

@@ -2,20 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsOutput.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
-#include "vtkMarchingCorrectors.h"
+#include "vtkIdTypeArray.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
-#include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -24,8 +25,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
-#include <limits>
-#include <string>
+#include <utility>
 
 namespace
 {
@@ -106,37 +106,70 @@ void AddText(vtkFieldData* data, const char* name, const std::string& text)
   Add(data, name, array);
 }
 
-void AddArrayName(vtkFieldData* data, const char* name, vtkAbstractArray* array)
+// As it was when the run began.
+void AddArrayName(vtkFieldData* data, const char* name, const mcor_array& array)
 {
-  AddText(data, name, array && array->GetName() ? array->GetName() : "");
+  AddText(data, name, array.name ? array.name : "");
+}
+
+// One component per phase, building the program and the total; 0 so far.
+void AddSeconds(vtkFieldData* run)
+{
+  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
+  seconds->SetNumberOfComponents(MCOR_PHASE_COUNT + 2);
+  seconds->SetNumberOfTuples(1);
+  seconds->Fill(0.0);
+  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
+  {
+    seconds->SetComponentName(phase, mcor_phase_name(static_cast<mcor_phase>(phase)));
+  }
+  seconds->SetComponentName(MCOR_PHASE_COUNT, "program build");
+  seconds->SetComponentName(MCOR_PHASE_COUNT + 1, "total");
+  Add(run, "Seconds", seconds);
 }
 
 // The array's name, or the value for all particles where it was used.
-void AddQuantity(vtkFieldData* data, const std::string& name, int given, vtkAbstractArray* array,
-  const mcor_array& core)
+void AddQuantity(vtkFieldData* data, const std::string& name, int given, const mcor_array& array)
 {
   AddArrayName(data, (name + "Array").c_str(), array);
-  if (given && !array)
+  if (given && !array.data)
   {
-    AddReal(data, name.c_str(), { core.constant });
+    AddReal(data, name.c_str(), { array.constant });
   }
 }
 }
 
 //------------------------------------------------------------------------------
-vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(vtkMarchingCorrectors* filter,
+vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
   const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface)
-  : Filter(filter)
-  , Input(input)
+  : Input(input)
   , Options(options)
   , Surface(surface)
 {
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output)
+std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_options& options)
 {
-  const int precision = this->Filter->GetOutputPointsPrecision();
+  const std::pair<int, const char*> arrays[] = { { options.normals, "Normals" },
+    { options.gradients, "Gradients" }, { options.weight_sum, "WeightSum" },
+    { options.boundary_eigenvalue, "BoundaryEigenvalue" },
+    { options.correction_length, "CorrectionLength" }, { options.residual, "Residual" },
+    { options.boundary_flag, "BoundaryFlag" } };
+  std::vector<std::string> names;
+  for (const auto& array : arrays)
+  {
+    if (array.first)
+    {
+      names.emplace_back(array.second);
+    }
+  }
+  return names;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output, int precision)
+{
   const bool asFloat = precision == vtkAlgorithm::SINGLE_PRECISION ||
     (precision == vtkAlgorithm::DEFAULT_PRECISION &&
       this->Input.Core.positions.type == MCOR_FLOAT32);
@@ -144,64 +177,57 @@ void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output)
   points->SetData(AdoptReal(this->Surface.points, 3, this->Surface.point_count, asFloat));
   output->SetPoints(points);
   this->BuildTriangles(output);
-  // Computed arrays come last: they win over input arrays of the same name.
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
 }
 
 //------------------------------------------------------------------------------
+// With ids of VTK's own type, as from vtkContourFilter: some filters take a mesh with others for
+// non-manifold.
 void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
 {
   const vtkIdType count = this->Surface.triangle_count;
+  vtkNew<vtkIdTypeArray> corners, offsets;
+  corners->SetNumberOfValues(3 * count);
+  offsets->SetNumberOfValues(count + 1);
+  vtkIdType *corner = corners->GetPointer(0), *offset = offsets->GetPointer(0);
+  const std::int32_t* from = this->Surface.triangles;
+  vtkSMPTools::For(0, count,
+    [=](vtkIdType begin, vtkIdType end)
+    {
+      std::copy(from + 3 * begin, from + 3 * end, corner + 3 * begin);
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        offset[i] = 3 * i;
+      }
+    });
+  offset[count] = 3 * count;
+  std::free(this->Surface.triangles);
+  this->Surface.triangles = nullptr;
   vtkNew<vtkCellArray> triangles;
-  if (count < std::numeric_limits<vtkTypeInt32>::max() / 3)
-  {
-    vtkNew<vtkTypeInt32Array> offsets;
-    offsets->SetNumberOfValues(count + 1);
-    vtkTypeInt32* offset = offsets->GetPointer(0);
-    for (vtkIdType i = 0; i <= count; ++i)
-    {
-      offset[i] = static_cast<vtkTypeInt32>(3 * i);
-    }
-    triangles->SetData(offsets, Adopt<vtkTypeInt32Array>(this->Surface.triangles, 1, 3 * count));
-  }
-  else
-  {
-    vtkNew<vtkTypeInt64Array> corners;
-    corners->SetNumberOfValues(3 * count);
-    std::copy(this->Surface.triangles, this->Surface.triangles + 3 * count, corners->GetPointer(0));
-    vtkNew<vtkTypeInt64Array> offsets;
-    offsets->SetNumberOfValues(count + 1);
-    for (vtkIdType i = 0; i <= count; ++i)
-    {
-      offsets->SetValue(i, 3 * i);
-    }
-    triangles->SetData(offsets, corners);
-  }
+  triangles->SetData(offsets, corners);
   output->SetPolys(triangles);
 }
 
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 {
-  vtkPointData* pointData = output->GetPointData();
   const vtkIdType count = this->Surface.point_count;
-  const auto add = [pointData](vtkAbstractArray* from, vtkAbstractArray* to)
+  const auto add = [output](const vtkMarchingCorrectorsAttribute& from, vtkAbstractArray* to)
   {
-    to->CopyComponentNames(from);
-    Add(pointData, from->GetName(), to);
+    to->CopyComponentNames(from.Array);
+    Add(output->GetPointData(), from.Name.c_str(), to);
   };
   for (size_t i = 0; this->Surface.attributes && i < this->Input.Interpolated.size(); ++i)
   {
-    vtkDataArray* from = this->Input.Interpolated[i];
-    if (this->Surface.attribute_not_finite[i] >= 0)
+    const vtkMarchingCorrectorsAttribute& from = this->Input.Interpolated[i];
+    if (this->Surface.attribute_not_finite[i] < 0)
     {
-      continue;
+      add(from,
+        AdoptReal(this->Surface.attributes[i], from.Components, count,
+          from.Array->GetDataType() == VTK_FLOAT));
     }
-    add(from,
-      AdoptReal(this->Surface.attributes[i], from->GetNumberOfComponents(), count,
-        from->GetDataType() == VTK_FLOAT));
   }
   if (!this->Surface.nearest_particle)
   {
@@ -211,15 +237,32 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
   nearest->SetNumberOfIds(count);
   std::copy(
     this->Surface.nearest_particle, this->Surface.nearest_particle + count, nearest->GetPointer(0));
-  for (vtkAbstractArray* from : this->Input.FromNearest)
+  for (const vtkMarchingCorrectorsAttribute& from : this->Input.FromNearest)
   {
-    auto to =
-      vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(from->GetDataType()));
-    to->SetNumberOfComponents(from->GetNumberOfComponents());
+    auto to = vtkSmartPointer<vtkAbstractArray>::Take(
+      vtkAbstractArray::CreateArray(from.Array->GetDataType()));
+    to->SetNumberOfComponents(from.Components);
     to->SetNumberOfTuples(count);
-    from->GetTuples(nearest, to);
+    from.Array->GetTuples(nearest, to);
     add(from, to);
   }
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkMarchingCorrectorsOutput::ListLeftOut() const
+{
+  std::vector<std::string> sentences;
+  for (size_t i = 0; this->Surface.attribute_not_finite && i < this->Input.Interpolated.size(); ++i)
+  {
+    if (this->Surface.attribute_not_finite[i] >= 0)
+    {
+      sentences.push_back("The point array '" + this->Input.Interpolated[i].Name +
+        "' is NaN or infinite at particle " +
+        std::to_string(this->Surface.attribute_not_finite[i]) +
+        " and was left out of the surface. Correct its values, or exclude it.");
+    }
+  }
+  return sentences;
 }
 
 //------------------------------------------------------------------------------
@@ -266,7 +309,7 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
   {
     return;
   }
-  const char* name = this->Input.ScalarName.c_str();
+  const char* name = this->Input.IsoValueName.c_str();
   const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
   Add(output->GetPointData(), name,
     AdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
@@ -283,30 +326,36 @@ void vtkMarchingCorrectorsOutput::BuildFieldData(vtkFieldData* fieldData) const
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectorsOutput::BuildRunStatistics(vtkFieldData* run) const
+void vtkMarchingCorrectorsOutput::AddRunStatistics(vtkFieldData* run) const
 {
   const mcor_statistics& s = this->Surface.statistics;
-  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
-  seconds->SetNumberOfComponents(MCOR_PHASE_COUNT + 2);
-  seconds->SetNumberOfTuples(1);
+  if (run->GetNumberOfArrays() == 0)
+  {
+    AddSeconds(run);
+  }
+  vtkDataArray* seconds = run->GetArray("Seconds");
+  const auto addSeconds = [seconds](int component, double value)
+  { seconds->SetComponent(0, component, seconds->GetComponent(0, component) + value); };
   double total = s.build_seconds;
   for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
   {
-    seconds->SetComponentName(phase, mcor_phase_name(static_cast<mcor_phase>(phase)));
-    seconds->SetComponent(0, phase, s.seconds[phase]);
+    addSeconds(phase, s.seconds[phase]);
     total += s.seconds[phase];
   }
-  seconds->SetComponentName(MCOR_PHASE_COUNT, "program build");
-  seconds->SetComponent(0, MCOR_PHASE_COUNT, s.build_seconds);
-  seconds->SetComponentName(MCOR_PHASE_COUNT + 1, "total");
-  seconds->SetComponent(0, MCOR_PHASE_COUNT + 1, total);
-  Add(run, "Seconds", seconds);
-  AddCount(run, "SeedCells", { s.seed_cells });
-  AddCount(run, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
-  AddCount(run, "Bricks", { s.bricks });
-  AddCount(run, "NodesEvaluated", { s.nodes_evaluated });
-  AddCount(run, "MarchRounds", { s.march_rounds });
-  AddCount(run, "DeviceBytesPeak", { s.device_bytes_peak });
+  addSeconds(MCOR_PHASE_COUNT, s.build_seconds);
+  addSeconds(MCOR_PHASE_COUNT + 1, total);
+  const auto count = [run](const char* name)
+  {
+    vtkDataArray* array = run->GetArray(name);
+    return array ? static_cast<std::int64_t>(array->GetComponent(0, 0)) : 0;
+  };
+  AddCount(run, "SeedCells", { count("SeedCells") + s.seed_cells });
+  AddCount(run, "SeedCellsNotIntersected",
+    { count("SeedCellsNotIntersected") + s.seed_cells_not_intersected });
+  AddCount(run, "Bricks", { count("Bricks") + s.bricks });
+  AddCount(run, "NodesEvaluated", { count("NodesEvaluated") + s.nodes_evaluated });
+  AddCount(run, "MarchRounds", { count("MarchRounds") + s.march_rounds });
+  AddCount(run, "DeviceBytesPeak", { std::max(count("DeviceBytesPeak"), s.device_bytes_peak) });
 }
 
 //------------------------------------------------------------------------------
@@ -359,20 +408,18 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   Add(fieldData, "IsoValues", isoValues);
   const char* const fields[] = { "shepard", "sum", "weight sum" };
   AddText(fieldData, "Field", fields[o.field]);
-  AddText(fieldData, "Scalar", o.field == MCOR_WEIGHT_SUM ? "" : this->Input.ScalarName);
-  AddArrayName(fieldData, "SmoothingLengthArray", this->Input.SmoothingLength);
+  AddText(fieldData, "Scalar", this->Input.ScalarName);
+  AddArrayName(fieldData, "SmoothingLengthArray", this->Input.Core.smoothing_length);
   AddCount(fieldData, "SmoothingLengthIsSupportRadius",
     { this->Input.Core.smoothing_length_is_support_radius });
   AddCount(fieldData, "EstimateSmoothingLength", { this->Input.Core.estimate_smoothing_length });
-  AddArrayName(fieldData, "VolumeArray", this->Input.Volume);
-  AddQuantity(
-    fieldData, "Mass", this->Input.Core.has_mass, this->Input.Mass, this->Input.Core.mass);
-  AddQuantity(fieldData, "Density", this->Input.Core.has_density, this->Input.Density,
-    this->Input.Core.density);
-  AddArrayName(fieldData, "FluidArray", this->Input.Fluid);
+  AddArrayName(fieldData, "VolumeArray", this->Input.Core.volume);
+  AddQuantity(fieldData, "Mass", this->Input.Core.has_mass, this->Input.Core.mass);
+  AddQuantity(fieldData, "Density", this->Input.Core.has_density, this->Input.Core.density);
+  AddText(fieldData, "FluidArray", this->Input.Fluid ? this->Input.Choice.FluidArrayName : "");
   if (this->Input.Fluid)
   {
-    AddReal(fieldData, "FluidValue", { this->Filter->GetFluidValue() });
+    AddReal(fieldData, "FluidValue", { this->Input.Choice.FluidValue });
     AddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
   }
   AddText(fieldData, "Kernel", mcor_sph_kernel_name(o.sph_kernel));

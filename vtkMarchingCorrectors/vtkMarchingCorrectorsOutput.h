@@ -8,8 +8,10 @@
 
 #include "mcor.h"
 
+#include <string>
+#include <vector>
+
 class vtkFieldData;
-class vtkMarchingCorrectors;
 class vtkMarchingCorrectorsInput;
 class vtkPolyData;
 
@@ -19,14 +21,21 @@ public:
   /**
    * The surface's arrays are taken over where types agree, and are NULL in the surface then.
    */
-  vtkMarchingCorrectorsOutput(vtkMarchingCorrectors* filter,
+  vtkMarchingCorrectorsOutput(
     const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface);
 
-  void BuildMesh(vtkPolyData* output);
+  /** Names of the arrays that the core is asked to compute; their places in the output are theirs.
+   */
+  static std::vector<std::string> ComputedArrays(const mcor_options& options);
+
+  /** precision: of the points, as vtkAlgorithm has it. */
+  void BuildMesh(vtkPolyData* output, int precision);
   /** Statistics and parameters: a function of the input and the options alone. */
   void BuildFieldData(vtkFieldData* fieldData) const;
-  /** What the run cost: another one for the same surface may take longer. */
-  void BuildRunStatistics(vtkFieldData* run) const;
+  /** What the run cost, added to what other blocks did: not the same for each run. */
+  void AddRunStatistics(vtkFieldData* run) const;
+  /** One sentence for each array that the core left out. */
+  std::vector<std::string> ListLeftOut() const;
 
 private:
   void BuildTriangles(vtkPolyData* output);
@@ -36,7 +45,6 @@ private:
   void AddStatistics(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 
-  vtkMarchingCorrectors* Filter;
   const vtkMarchingCorrectorsInput& Input;
   const mcor_options& Options;
   mcor_surface& Surface;

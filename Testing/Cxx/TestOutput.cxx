@@ -4,6 +4,7 @@
 // the filter's own state.
 #include "TestParticles.h"
 
+#include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -15,6 +16,20 @@
 namespace
 {
 int failures = 0;
+
+double Number(vtkPolyData* data, const char* name)
+{
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  CHECK(array && array->GetNumberOfTuples() == 1);
+  return array ? array->GetComponent(0, 0) : 0.0;
+}
+
+std::string Text(vtkPolyData* data, const char* name)
+{
+  auto* array = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(name));
+  CHECK(array && array->GetNumberOfValues() == 1);
+  return array ? std::string(array->GetValue(0)) : "";
+}
 
 // The particle nearest to a point, by brute force.
 vtkIdType Nearest(vtkPolyData* particles, const double x[3])
@@ -104,6 +119,118 @@ void TestAttributes()
   CHECK(!filter->GetOutput()->GetPointData()->HasArray("Id"));
 }
 
+// Some are left out: those that the user excludes, and with a warning those that are not finite
+// where there is fluid.
+void TestArraysLeftOut()
+{
+  auto cube = MakeParticles();
+  const auto broken = [&](double solid)
+  {
+    return [&cube, solid](vtkIdType i, int c) {
+      return i == 31 && c == 1 ? std::nan("") : cube->GetPoint(i)[0] < -0.9 ? solid : 1.0;
+    };
+  };
+  test::AddArray<vtkFloatArray>(cube, "Broken", 3, broken(1.0));
+  test::AddArray<vtkDoubleArray>(cube, "BrokenWall", 1, broken(HUGE_VAL));
+  test::AddArray<vtkDoubleArray>(
+    cube, "Wall", 1, [&](vtkIdType i, int) { return cube->GetPoint(i)[0] < -0.9 ? 1.0 : 0.0; });
+  auto filter = test::MakeSphereFilter(cube);
+  filter->SetFluidArrayName("Wall");
+  std::string warning;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback([](vtkObject*, unsigned long, void* data, void* text)
+    { *static_cast<std::string*>(data) += static_cast<const char*>(text); });
+  observer->SetClientData(&warning);
+  filter->AddObserver(vtkCommand::WarningEvent, observer);
+  filter->Update();
+  std::cout << warning;
+  vtkPointData* data = filter->GetOutput()->GetPointData();
+  CHECK(warning.find("'Broken' is NaN or infinite at particle 31 ") != std::string::npos);
+  CHECK(warning.find("BrokenWall") == std::string::npos);
+  CHECK(!*filter->GetErrorMessage());
+  CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
+  CHECK(!data->HasArray("Broken") && data->HasArray("BrokenWall") && data->HasArray("Position"));
+
+  warning.clear();
+  const vtkMTimeType time = filter->GetMTime();
+  for (const char* name : { "Broken", "Id", "Name", "Volume", "no such array" })
+  {
+    filter->AddExcludedArray(name);
+  }
+  CHECK(filter->GetMTime() > time);
+  CHECK(filter->GetNumberOfExcludedArrays() == 5);
+  CHECK(!std::strcmp(filter->GetExcludedArray(1), "Id"));
+  CHECK(!filter->GetExcludedArray(5) && !filter->GetExcludedArray(-1));
+  filter->Update();
+  data = filter->GetOutput()->GetPointData();
+  CHECK(warning.empty());
+  CHECK(!data->HasArray("Id") && !data->HasArray("Name") && !data->HasArray("Volume"));
+  CHECK(data->HasArray("Position") && data->HasArray("Radius"));
+  CHECK(!std::strcmp(filter->GetUsedVolumeArrayName(), "Volume"));
+  filter->ClearExcludedArrays();
+  filter->Update();
+  CHECK(filter->GetOutput()->GetPointData()->HasArray("Id"));
+}
+
+// A computed array has its place whatever the input's arrays are called, the contoured one too.
+void TestNames()
+{
+  auto cube = test::MakeCube();
+  vtkDataArray* radius = cube->GetPointData()->GetArray("Radius");
+  for (const char* name : { "Normals", "WeightSum", "IsoValue" })
+  {
+    test::AddArray<vtkFloatArray>(
+      cube, name, 1, [&](vtkIdType i, int) { return radius->GetComponent(i, 0); });
+  }
+  auto filter = test::MakeSphereFilter(cube);
+  vtkPolyData* surface = filter->GetOutput();
+  const auto extract = [&](const char* scalar)
+  {
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, scalar);
+    filter->Update();
+    CHECK(surface->GetNumberOfPoints() > 0);
+    return surface->GetPointData();
+  };
+  const auto isoArray = [](vtkPointData* data)
+  {
+    vtkDataArray* scalars = data->GetScalars();
+    CHECK(scalars && scalars->GetRange()[0] == scalars->GetRange()[1]);
+    return std::string(scalars ? scalars->GetName() : "");
+  };
+  const auto count = [](vtkPointData* data, const char* name)
+  {
+    int found = 0;
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      found += std::strcmp(data->GetArrayName(i), name) == 0 ? 1 : 0;
+    }
+    return found;
+  };
+  for (const char* scalar : { "Radius", "Normals" })
+  {
+    vtkPointData* data = extract(scalar);
+    CHECK(data->GetNormals() && data->GetNormals() == data->GetArray("Normals"));
+    CHECK(data->GetNormals() && data->GetNormals()->GetNumberOfComponents() == 3);
+    CHECK(count(data, "Normals") == 1 && count(data, "IsoValue") == 1);
+    CHECK(isoArray(data) == (std::strcmp(scalar, "Normals") ? "Radius" : "IsoValue"));
+    CHECK(Text(surface, "Scalar") == scalar);
+  }
+  filter->ComputeWeightSumOn();
+  CHECK(isoArray(extract("WeightSum")) == "IsoValue");
+  CHECK(surface->GetPointData()->GetArray("WeightSum")->GetRange()[1] > 0.9);
+
+  // Not computed: an array like all others, and no normals.
+  filter->ComputeNormalsOff();
+  filter->ComputeWeightSumOff();
+  vtkPointData* data = extract("Radius");
+  CHECK(!data->GetNormals() && data->GetArray("Normals")->GetNumberOfComponents() == 1);
+  CHECK(std::fabs(data->GetArray("WeightSum")->GetComponent(0, 0) - 0.6) < 0.05);
+  CHECK(isoArray(extract("Normals")) == "Normals");
+  filter->ComputeScalarsOff();
+  data = extract("Normals");
+  CHECK(!data->GetScalars() && data->GetArray("Normals")->GetRange()[1] > 0.6);
+}
+
 void TestComputedArrays()
 {
   auto filter = test::MakeSphereFilter(MakeParticles());
@@ -150,20 +277,6 @@ void TestPrecision()
   filter->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION);
   filter->Update();
   CHECK(filter->GetOutput()->GetPoints()->GetDataType() == VTK_FLOAT);
-}
-
-double Number(vtkPolyData* data, const char* name)
-{
-  vtkDataArray* array = data->GetFieldData()->GetArray(name);
-  CHECK(array && array->GetNumberOfTuples() == 1);
-  return array ? array->GetComponent(0, 0) : 0.0;
-}
-
-std::string Text(vtkPolyData* data, const char* name)
-{
-  auto* array = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(name));
-  CHECK(array && array->GetNumberOfValues() == 1);
-  return array ? std::string(array->GetValue(0)) : "";
 }
 
 void TestFieldData()
@@ -248,6 +361,8 @@ void TestState()
 int TestOutput(int, char*[])
 {
   TestAttributes();
+  TestArraysLeftOut();
+  TestNames();
   TestComputedArrays();
   TestPrecision();
   TestFieldData();

@@ -63,6 +63,14 @@ def check_surfaces(extract):
     names = {extract.PointData[i].Name for i in range(len(extract.PointData))}
     assert {"Normals", "Velocity_Magnitude", "Pressure", "Velocity"} <= names, names
 
+    assert set(names_offered(extract, "ExcludedArrays")) >= names - {"Normals", "Velocity_Magnitude"}
+    assert list(extract.ExcludedArrays) == []
+    extract.ExcludedArrays = ["Pressure", "Lambda2"]
+    extract.UpdatePipeline()
+    fewer = {extract.PointData[i].Name for i in range(len(extract.PointData))}
+    assert fewer == names - {"Pressure", "Lambda2"}, fewer
+    extract.ExcludedArrays = []
+
     extract.BoundaryDetection = "Eigenvalue"
     extract.UpdatePipeline()
     assert 0 < extract.GetDataInformation().GetNumberOfCells() < speed

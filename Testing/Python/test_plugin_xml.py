@@ -11,7 +11,9 @@ XML = pathlib.Path(__file__).resolve().parents[2] / "Plugin" / "MarchingCorrecto
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 NO_NAMES = ("(automatic)", "(none)")  # the filter's empty array name
 # Setters of more or less than one value.
-NOT_SCALAR = ("SetInputConnection", "SetInputArrayToProcess", "SetValue")
+NOT_SCALAR = ("SetInputConnection", "SetInputArrayToProcess", "SetValue", "AddExcludedArray")
+
+COMMAND_KEYS = ("command", "set_number_command", "clean_command")
 
 # Setters without a property, and why.
 NOT_IN_XML = {
@@ -54,8 +56,7 @@ class TestPluginXml(unittest.TestCase):
                     check(element.get("command"), TYPES[element.tag], element)
 
     def commands(self):
-        return [e.get(key) for e in self.elements for key in ("command", "set_number_command")
-                if e.get(key)]
+        return [e.get(key) for e in self.elements for key in COMMAND_KEYS if e.get(key)]
 
     def test_commands_are_methods(self):
         self.assertEqual(self.proxy.get("class"), vtkMarchingCorrectors.__name__)
@@ -81,6 +82,18 @@ class TestPluginXml(unittest.TestCase):
             self.assertIs(type(found), kind)
             self.assertEqual(found, kind("" if text in NO_NAMES else text))
         self.for_each_scalar(check)
+
+    def test_list_of_names(self):
+        """A property of any number of names: cleared, then added one by one."""
+        extract = vtkMarchingCorrectors()
+        lists = [e for e in self.elements if e.get("clean_command")]
+        self.assertEqual([e.get("name") for e in lists], ["ExcludedArrays"])
+        for _ in range(2):
+            getattr(extract, lists[0].get("clean_command"))()
+            for name in ("Density", "Id"):
+                getattr(extract, lists[0].get("command"))(name)
+        found = [extract.GetExcludedArray(i) for i in range(extract.GetNumberOfExcludedArrays())]
+        self.assertEqual(found, ["Density", "Id"])
 
     def test_values_are_accepted(self):
         def check(command, kind, element):

@@ -116,6 +116,23 @@ static void test_scan_overflow(void** state)
   }
 }
 
+/* Arguments are counted, as those of an earlier launch would be used for missing ones. */
+static void test_argument_count(void** state)
+{
+  mcor_context* context = *state;
+  const int counts[2] = { 5, 0 };
+  int total;
+  mcor_buffer buffer = { 0 };
+  CORE_OK(context, mcor_write(context, &buffer, counts, sizeof counts));
+  CORE_OK(context, mcor_scan(context, &buffer, 1, &total));
+  assert_int_equal(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, 1, MCOR_BUFFER(&buffer),
+                     MCOR_INT(1), MCOR_INT(1)),
+    MCOR_DEVICE_ERROR);
+  CORE_CHECK(strstr(mcor_last_error(context), "mcor_scan_fill has 4 arguments; 3 were given"), "%s",
+    mcor_last_error(context));
+  mcor_release(context, &buffer);
+}
+
 static void check_sort(mcor_context* context, int kind, int count)
 {
   uint64_t* keys = make_keys(kind, count);
@@ -243,7 +260,7 @@ static void test_index_keys(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_scan),
-    cmocka_unit_test(test_scan_overflow), cmocka_unit_test(test_sort),
-    cmocka_unit_test(test_unique), cmocka_unit_test(test_index_keys) };
+    cmocka_unit_test(test_scan_overflow), cmocka_unit_test(test_argument_count),
+    cmocka_unit_test(test_sort), cmocka_unit_test(test_unique), cmocka_unit_test(test_index_keys) };
   return cmocka_run_group_tests_name("scan", tests, set_up, core_tear_down);
 }

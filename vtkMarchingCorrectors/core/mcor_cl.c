@@ -628,6 +628,10 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   }
   cl_kernel kernel = NULL;
   MCOR_TRY(mcor_find_kernel(context, name, &kernel));
+  cl_uint wanted = 0;
+  clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof wanted, &wanted, NULL);
+  MCOR_RETURN_IF(arg_count != wanted, context, MCOR_DEVICE_ERROR,
+    "Kernel %s has %u arguments; %zu were given.", name, (unsigned)wanted, arg_count);
   for (size_t i = 0; i < arg_count; ++i)
   {
     MCOR_CL_TRY(context, mcor_set_arg(cl, kernel, (cl_uint)i, args + i), name);

@@ -74,3 +74,29 @@ mcor_build() { # FOLDER vtk|paraview CMAKE ARGUMENTS...
     -DMCOR_BUILD_PLUGIN="$([ "$sdk" = paraview ] && echo ON || echo OFF)" "$@"
   mcor_step "Building in $build" cmake --build "$build"
 }
+
+# Prints ctest's lines as they come and, while none comes, which tests are running.
+mcor_show_tests() { # SECONDS OF SILENCE
+  local line= part= status name
+  declare -A since=()
+  while :; do
+    status=0
+    IFS= read -r -t "$1" part || status=$?
+    line+=$part
+    if [ "$status" -gt 128 ]; then
+      for name in "${!since[@]}"; do
+        echo "      ... $name is running, $((SECONDS - since[$name])) s so far"
+      done
+      continue
+    fi
+    [ "$status" -eq 0 ] || break
+    printf '%s\n' "$line"
+    if [[ $line =~ ^\ *Start\ +[0-9]+:\ (.*)$ ]]; then
+      since[${BASH_REMATCH[1]}]=$SECONDS
+    elif [[ $line =~ Test\ +#[0-9]+:\ ([^ ]+) ]]; then
+      unset "since[${BASH_REMATCH[1]}]"
+    fi
+    line=
+  done
+  printf '%s' "$line"
+}

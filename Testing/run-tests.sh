@@ -44,33 +44,7 @@ say_what_is_left_out() {
   sed 's/^/Not possible here: /' "$build/Testing/tests_not_here.txt"
 }
 
-# Prints ctest's lines as they come and, while none comes, every minute which tests are running.
-show_progress() {
-  local line= part= status name
-  declare -A since=()
-  while :; do
-    status=0
-    IFS= read -r -t 60 part || status=$?
-    line+=$part
-    if [ "$status" -gt 128 ]; then
-      for name in "${!since[@]}"; do
-        echo "      ... $name is running, $((SECONDS - since[$name])) s so far"
-      done
-      continue
-    fi
-    [ "$status" -eq 0 ] || break
-    printf '%s\n' "$line"
-    if [[ $line =~ ^\ *Start\ +[0-9]+:\ (.*)$ ]]; then
-      since[${BASH_REMATCH[1]}]=$SECONDS
-    elif [[ $line =~ Test\ +#[0-9]+:\ ([^ ]+) ]]; then
-      unset "since[${BASH_REMATCH[1]}]"
-    fi
-    line=
-  done
-  printf '%s' "$line"
-}
-
 say_what_is_left_out
 # A virtual display even where there is a real one: pictures then do not depend on its driver.
 env -u DISPLAY Testing/with-display.sh \
-  ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "${tests[@]}" | show_progress
+  ctest --test-dir "$build" --output-on-failure --no-tests=error -j "$(nproc)" "${tests[@]}" | mcor_show_tests 60

@@ -95,6 +95,18 @@ class Steps(unittest.TestCase):
         self.assertNotIn("after", output)
 
 
+    def test_a_long_test_is_named_while_it_runs(self):
+        status, output = self.run_steps(
+            """(echo '    Start  1: quick'; echo '1/2 Test  #1: quick ....   Passed    0.10 sec'
+            echo '    Start 20: slow_one'; sleep 5; printf '2/2 Test #20: slow_one ....   Pa'; sleep 3
+            echo 'ssed    8.00 sec'; echo; echo summary; exit 3) | mcor_show_tests 2 || echo "status $?" """)
+        self.assertEqual(status, 0)
+        self.assertIn("slow_one is running, ", output)
+        self.assertNotIn("quick is running", output)
+        self.assertTrue(output.endswith(
+            "2/2 Test #20: slow_one ....   Passed    8.00 sec\n\nsummary\nstatus 3\n"), output)
+
+
 class Configuration(unittest.TestCase):
     def configure(self, *options, source=SOURCE):
         return run("cmake", "-Wno-dev", "-S", source, "-B", os.path.join(SCRATCH, "configured"), *options)

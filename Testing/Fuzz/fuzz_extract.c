@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bytes -> a call of mcor_extract -> properties that hold for every call: no crash, a status in
+/* Bytes -> calls of mcor_extract -> properties that hold for every call: no crash, a status in
  * range, a sentence with every failure and an empty surface then; otherwise valid indices, finite
- * numbers, no triangle that names a point twice, and the same bits when the call is repeated. */
+ * numbers, no triangle that names a point twice, and the same bits from a context that keeps what it
+ * can from call to call as from one that keeps nothing. */
 
 #include "mcor.h"
 
@@ -95,7 +96,7 @@ typedef struct fuzz_call
   mcor_options options;
   mcor_array attributes[2];
   double iso[2];
-  void* arrays[5];
+  void* arrays[7];
 } fuzz_call;
 
 static double* fuzz_array(fuzz_call* call, int slot, size_t count)
@@ -252,13 +253,32 @@ static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
   }
 }
 
+static void fuzz_check_bits(const void* a, const void* b, size_t bytes)
+{
+  FUZZ_CHECK(!a == !b);
+  FUZZ_CHECK(!a || bytes == 0 || memcmp(a, b, bytes) == 0);
+}
+
 static void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
 {
   FUZZ_CHECK(a->point_count == b->point_count && a->triangle_count == b->triangle_count);
   const size_t n = (size_t)a->point_count, t = (size_t)a->triangle_count;
-  FUZZ_CHECK(n == 0 || memcmp(a->points, b->points, n * 3 * sizeof(double)) == 0);
-  FUZZ_CHECK(t == 0 || memcmp(a->triangles, b->triangles, t * 3 * sizeof(int32_t)) == 0);
-  FUZZ_CHECK(n == 0 || !a->normals || memcmp(a->normals, b->normals, n * 3 * sizeof(float)) == 0);
+  fuzz_check_bits(a->points, b->points, n * 3 * sizeof(double));
+  fuzz_check_bits(a->triangles, b->triangles, t * 3 * sizeof(int32_t));
+  fuzz_check_bits(a->normals, b->normals, n * 3 * sizeof(float));
+  fuzz_check_bits(a->gradients, b->gradients, n * 3 * sizeof(double));
+  fuzz_check_bits(a->weight_sum, b->weight_sum, n * sizeof(float));
+  fuzz_check_bits(a->boundary_eigenvalue, b->boundary_eigenvalue, n * sizeof(float));
+  fuzz_check_bits(a->correction_length, b->correction_length, n * sizeof(float));
+  fuzz_check_bits(a->residual, b->residual, n * sizeof(float));
+  fuzz_check_bits(a->boundary_flag, b->boundary_flag, n);
+  fuzz_check_bits(a->iso_value, b->iso_value, n * sizeof(double));
+  fuzz_check_bits(a->nearest_particle, b->nearest_particle, n * sizeof(int64_t));
+  FUZZ_CHECK(a->attribute_count == b->attribute_count);
+  for (int i = 0; i < a->attribute_count; ++i)
+  {
+    fuzz_check_bits(a->attributes[i], b->attributes[i], n * (i ? 3 : 1) * sizeof(double));
+  }
 }
 
 static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mcor_surface* surface)
@@ -280,43 +300,181 @@ static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mc
   return status;
 }
 
-/* Contexts are kept, one for each device program: to make one takes longer than a call. */
-static mcor_context* fuzz_context(const fuzz_call* call)
+/* Contexts are kept, two for each device program: to make one takes longer than a call. `forgetful`:
+ * one that keeps nothing from its last call. */
+static mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
 {
-  static mcor_context* contexts[2][3][2];
+  static mcor_context* contexts[2][2][3][2];
   const mcor_options* o = &call->options;
-  mcor_context** context = &contexts[o->sph_kernel == MCOR_M_PRIME_4][o->field < 3 ? o->field : 0]
-                                    [call->input.solid != NULL];
+  mcor_context** context = &contexts[forgetful][o->sph_kernel == MCOR_M_PRIME_4]
+                                    [o->field < 3 ? o->field : 0][call->input.solid != NULL];
   if (!*context && mcor_create_context(NULL, context) != MCOR_OK)
   {
     fprintf(stderr, "%s\n", mcor_last_error(*context));
     exit(1);
   }
+  if (forgetful)
+  {
+    mcor_release_memory(*context);
+  }
   return *context;
+}
+
+/* Other positions, of the same range. */
+static void fuzz_move(fuzz_call* call)
+{
+  const size_t n = (size_t)call->input.count;
+  const double* from = call->input.positions.data;
+  double* to = fuzz_array(call, 5, 3 * n);
+  for (size_t i = 0; i < 3 * n; ++i)
+  {
+    to[i] = from[i - i % 3 + (i + 1) % 3];
+  }
+  call->input.positions.data = to;
+  ++call->input.particles_version;
+}
+
+static void fuzz_other_scalar(fuzz_call* call)
+{
+  mcor_array* scalar = &call->input.scalar;
+  const size_t n = (size_t)call->input.count * (scalar->components > 1 ? 3 : 1);
+  const double* from = scalar->data;
+  double* to = fuzz_array(call, 6, n);
+  for (size_t i = 0; i < n; ++i)
+  {
+    to[i] = -from[i];
+  }
+  scalar->data = to;
+  ++call->input.scalar_version;
+}
+
+/* Changes a call in one thing. A version goes with the arrays' content. */
+static void fuzz_change(unsigned what, fuzz_call* call)
+{
+  mcor_input* in = &call->input;
+  mcor_options* o = &call->options;
+  switch (what % 20)
+  {
+    case 0:
+      call->iso[0] += 0.25;
+      break;
+    case 1:
+      o->h_scale *= 0.75;
+      break;
+    case 2:
+      o->cube_size_factor += 0.25;
+      break;
+    case 3:
+      o->seeds = o->seeds == MCOR_PAIRS ? MCOR_COMPLETE : MCOR_PAIRS;
+      break;
+    case 4:
+      o->topology = o->topology == MCOR_TOPOLOGY_FIELD ? MCOR_TOPOLOGY_TABLE : MCOR_TOPOLOGY_FIELD;
+      break;
+    case 5:
+      o->preview = !o->preview;
+      break;
+    case 6:
+      o->node_threshold += 0.25;
+      break;
+    case 7:
+      o->vertex_threshold += 0.25;
+      break;
+    case 8:
+      o->boundary_detection = o->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
+        ? MCOR_BOUNDARY_WEIGHT_SUM
+        : MCOR_BOUNDARY_EIGENVALUE;
+      break;
+    case 9:
+      fuzz_other_scalar(call);
+      break;
+    case 10:
+      fuzz_move(call);
+      break;
+    case 11:
+      fuzz_move(call);
+      fuzz_other_scalar(call);
+      break;
+    case 12:
+      in->ignore_solids = !in->ignore_solids;
+      break;
+    case 13:
+      in->smoothing_length.data = NULL;
+      in->smoothing_length.constant *= 1.25;
+      break;
+    case 14:
+      in->smoothing_length_is_support_radius = !in->smoothing_length_is_support_radius;
+      break;
+    case 15:
+      in->estimate_smoothing_length = !in->estimate_smoothing_length;
+      break;
+    case 16:
+      in->has_volume = !in->has_volume;
+      break;
+    case 17:
+      in->has_mass = !in->has_mass;
+      break;
+    case 18:
+      in->has_density = !in->has_density;
+      break;
+    default:
+      in->count -= in->count > 0;
+      break;
+  }
+}
+
+/* The call on the context that keeps what it can, against one that keeps nothing. */
+static void fuzz_compare(const fuzz_call* call)
+{
+  fuzz_call alone = *call;
+  mcor_surface kept, fresh;
+  alone.options.iso_values = alone.iso;
+  alone.input.particles_version = alone.input.scalar_version = 0;
+  const mcor_status status = fuzz_extract(fuzz_context(call, 0), call, &kept);
+  FUZZ_CHECK(fuzz_extract(fuzz_context(call, 1), &alone, &fresh) == status);
+  fuzz_check_same(&kept, &fresh);
+  mcor_free_surface(&kept);
+  mcor_free_surface(&fresh);
+}
+
+/* Announces the call's versions by one that fails. */
+static void fuzz_fail_first(const fuzz_call* call)
+{
+  fuzz_call failing = *call;
+  mcor_surface surface;
+  failing.options.iteration_limit = 0;
+  FUZZ_CHECK(fuzz_extract(fuzz_context(call, 0), &failing, &surface) == MCOR_INVALID_ARGUMENT);
+  mcor_free_surface(&surface);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
+  static uint64_t version = 0;
   fuzz_bytes bytes = fuzz_input = (fuzz_bytes){ data, size };
   fuzz_call call = { .iso = { 0, 0 } };
   fuzz_options(&bytes, &call);
   const unsigned rules = fuzz_byte(&bytes);
   fuzz_particles(&bytes, &call);
   fuzz_parts(rules, &call);
-  mcor_context* context = fuzz_context(&call);
-  mcor_surface first, second;
-  const mcor_status status = fuzz_extract(context, &call, &first);
+  const unsigned change = fuzz_byte(&bytes) + (unsigned)size;
+  call.input.particles_version = call.input.scalar_version = version += 2;
+  fuzz_compare(&call);
   if (size % 4 == 1)
   {
-    mcor_release_memory(context);
+    mcor_release_memory(fuzz_context(&call, 0));
   }
-  FUZZ_CHECK(fuzz_extract(context, &call, &second) == status);
-  fuzz_check_same(&first, &second);
-  mcor_free_surface(&first);
-  mcor_free_surface(&second);
-  for (size_t i = 0; i < sizeof call.arrays / sizeof call.arrays[0]; ++i)
+  fuzz_call changed = call;
+  changed.options.iso_values = changed.iso;
+  changed.input.attributes = changed.attributes;
+  fuzz_change(change, &changed);
+  if (size % 4 == 2)
   {
-    free(call.arrays[i]);
+    fuzz_fail_first(&changed);
+  }
+  fuzz_compare(&changed);
+  fuzz_compare(&call);
+  for (size_t i = 0; i < sizeof changed.arrays / sizeof changed.arrays[0]; ++i)
+  {
+    free(changed.arrays[i]);
   }
   return 0;
 }

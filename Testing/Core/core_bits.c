@@ -87,6 +87,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
       (long long)surface.triangle_count, (long long)statistics->trim_vertices,
       mcor_last_error(context));
   }
+  printf("form %d lanes, %s\n", context->cl.lanes, context->cl.is_cpu ? "CPU" : "GPU");
   printf("%s: %lld points, %lld triangles, %lld cut, %016llx\n", at->name,
     (long long)surface.point_count, (long long)surface.triangle_count,
     (long long)statistics->trim_vertices, (unsigned long long)core_hash(&surface));

@@ -40,7 +40,11 @@ extern "C"
     mcor_input input;
     mcor_options options; /* one iso value; seeds and vertex_threshold are set by the run */
     int skip_pairs;       /* do not run with MCOR_PAIRS */
-    int rough; /* values without any smoothness, or equal to iso in places: only edges and mesh */
+    int
+      rough; /* values without any smoothness: gradients, and what they lead to, have few digits */
+    int
+      at_iso; /* values equal to iso in places: which edges are crossed is up to rounding there, and
+                 * the surface has no distance or normal */
     int no_table;         /* has no row in the table of results */
     int has_euler, euler; /* what the Euler number of the untrimmed surface must be */
     int64_t node_limit;   /* 0: 60 million */

@@ -24,7 +24,7 @@ typedef struct variant
   double cube_factor, cube_size, h_scale;
   int in_double;
   double iso; /* used if has_iso */
-  int has_iso, rough, skip_pairs;
+  int has_iso, rough, at_iso, skip_pairs;
   int has_euler, euler;
   mcor_topology topology;
   double eigenvalue; /* above 0: trimmed where the boundary eigenvalue is lower */
@@ -49,6 +49,7 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
     at->options.vertex_threshold = v->eigenvalue;
   }
   at->rough = v->rough;
+  at->at_iso = v->at_iso;
   at->has_euler = v->has_euler;
   at->euler = v->euler;
   at->skip_pairs = v->skip_pairs || v->field == MCOR_WEIGHT_SUM; /* w has no pairs to straddle */
@@ -163,15 +164,15 @@ static const variant set_variants[] = {
   { .set = "single", .field = MCOR_WEIGHT_SUM, .has_euler = 1, .euler = 2 },
   { .set = "single", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
   /* f and w are the same here, so iso and vertex threshold coincide everywhere. */
-  { .set = "single", .field = MCOR_SUM, .rough = 1, .suffix = "/tangent" },
+  { .set = "single", .field = MCOR_SUM, .rough = 1, .at_iso = 1, .suffix = "/tangent" },
   { .set = "coincident" },
   { .set = "coincident", .field = MCOR_SUM },
   /* Node values equal to iso up to rounding: which edges are crossed is open, but the mesh must be
    * whole and every vertex on the surface. */
-  { .set = "on_nodes", .rough = 1 },
-  { .set = "on_nodes", .field = MCOR_SUM, .rough = 1 },
-  { .set = "on_nodes", .rough = 1, .in_double = 1 },
-  { .set = "plateau", .rough = 1, .skip_pairs = 1 },
+  { .set = "on_nodes", .rough = 1, .at_iso = 1 },
+  { .set = "on_nodes", .field = MCOR_SUM, .rough = 1, .at_iso = 1 },
+  { .set = "on_nodes", .rough = 1, .at_iso = 1, .in_double = 1 },
+  { .set = "plateau", .rough = 1, .at_iso = 1, .skip_pairs = 1 },
 };
 
 /* ---- trimmed by the boundary eigenvalue ------------------------------------------------------ */

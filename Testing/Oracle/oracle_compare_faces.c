@@ -370,19 +370,6 @@ void compare_count_unsettled(compare_state* state)
   }
 }
 
-int compare_pinched(const oracle_lattice* lattice, int64_t edge)
-{
-  int64_t cells[4][3];
-  int valid[4];
-  oracle_edge_cells(lattice, edge, cells);
-  for (int c = 0; c < 4; ++c)
-  {
-    valid[c] = oracle_cell_valid(lattice, cells[c][0], cells[c][1], cells[c][2]);
-  }
-  /* Cells 0 and 3, 1 and 2 are diagonal to each other. */
-  return valid[0] == valid[3] && valid[1] == valid[2] && valid[0] != valid[1];
-}
-
 void compare_count_pinched(compare_state* state)
 {
   for (int64_t e = 0; e < state->reference->surface.edge_count; ++e)

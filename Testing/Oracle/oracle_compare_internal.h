@@ -3,8 +3,9 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* Shared by oracle_compare.c (edges), oracle_compare_mesh.c (vertices, triangles) and
- * oracle_compare_faces.c (what the mesh does on the faces of the lattice). */
+/* oracle_compare.c calls what compares edges (oracle_compare_edges.c), vertices and triangles
+ * (_mesh.c) and what the mesh does on the faces of the lattice (_faces.c); these call what they share
+ * (_state.c), and not each other. */
 
 #include "oracle_compare.h"
 
@@ -30,24 +31,36 @@ typedef struct compare_state
   double* gradient; /* [point_count][3], by the oracle */
 } compare_state;
 
+/* ---- oracle_compare_state.c ---- */
+
 /* What is trimmed by, at a point: the trimming weight or the boundary eigenvalue. */
 double compare_trim_quantity(
   const compare_state* state, const double point[3], const oracle_sample* sample);
-
 /* The first fault is kept in words. */
 void compare_note(compare_state* state, const char* format, ...);
 void compare_note_edge(compare_state* state, const char* what, int64_t edge);
-
 /* 1 if either end of the edge has the flag. */
 int compare_end_flag(const oracle_lattice* lattice, int64_t edge, int flag);
+/* 1 if two valid cells touch only in this edge. */
+int compare_pinched(const oracle_lattice* lattice, int64_t edge);
+
+/* ---- oracle_compare_edges.c: which edge each vertex lies on, then what that leaves out ---- */
+
+void compare_assign(compare_state* state);
+/* present, absent: of each component, and one more; counted up. */
+void compare_missing(compare_state* state, int64_t* present, int64_t* absent);
+void compare_extra(compare_state* state);
+
+/* ---- oracle_compare_mesh.c ---- */
 
 void compare_vertices(compare_state* state);
 int compare_orientation(compare_state* state); /* 0 if memory ran out */
+
+/* ---- oracle_compare_faces.c ---- */
+
 void compare_inverted(compare_state* state);
 void compare_faces(compare_state* state);
 void compare_boundary(compare_state* state);
-/* 1 if two valid cells touch only in this edge. */
-int compare_pinched(const oracle_lattice* lattice, int64_t edge);
 void compare_count_pinched(compare_state* state);
 void compare_count_unsettled(compare_state* state);
 

@@ -1,0 +1,93 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle_compare_internal.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void compare_note(compare_state* state, const char* format, ...)
+{
+  if (state->result->first[0] == '\0')
+  {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(state->result->first, sizeof(state->result->first), format, arguments);
+    va_end(arguments);
+  }
+}
+
+double compare_trim_quantity(
+  const compare_state* state, const double point[3], const oracle_sample* sample)
+{
+  if (state->options->boundary_detection != MCOR_BOUNDARY_EIGENVALUE)
+  {
+    return sample->trim_weight;
+  }
+  double eigenvalues[3];
+  oracle_boundary_eigenvalues(&state->reference->field, point, eigenvalues);
+  return eigenvalues[0];
+}
+
+/* Least trimming weight at the nodes of a cell; NaN outside the lattice. */
+static double compare_least_weight(const oracle_lattice* lattice, const int64_t ijk[3])
+{
+  double least = INFINITY;
+  for (int c = 0; c < 8; ++c)
+  {
+    const int64_t at[3] = { ijk[0] + (c & 1), ijk[1] + (c >> 1 & 1), ijk[2] + (c >> 2) };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (at[axis] < 0 || at[axis] >= lattice->size[axis])
+      {
+        return NAN;
+      }
+    }
+    least = fmin(least, lattice->trim_weight[oracle_node_index(lattice, at[0], at[1], at[2])]);
+  }
+  return least;
+}
+
+void compare_note_edge(compare_state* state, const char* what, int64_t edge)
+{
+  const oracle_lattice* lattice = &state->reference->lattice;
+  int64_t nodes[2];
+  int64_t cells[4][3];
+  double p[3];
+  double w[4];
+  oracle_edge_ends(lattice, edge, nodes);
+  oracle_edge_cells(lattice, edge, cells);
+  oracle_node_position(lattice, nodes[0], p);
+  for (int c = 0; c < 4; ++c)
+  {
+    w[c] = compare_least_weight(lattice, cells[c]);
+  }
+  compare_note(state,
+    "%s edge at (%.9g, %.9g, %.9g) axis %d, f - iso = %.3g and %.3g, fluid weight %.3g and %.3g,"
+    " least weight of its cells %.4g %.4g %.4g %.4g",
+    what, p[0], p[1], p[2], (int)(edge % 3),
+    lattice->value[nodes[0]] - state->reference->limits.iso,
+    lattice->value[nodes[1]] - state->reference->limits.iso, lattice->weight[nodes[0]],
+    lattice->weight[nodes[1]], w[0], w[1], w[2], w[3]);
+}
+
+int compare_end_flag(const oracle_lattice* lattice, int64_t edge, int flag)
+{
+  int64_t nodes[2];
+  oracle_edge_ends(lattice, edge, nodes);
+  return ((lattice->flags[nodes[0]] | lattice->flags[nodes[1]]) & flag) != 0;
+}
+
+int compare_pinched(const oracle_lattice* lattice, int64_t edge)
+{
+  int64_t cells[4][3];
+  int valid[4];
+  oracle_edge_cells(lattice, edge, cells);
+  for (int c = 0; c < 4; ++c)
+  {
+    valid[c] = oracle_cell_valid(lattice, cells[c][0], cells[c][1], cells[c][2]);
+  }
+  /* Cells 0 and 3, 1 and 2 are diagonal to each other. */
+  return valid[0] == valid[3] && valid[1] == valid[2] && valid[0] != valid[1];
+}

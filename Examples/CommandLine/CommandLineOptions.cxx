@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CommandLineOptions.h"
 
+#include "ParticleFile.h"
+#include "SafeText.h"
+#include "SurfaceFile.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <set>
 #include <sstream>
 
 namespace
@@ -48,8 +54,11 @@ int ToCount(const std::string& option, const std::string& text, int smallest)
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end || value < smallest)
   {
-    throw UsageError(
-      option + " needs a whole number from " + std::to_string(smallest) + ", not '" + text + "'");
+    const bool tooLarge = result.ec == std::errc::result_out_of_range && text[0] != '-';
+    throw UsageError(option + " needs a whole number " +
+      (tooLarge ? "up to " + std::to_string(std::numeric_limits<int>::max())
+                : "from " + std::to_string(smallest)) +
+      ", not '" + text + "'");
   }
   return value;
 }
@@ -77,7 +86,7 @@ std::string ToQuantity(const std::string& option, const std::string& text)
   {
     ToPositive(option, text);
   }
-  return text;
+  return Printable(text);
 }
 
 std::vector<double> ToNumbers(const std::string& option, const std::string& text)
@@ -98,13 +107,13 @@ void SetFluid(CommandLineOptions& options, const std::string& option, const std:
   {
     throw UsageError(option + " needs NAME=VALUE, not '" + text + "'");
   }
-  options.FluidArray = text.substr(0, equals);
+  options.FluidArray = Printable(text.substr(0, equals));
   options.FluidValue = ToNumber(option, text.substr(equals + 1));
 }
 
 void SetComponent(CommandLineOptions& options, const std::string& option, const std::string& text)
 {
-  options.Magnitude = text == "magnitude";
+  options.Magnitude = text == "magnitude" || text == "-1"; // the filter's number for it
   if (!options.Magnitude)
   {
     options.Component = ToCount(option, text, 0);
@@ -128,8 +137,8 @@ const std::vector<Option>& AllOptions()
   static const std::vector<Option> all = {
     { "", "", "What to contour", {} },
     { "--scalar", "NAME", "point array to contour",
-      [](Options& o, Text, Text v) { o.Scalar = v; } },
-    { "--component", "N|magnitude", "component of a vector (from 0), or its magnitude (default)",
+      [](Options& o, Text, Text v) { o.Scalar = Printable(v); } },
+    { "--component", "N|magnitude", "component of a vector, from 0, or its magnitude (default)",
       SetComponent },
     { "--iso", "V[,V...]", "iso values; with --free-surface the weight sum (default 0.5)",
       [](Options& o, Text n, Text v) { o.IsoValues = ToNumbers(n, v); } },
@@ -146,7 +155,7 @@ const std::vector<Option>& AllOptions()
     { "--support-radius", "", "these are the support radius, not the smoothing length",
       [](Options& o, Text, Text) { o.SupportRadius = true; } },
     { "--volume", "NAME", "array of particle volumes",
-      [](Options& o, Text, Text v) { o.Volume = v; } },
+      [](Options& o, Text, Text v) { o.Volume = Printable(v); } },
     { "--mass", "NAME|VALUE", "array of particle masses, or one value",
       [](Options& o, Text n, Text v) { o.Mass = ToQuantity(n, v); } },
     { "--density", "NAME|VALUE", "array of densities, or one value",
@@ -221,7 +230,7 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.MemoryLimit = ToCount(n, v, 1); } },
     { "--list-devices", "", "list the OpenCL devices",
       [](Options& o, Text, Text) { o.ListDevices = true; } },
-    { "--help", "", "print this text", [](Options& o, Text, Text) { o.Help = true; } },
+    { "--help", "", "print this text (also -h)", [](Options& o, Text, Text) { o.Help = true; } },
     { "--version", "", "print the version", [](Options& o, Text, Text) { o.Version = true; } },
   };
   return all;
@@ -237,11 +246,12 @@ void Check(const CommandLineOptions& options)
 {
   if (options.Output.empty())
   {
-    throw UsageError("needs INPUT and OUTPUT.vtp");
+    throw UsageError("needs INPUT and OUTPUT");
   }
-  if (!EndsWith(options.Output, ".vtp"))
+  if (!IsSurfaceFile(options.Output))
   {
-    throw UsageError("the output is a .vtp file, not '" + options.Output + "'");
+    throw UsageError(
+      "the output is a " + SurfaceFileEndings() + " file, not '" + options.Output + "'");
   }
   if (!options.PictureFile.empty() && !EndsWith(options.PictureFile, ".png"))
   {
@@ -261,44 +271,112 @@ void Check(const CommandLineOptions& options)
   }
 }
 
-/// Takes the option at argv[i], and moves i to its last word.
-void ParseOption(CommandLineOptions& options, int argc, char* argv[], int& i)
+const Option& FindOption(const std::string& name)
 {
-  std::string name = argv[i];
-  std::string value;
-  const std::size_t equals = name.find('=');
-  const bool joined = equals != std::string::npos;
-  if (joined)
-  {
-    value = name.substr(equals + 1);
-    name.resize(equals);
-  }
   const std::vector<Option>& all = AllOptions();
-  const auto option = std::find_if(
-    all.begin(), all.end(), [&](const Option& o) { return !name.empty() && name == o.Name; });
+  const auto find = [&](const std::string& text)
+  {
+    return std::find_if(
+      all.begin(), all.end(), [&](const Option& o) { return !text.empty() && text == o.Name; });
+  };
+  const auto option = find(name == "-h" ? "--help" : name);
   if (option == all.end())
   {
-    throw UsageError("unknown option " + name);
+    const bool lacksDash = find("-" + name) != all.end();
+    throw UsageError("unknown option " + name + (lacksDash ? "; it is -" + name : ""));
   }
-  const bool takesValue = option->Argument[0] != '\0';
-  if (joined && !takesValue)
-  {
-    throw UsageError(name + " takes no value");
-  }
-  if (takesValue && !joined)
-  {
-    if (i + 1 >= argc || std::string(argv[i + 1]).compare(0, 2, "--") == 0)
-    {
-      throw UsageError(name + " needs " + option->Argument);
-    }
-    value = argv[++i];
-  }
-  if (takesValue && value.empty())
-  {
-    throw UsageError(name + " needs " + option->Argument);
-  }
-  option->Set(options, name, value);
+  return *option;
 }
+
+/// Words that begin with a dash are options, unless they are numbers: -1, -.5, -1,2.
+bool LooksLikeOption(const std::string& word)
+{
+  return word.size() > 1 && word[0] == '-' &&
+    std::string("0123456789.").find(word[1]) == std::string::npos;
+}
+
+/// The words of a command line, taken from left to right.
+class Parser
+{
+public:
+  explicit Parser(const std::vector<std::string>& words)
+    : Words(words)
+  {
+  }
+
+  CommandLineOptions Parse()
+  {
+    while (this->Next < this->Words.size())
+    {
+      const std::string word = this->Words[this->Next++];
+      if (!this->OptionsEnded && word == "--")
+      {
+        this->OptionsEnded = true;
+      }
+      else if (!this->OptionsEnded && word.size() > 1 && word[0] == '-')
+      {
+        this->TakeOption(word);
+      }
+      else
+      {
+        this->TakeFile(word);
+      }
+    }
+    return this->Options;
+  }
+
+private:
+  void TakeOption(std::string name)
+  {
+    std::string value;
+    const std::size_t equals = name.find('=');
+    const bool joined = equals != std::string::npos;
+    if (joined)
+    {
+      value = name.substr(equals + 1);
+      name.resize(equals);
+    }
+    const Option& option = FindOption(name);
+    const bool takesValue = option.Argument[0] != '\0';
+    if (joined && !takesValue)
+    {
+      throw UsageError(name + " takes no value");
+    }
+    if (takesValue && !this->Given.insert(name).second)
+    {
+      throw UsageError(name + " is given twice");
+    }
+    if (takesValue && !joined && this->Next < this->Words.size() &&
+      !LooksLikeOption(this->Words[this->Next]))
+    {
+      value = this->Words[this->Next++];
+    }
+    if (takesValue && value.empty())
+    {
+      throw UsageError(name + " needs " + option.Argument);
+    }
+    option.Set(this->Options, name, value);
+  }
+
+  void TakeFile(const std::string& word)
+  {
+    if (word.empty() || word == "-")
+    {
+      throw UsageError("'" + word + "' is not the name of a file");
+    }
+    if (!this->Options.Output.empty())
+    {
+      throw UsageError("does not know what to do with '" + word + "'");
+    }
+    (this->Options.Input.empty() ? this->Options.Input : this->Options.Output) = word;
+  }
+
+  const std::vector<std::string> Words;
+  std::size_t Next = 0;
+  bool OptionsEnded = false;
+  std::set<std::string> Given; ///< options with a value
+  CommandLineOptions Options;
+};
 
 } // namespace
 
@@ -316,8 +394,9 @@ bool ParseNumber(const std::string& text, double& value)
 std::string CommandLineHelp()
 {
   std::ostringstream help;
-  help << "usage: marching-correctors INPUT OUTPUT.vtp [options]\n\n"
-          "Extracts an isosurface from SPH particles. INPUT is a .vtp, .vtu or legacy .vtk file.\n";
+  help << "usage: marching-correctors INPUT OUTPUT [options]\n\n"
+          "Extracts an isosurface from SPH particles. INPUT is a "
+       << ParticleFileEndings() << " file, OUTPUT a " << SurfaceFileEndings() << " file.\n";
   for (const Option& option : AllOptions())
   {
     if (option.Name[0] == '\0')
@@ -329,7 +408,9 @@ std::string CommandLineHelp()
     left.resize(std::max<std::size_t>(left.size() + 2, 32), ' ');
     help << left << option.Help << "\n";
   }
-  help << "\nExit status: 0 a surface was written, 1 bad data or a device problem, 2 wrong usage.\n"
+  help << "\nEvery output is written completely or left as it was. -- ends the options.\n"
+          "Exit status: 0 all outputs were written (of an empty surface, too, with a warning),\n"
+          "1 bad data, or a problem with a file or the device, 2 wrong usage.\n"
           "Example: marching-correctors dam_break_45k.vtp speed.vtp --scalar Velocity --iso 1 "
           "--fluid ParticleType=0\n";
   return help.str();
@@ -338,27 +419,8 @@ std::string CommandLineHelp()
 //------------------------------------------------------------------------------
 CommandLineOptions ParseCommandLine(int argc, char* argv[])
 {
-  CommandLineOptions options;
-  for (int i = 1; i < argc; ++i)
-  {
-    const std::string word = argv[i];
-    if (word.compare(0, 2, "--") == 0)
-    {
-      ParseOption(options, argc, argv, i);
-    }
-    else if (options.Input.empty())
-    {
-      options.Input = word;
-    }
-    else if (options.Output.empty())
-    {
-      options.Output = word;
-    }
-    else
-    {
-      throw UsageError("does not know what to do with '" + word + "'");
-    }
-  }
+  const CommandLineOptions options =
+    Parser(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)).Parse();
   if (!options.Help && !options.Version && !options.ListDevices)
   {
     Check(options);

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-/// What the command line asks for. Lengths are in the unit of the particle positions.
+/// What the command line asks for. Lengths are in the unit of the particle positions; array names
+/// are spelled as ReadParticles() spells them.
 struct CommandLineOptions
 {
   std::string Input;

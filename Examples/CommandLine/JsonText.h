@@ -3,9 +3,10 @@
 #ifndef JsonText_h
 #define JsonText_h
 
+#include "SafeText.h"
+
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ public:
   void Value(const std::string& key, const std::string& text)
   {
     this->Line(key);
-    this->Text += Quoted(text);
+    this->Text += QuotedForJson(text);
   }
 
   void Value(const std::string& key, double number)
@@ -73,34 +74,10 @@ private:
       this->NewLine();
     }
     this->First = false;
-    this->Text += key.empty() ? "" : Quoted(key) + ": ";
+    this->Text += key.empty() ? "" : QuotedForJson(key) + ": ";
   }
 
   void NewLine() { this->Text += "\n" + std::string(2 * this->Depth, ' '); }
-
-  static std::string Quoted(const std::string& text)
-  {
-    std::string quoted = "\"";
-    for (const char c : text)
-    {
-      if (c == '"' || c == '\\')
-      {
-        quoted += '\\';
-        quoted += c;
-      }
-      else if (static_cast<unsigned char>(c) < 0x20)
-      {
-        char escape[8];
-        std::snprintf(escape, sizeof(escape), "\\u%04x", static_cast<unsigned>(c));
-        quoted += escape;
-      }
-      else
-      {
-        quoted += c;
-      }
-    }
-    return quoted + "\"";
-  }
 
   /// Reads back as the same number; JSON has neither NaN nor infinity.
   static std::string Formatted(double number)

@@ -25,6 +25,10 @@ std::string Sentence(const char* text)
   {
     message.erase(0, message.find('\n') + 1);
   }
+  if (message.find(" returned failure for request: ") != std::string::npos)
+  {
+    message = "VTK's reader gave up"; // where it says no more than that, and a page of addresses
+  }
   for (char& c : message)
   {
     c = c == '\n' || c == '\r' ? ' ' : c;

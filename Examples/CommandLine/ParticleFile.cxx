@@ -2,29 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleFile.h"
 
+#include "FileFormat.h"
 #include "MessageCapture.h"
+#include "ReadingLimits.h"
+#include "SafeText.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkDataObject.h"
 #include "vtkGenericDataObjectReader.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkXMLDataParser.h"
 #include "vtkXMLPolyDataReader.h"
-#include "vtkXMLPolyDataWriter.h"
 #include "vtkXMLUnstructuredGridReader.h"
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <new>
 #include <stdexcept>
+#include <vector>
 
-#if defined(__unix__)
 #include <dlfcn.h>
-#endif
 
 namespace
 {
@@ -60,7 +64,6 @@ protected:
   int CreateParser() override
   {
     const int result = this->Superclass::CreateParser();
-#if defined(__unix__)
     using SwitchType = unsigned char (*)(void*, unsigned char);
     const auto setDeferral =
       reinterpret_cast<SwitchType>(dlsym(RTLD_DEFAULT, "XML_SetReparseDeferralEnabled"));
@@ -68,7 +71,6 @@ protected:
     {
       setDeferral(this->Parser, 0);
     }
-#endif
     return result;
   }
 };
@@ -114,42 +116,113 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file)
   return reader->GetOutput();
 }
 
-vtkSmartPointer<vtkDataObject> ReadAny(const std::string& file)
+template <typename ReaderT>
+vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
 {
-  const std::string extension = fs::path(file).extension().string();
-  if (extension == ".vtp")
-  {
-    vtkNew<PromptReader<vtkXMLPolyDataReader>> reader;
-    return ReadXml(reader, file);
-  }
-  if (extension == ".vtu")
-  {
-    vtkNew<PromptReader<vtkXMLUnstructuredGridReader>> reader;
-    return ReadXml(reader, file);
-  }
-  if (extension == ".vtk")
-  {
-    return ReadLegacy(file);
-  }
-  throw std::runtime_error(file + " is not a .vtp, .vtu or .vtk file");
+  vtkNew<PromptReader<ReaderT>> reader;
+  return ReadXml(reader, file);
 }
 
-}
+/// Every format that is read; all that is known of one stands here.
+using Reader = std::function<vtkSmartPointer<vtkDataObject>(const std::string& file)>;
+const std::vector<FileFormat<Reader>> Formats = {
+  { ".vtp", ReadXmlWith<vtkXMLPolyDataReader> },
+  { ".vtu", ReadXmlWith<vtkXMLUnstructuredGridReader> },
+  { ".vtk", ReadLegacy },
+};
 
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages)
+/// VTK's readers seek in the file, so it must be a regular one.
+void CheckReadable(const std::string& file)
 {
   std::error_code error;
   if (fs::is_directory(file, error))
   {
     throw std::runtime_error(file + " cannot be read: it is a directory");
   }
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+  {
+    throw std::runtime_error(file + " cannot be read: it is not a regular file");
+  }
   if (!std::ifstream(file, std::ios::binary))
   {
     throw std::runtime_error(file + " cannot be read: " + std::strerror(errno));
   }
+  if (!FindFormat(Formats, file))
+  {
+    throw std::runtime_error(file + " is not a " + ParticleFileEndings() + " file");
+  }
+}
+
+/// VTK's reader at work. Its exceptions are those of the standard library where it asks for memory
+/// by sizes that a damaged file gave it.
+vtkSmartPointer<vtkDataObject> ReadWithinLimits(const std::string& file)
+{
+  const ReadingLimits limits(file);
+  try
+  {
+    return FindFormat(Formats, file)->Process(file);
+  }
+  catch (const std::bad_alloc&)
+  {
+  }
+  catch (const std::length_error&)
+  {
+  }
+  throw std::runtime_error(file +
+    " cannot be read: it asks for more memory than there is or than a file of its size can need; "
+    "it may be damaged");
+}
+
+/// Names go into sentences and into the surface's file, where not all bytes may stand that a legacy
+/// file can hold.
+void MakePrintable(vtkAbstractArray* array)
+{
+  array->SetName(Printable(array->GetName() ? array->GetName() : "").c_str());
+  for (int i = 0; array->HasAComponentName() && i < array->GetNumberOfComponents(); ++i)
+  {
+    if (const char* name = array->GetComponentName(i))
+    {
+      array->SetComponentName(i, Printable(name).c_str());
+    }
+  }
+}
+
+/// The points' arrays alone, all that is used of the data: no cells (one per particle, for nothing),
+/// and nothing that was not checked.
+vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet* data)
+{
+  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  particles->SetPoints(data->GetPoints());
+  vtkPointData* arrays = data->GetPointData();
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    MakePrintable(array);
+    if (array->GetNumberOfTuples() != data->GetNumberOfPoints())
+    {
+      throw std::runtime_error(file + " cannot be read: its array '" + array->GetName() + "' has " +
+        std::to_string(array->GetNumberOfTuples()) + " entries for " +
+        std::to_string(data->GetNumberOfPoints()) + " points");
+    }
+    particles->GetPointData()->AddArray(array);
+  }
+  return particles;
+}
+
+}
+
+//------------------------------------------------------------------------------
+std::string ParticleFileEndings()
+{
+  return ListEndings(Formats);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages)
+{
+  CheckReadable(file);
   messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadAny(file);
+  vtkSmartPointer<vtkDataObject> data = ReadWithinLimits(file);
   // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
   if (!messages->GetErrors().empty())
   {
@@ -162,64 +235,9 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCaptu
       (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
       ", not particles (poly data or an unstructured grid)");
   }
-  if (points->GetNumberOfPoints() == 0)
+  if (!points->GetPoints() || points->GetNumberOfPoints() == 0)
   {
     throw std::runtime_error(file + " holds no points");
   }
-  if (vtkPolyData* polyData = vtkPolyData::SafeDownCast(points))
-  {
-    polyData->SetVerts(nullptr); // one per particle, for nothing
-  }
-  return points;
-}
-
-//------------------------------------------------------------------------------
-void CheckWritable(const std::string& file)
-{
-  std::error_code error;
-  if (fs::is_directory(file, error))
-  {
-    throw std::runtime_error(file + " could not be written: it is a directory");
-  }
-  // The same name as in WriteText: no other file is touched, and none is left.
-  const std::string part = file + ".part";
-  if (!std::ofstream(part, std::ios::binary))
-  {
-    throw std::runtime_error(file + " could not be written: " + std::strerror(errno));
-  }
-  std::remove(part.c_str());
-}
-
-//------------------------------------------------------------------------------
-void WriteSurface(const std::string& file, vtkPolyData* surface, MessageCapture* messages)
-{
-  messages->Clear();
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(surface);
-  // Not appended, VTK's default: ParaView 5.11 as Debian 12 has it cannot read that.
-  writer->SetDataModeToBinary();
-  // Not straight to the file: on a full disk the writer of VTK 9.1 crashes.
-  writer->WriteToOutputStringOn();
-  if (!writer->Write() || !messages->GetErrors().empty())
-  {
-    throw std::runtime_error(file + " could not be written" +
-      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
-  }
-  WriteText(file, writer->GetOutputString());
-}
-
-//------------------------------------------------------------------------------
-void WriteText(const std::string& file, const std::string& text)
-{
-  // Under another name first: no half-written file is ever seen under the one asked for.
-  const std::string part = file + ".part";
-  std::ofstream stream(part, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream || std::rename(part.c_str(), file.c_str()) != 0)
-  {
-    const std::string why = std::strerror(errno);
-    std::remove(part.c_str());
-    throw std::runtime_error(file + " could not be written: " + why);
-  }
+  return TakeParticles(file, points);
 }

@@ -14,9 +14,7 @@
 #include <iomanip>
 #include <sstream>
 
-#if defined(__unix__) || defined(__APPLE__)
 #include <sys/resource.h>
-#endif
 
 namespace
 {
@@ -272,15 +270,11 @@ std::string StatisticsAsJson(const CommandLineOptions& options,
 //------------------------------------------------------------------------------
 double PeakResidentBytes()
 {
-#if defined(__unix__) || defined(__APPLE__)
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
 #ifdef __APPLE__
   return static_cast<double>(usage.ru_maxrss);
 #else
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
-#endif
-#else
-  return 0.0;
 #endif
 }

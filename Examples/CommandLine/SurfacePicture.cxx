@@ -3,6 +3,8 @@
 #include "SurfacePicture.h"
 
 #include "MessageCapture.h"
+#include "OutputFile.h"
+#include "Supervisor.h"
 
 #include "vtkActor.h"
 #include "vtkCamera.h"
@@ -17,13 +19,12 @@
 #include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkWindowToImageFilter.h"
 
 #include <stdexcept>
 
-#if defined(__unix__)
 #include <dlfcn.h>
-#endif
 
 namespace
 {
@@ -37,7 +38,6 @@ class DisplayConnection
 public:
   explicit DisplayConnection(vtkRenderWindow* window)
   {
-#if defined(__unix__)
     if (window->IsA("vtkXOpenGLRenderWindow"))
     {
       const auto open = reinterpret_cast<OpenType>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
@@ -45,9 +45,6 @@ public:
       this->Needed = open && this->Close;
       this->Display = this->Needed ? open(nullptr) : nullptr;
     }
-#else
-    (void)window;
-#endif
   }
 
   ~DisplayConnection()
@@ -62,10 +59,7 @@ public:
   void operator=(const DisplayConnection&) = delete;
 
   /// True only where it is certain that an X server is needed and cannot be reached.
-  bool IsMissing() const
-  {
-    return this->Needed && !this->Display;
-  }
+  bool IsMissing() const { return this->Needed && !this->Display; }
 
 private:
   using OpenType = void* (*)(const char*);
@@ -116,6 +110,7 @@ void AddOutline(vtkRenderer* renderer, vtkPointSet* particles)
 void WritePicture(
   const std::string& file, vtkPolyData* surface, vtkPointSet* particles, MessageCapture* messages)
 {
+  const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
   messages->Clear();
   vtkNew<vtkRenderWindow> window;
   const DisplayConnection display(window);
@@ -147,12 +142,15 @@ void WritePicture(
   image->SetInput(window);
   image->ReadFrontBufferOff();
   vtkNew<vtkPNGWriter> writer;
-  writer->SetFileName(file.c_str());
+  writer->WriteToMemoryOn();
   writer->SetInputConnection(image->GetOutputPort());
   writer->Write();
-  if (writer->GetErrorCode() != 0 || !messages->GetErrors().empty())
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  if (!bytes || !messages->GetErrors().empty())
   {
     throw std::runtime_error(file + " could not be written" +
       (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
   }
+  const auto size = static_cast<std::size_t>(bytes->GetNumberOfValues());
+  WriteOutput(file, std::string(reinterpret_cast<const char*>(bytes->GetPointer(0)), size));
 }

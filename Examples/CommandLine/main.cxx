@@ -4,8 +4,12 @@
 // The command line program: particles from a file, surface to a file. See --help.
 #include "CommandLineOptions.h"
 #include "MessageCapture.h"
+#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "RunStatistics.h"
+#include "SafeText.h"
+#include "Supervisor.h"
+#include "SurfaceFile.h"
 #include "SurfacePicture.h"
 
 #include "vtkCallbackCommand.h"
@@ -21,35 +25,36 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
 
-#if defined(__unix__) || defined(__APPLE__)
+#include <fcntl.h>
 #include <unistd.h>
-#endif
 
 namespace
 {
 
 const char* const ProgramName = "marching-correctors";
 
-bool IsTerminal(FILE* stream)
+/// Errors and warnings: one line, whatever names and files have put into them.
+void Say(const std::string& sentence)
 {
-#if defined(__unix__) || defined(__APPLE__)
-  return isatty(fileno(stream)) != 0;
-#else
-  (void)stream;
-  return false;
-#endif
+  std::cerr << ProgramName << ": " << Printable(sentence) << "\n";
+}
+
+bool ShowsProgress(const CommandLineOptions& options)
+{
+  return !options.Quiet && isatty(STDERR_FILENO);
 }
 
 void ShowProgress(vtkObject* caller, unsigned long, void*, void*)
 {
   auto* filter = static_cast<vtkMarchingCorrectors*>(caller);
   const char* phase = filter->GetProgressText();
-  std::fprintf(stderr, "\r\033[K%3.0f %% %s", 100.0 * filter->GetProgress(), phase ? phase : "");
+  std::fprintf(stderr, "\r\033[K%3.0f %% %s", 100.0 * filter->GetProgress(),
+    Printable(phase ? phase : "").c_str());
   std::fflush(stderr);
 }
 
@@ -176,7 +181,7 @@ Run Extract(
   const auto start = std::chrono::steady_clock::now();
   filter->Update();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (!options.Quiet && IsTerminal(stderr))
+  if (ShowsProgress(options))
   {
     std::fputs("\r\033[K", stderr);
   }
@@ -222,8 +227,7 @@ void WarnIfEmpty(vtkPolyData* surface, MessageCapture* messages)
     }
     why = stream.str();
   }
-  std::cerr << ProgramName << ": warning: the surface is empty" << (why.empty() ? "" : ": ") << why
-            << "\n";
+  Say("warning: the surface is empty" + (why.empty() ? "" : ": " + why));
 }
 
 void ListDevices()
@@ -234,38 +238,31 @@ void ListDevices()
     throw std::runtime_error("there is no OpenCL device; a CPU becomes one with PoCL (Debian: "
                              "pocl-opencl-icd)");
   }
-  std::cout << devices;
-}
-
-/// Whether two names are those of one file, which need not exist.
-bool IsSameFile(const std::string& a, const std::string& b)
-{
-  std::error_code ignored;
-  const auto place = [&](const std::string& file)
-  { return std::filesystem::weakly_canonical(std::filesystem::absolute(file, ignored), ignored); };
-  return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
+  std::istringstream lines(devices);
+  for (std::string line; std::getline(lines, line);)
+  {
+    std::cout << Printable(line) << "\n";
+  }
 }
 
 /// No file is written over another, and all can be written: said before the work, not after it.
 void CheckFiles(const CommandLineOptions& options)
 {
-  std::vector<std::string> files = { options.Input };
+  std::vector<std::string> outputs;
   for (const std::string& file : { options.Output, options.StatisticsFile, options.PictureFile })
   {
-    if (file.empty())
+    if (!file.empty())
     {
-      continue;
+      outputs.push_back(file);
     }
-    for (const std::string& other : files)
-    {
-      if (IsSameFile(file, other))
-      {
-        throw UsageError(other == options.Input ? file + " would overwrite the input"
-                                                : file + " would be written twice");
-      }
-    }
-    CheckWritable(file);
-    files.push_back(file);
+  }
+  try
+  {
+    CheckOutputs(options.Input, outputs);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    throw UsageError(error.what());
   }
 }
 
@@ -286,7 +283,7 @@ void Execute(const CommandLineOptions& options)
   SetContour(filter, options);
   SetMethod(filter, options);
   filter->SetInputData(particles);
-  if (!options.Quiet && IsTerminal(stderr))
+  if (ShowsProgress(options))
   {
     vtkNew<vtkCallbackCommand> observer;
     observer->SetCallback(ShowProgress);
@@ -313,7 +310,8 @@ void Execute(const CommandLineOptions& options)
   WriteSurface(options.Output, surface, messages);
   if (!options.StatisticsFile.empty())
   {
-    WriteText(
+    std::cout.flush(); // the file may be /dev/stdout
+    WriteOutput(
       options.StatisticsFile, StatisticsAsJson(options, runs, wallSeconds, peakResidentBytes));
   }
   if (!options.PictureFile.empty())
@@ -322,41 +320,70 @@ void Execute(const CommandLineOptions& options)
   }
 }
 
-}
-
-int main(int argc, char* argv[])
+/// Exit status and sentence of what `run` throws, or of standard output that cannot be written.
+int Status(const std::function<void()>& run)
 {
   try
   {
-    const CommandLineOptions options = ParseCommandLine(argc, argv);
-    if (options.Help)
+    run();
+    std::cout.flush();
+    if (!std::cout)
     {
-      std::cout << CommandLineHelp();
-    }
-    else if (options.Version)
-    {
-      std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
-                << ")\n";
-    }
-    else
-    {
-      Execute(options);
+      throw std::runtime_error("standard output could not be written");
     }
   }
   catch (const UsageError& error)
   {
-    std::cerr << ProgramName << ": " << error.what() << " (see --help)\n";
+    Say(std::string(error.what()) + " (see --help)");
     return 2;
   }
   catch (const std::bad_alloc&)
   {
-    std::cerr << ProgramName << ": host memory ran out\n";
+    Say("host memory ran out");
     return 1;
   }
   catch (const std::exception& error)
   {
-    std::cerr << ProgramName << ": " << error.what() << "\n";
+    Say(error.what());
     return 1;
   }
   return 0;
+}
+
+/// A file opened by this program must not become its standard output, where that was closed.
+void OpenStandardStreams()
+{
+  int descriptor = 0;
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO)
+  {
+    descriptor = open("/dev/null", O_RDWR);
+  }
+  close(descriptor);
+}
+
+}
+
+int main(int argc, char* argv[])
+{
+  OpenStandardStreams();
+  CommandLineOptions options;
+  const int status = Status(
+    [&]
+    {
+      options = ParseCommandLine(argc, argv);
+      if (options.Help)
+      {
+        std::cout << CommandLineHelp();
+      }
+      else if (options.Version)
+      {
+        std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
+                  << ")\n";
+      }
+    });
+  if (status != 0 || options.Help || options.Version)
+  {
+    return status;
+  }
+  return RunSupervised([&] { return Status([&] { Execute(options); }); });
 }

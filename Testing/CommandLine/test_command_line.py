@@ -1,62 +1,17 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program marching-correctors: test_command_line.py PROGRAM [unittest arguments].
+"""The program marching-correctors: test_command_line.py PROGRAM PRELOAD [unittest arguments].
 
 What it computes is tested elsewhere; here it is files, options, sentences and exit statuses.
 """
 import json
 import os
-import pathlib
 import resource
-import shutil
 import signal
 import subprocess
-import sys
-import tempfile
-import unittest
 
 import particle_files as files
-
-PROGRAM = ""
-WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh"
-ISO = ["--scalar", "Radius", "--iso", "0.3"]
-
-
-class CommandLineTest(unittest.TestCase):
-    """Runs the program in a directory of its own, with a small good input beside it."""
-
-    def setUp(self):
-        self.directory = pathlib.Path(tempfile.mkdtemp(prefix="mcor-cli-"))
-        self.addCleanup(shutil.rmtree, self.directory)
-        self.input = self.directory / "particles.vtp"
-        self.output = self.directory / "surface.vtp"
-        self.points, self.arrays = files.lattice()
-        files.write_vtp(self.input, self.points, self.arrays)
-
-    def run_program(self, *arguments, **options):
-        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.directory, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=1200, **options)
-
-    def extract(self, *options, source=None, **run_options):
-        return self.run_program(source or self.input, self.output, *options, **run_options)
-
-    def succeed(self, *options, source=None):
-        """Runs the program, which must succeed without a word on stderr; returns its statistics."""
-        statistics = self.directory / "statistics.json"
-        result = self.extract(*options, "--stats", statistics, source=source)
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertIn("</VTKFile>", self.output.read_text())
-        return json.loads(statistics.read_text())
-
-    def refuse(self, result, status, sentence):
-        """One line on stderr that matches, nothing else, and no output file of any kind."""
-        self.assertRegex(result.stderr, sentence)
-        self.assertEqual(result.returncode, status, result.stderr)
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertTrue(result.stderr.startswith("marching-correctors: "), result.stderr)
-        self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
-        left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
-        self.assertEqual(left, [])
+from command_line_test import ISO, WITH_DISPLAY, CommandLineTest, main
 
 
 class Usage(CommandLineTest):
@@ -64,7 +19,8 @@ class Usage(CommandLineTest):
 
     def test_help_names_every_option(self):
         result = self.run_program("--help")
-        self.assertEqual(result.returncode, 0)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(self.run_program("-h").stdout, result.stdout)
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
                 --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
@@ -112,7 +68,27 @@ class Usage(CommandLineTest):
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
             ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
             ([*good, "--scalar", "Radius", "--iso", "nan"], "--iso needs a finite number"),
-            ([*good, *ISO, "--component", "-1"], "--component needs a whole number"),
+            ([*good, *ISO, "--component", "-2"], "--component needs a whole number from 0"),
+            ([*good, *ISO, "--component", "2147483648"], "whole number up to 2147483647, not '21"),
+            ([*good, *ISO, "--component", "1x"], "--component needs a whole number"),
+            ([*good, *ISO, "--component", " 1"], "--component needs a whole number"),
+            ([*good, "-iso", "1"], "unknown option -iso; it is --iso"),
+            ([*good, *ISO, "-q"], r"unknown option -q \("),
+            ([self.input, "-surface.vtp", *ISO], "unknown option -surface.vtp"),
+            ([self.input, "-", *ISO], "'-' is not the name of a file"),
+            ([self.input, "", *ISO], "'' is not the name of a file"),
+            ([*good, *ISO, "--iso", "0.4"], "--iso is given twice"),
+            ([*good, *ISO, "--stats", "-h"], "--stats needs FILE.json"),
+            ([*good, *ISO, "--stats"], "--stats needs FILE.json"),
+            ([*good, *ISO, "--stats", ""], "--stats needs FILE.json"),
+            ([*good, *ISO, "--", "--quiet"], "does not know what to do with '--quiet'"),
+            ([*good, *ISO, "--h-scale", "1e999"], "--h-scale needs a finite number, not '1e999'"),
+            ([*good, *ISO, "--h-scale", "1.0junk"], "--h-scale needs a finite number"),
+            ([*good, *ISO, "--h-scale", "0x1p3"], "--h-scale needs a finite number"),
+            ([*good, *ISO, "--h-scale=+-1"], "--h-scale needs a finite number"),
+            ([*good, *ISO, "--memory-limit", "99999999999"], "--memory-limit needs a whole number up to"),
+            ([*good, *ISO, "--memory-limit", "-5"], "--memory-limit needs a whole number"),
+            ([*good, *ISO, "--memory-limit", "1.5"], "--memory-limit needs a whole number"),
             ([*good, *ISO, "--repeat", "0"], "--repeat needs a whole number from 1, not '0'"),
             ([*good, *ISO, "--memory-limit", "0"], "--memory-limit needs a whole number from 1"),
             ([*good, *ISO, "--h-scale", "0"], "--h-scale must be greater than 0"),
@@ -225,6 +201,9 @@ class BadData(CommandLineTest):
         table = self.directory / "table.csv"
         table.write_text("x,y,z\n")
         self.refuse_with("table.csv is not a .vtp, .vtu or .vtk file", source=table)
+        fifo = self.directory / "fifo.vtp"
+        os.mkfifo(fifo)
+        self.refuse_with("fifo.vtp cannot be read: it is not a regular file", source=fifo)
 
     def test_no_vtk_files(self):
         for name in ("text.vtp", "text.vtu", "text.vtk"):
@@ -255,9 +234,9 @@ class BadData(CommandLineTest):
     def test_unwritable_files(self):
         nowhere = self.directory / "nowhere"
         self.refuse(self.run_program(self.input, nowhere / "surface.vtp", *ISO), 1,
-                  "surface.vtp could not be written: No such file or directory")
+                  r"surface.vtp could not be written: no file can be made in .*nowhere \(No such file or dir")
         for option, name in (("--stats", "s.json"), ("--screenshot", "s.png")):
-            self.refuse_with(f"{name} could not be written: No such", *ISO, option, nowhere / name)
+            self.refuse_with(f"{name} could not be written: no file can be made", *ISO, option, nowhere / name)
         directory = self.directory / "directory.vtp"
         directory.mkdir()
         self.refuse(self.run_program(self.input, directory, *ISO), 1, "it is a directory")
@@ -341,7 +320,8 @@ class Options(CommandLineTest):
     def test_components(self):
         vector = ["--scalar", "Velocity", "--iso", "0.21"]
         magnitude = self.succeed(*vector)["statistics"]
-        self.assertEqual(magnitude, self.succeed(*vector, "--component", "magnitude")["statistics"])
+        for name in ("magnitude", "-1"):  # -1 is the filter's number for it
+            self.assertEqual(magnitude, self.succeed(*vector, "--component", name)["statistics"])
         plane = self.succeed(*vector, "--component", "0")["statistics"]
         self.assertLess(plane["scalar_range"][0], 0)
         self.assertNotEqual(plane["triangles"], magnitude["triangles"])
@@ -464,6 +444,14 @@ class Options(CommandLineTest):
         self.assertIn(found["device"], first)
         self.assertEqual(self.succeed(*ISO, "--device", found["device"])["device"], found["device"])
 
+    def test_dashes(self):
+        # After -- a dash begins a file name; joined by = a value may begin with one.
+        result = self.run_program("--free-surface", "--stats=-s.json", "--", self.input, "-o.vtp")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        json.loads((self.directory / "-s.json").read_text())
+        self.assertTrue((self.directory / "-o.vtp").exists())
+        self.assertIn("no part", self.extract("--scalar", "Radius", "--iso", "-.5,-1,-2e3").stderr)
+
     def test_old_output_survives_failure(self):
         self.output.write_text("old")
         result = self.extract("--scalar", "Nothing", "--iso", "1")
@@ -476,7 +464,7 @@ class Picture(CommandLineTest):
 
     def test_picture(self):
         picture = self.directory / "picture.png"
-        result = subprocess.run([WITH_DISPLAY, PROGRAM, self.input, self.output, *ISO, "--screenshot",
+        result = subprocess.run([WITH_DISPLAY, self.program, self.input, self.output, *ISO, "--screenshot",
                                  picture], capture_output=True, text=True, timeout=1200)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         data = picture.read_bytes()
@@ -502,5 +490,4 @@ class Picture(CommandLineTest):
 
 
 if __name__ == "__main__":
-    PROGRAM = sys.argv.pop(1)
-    unittest.main(verbosity=2)
+    main()

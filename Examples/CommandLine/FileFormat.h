@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FileFormat_h
+#define FileFormat_h
+
+#include <string>
+#include <vector>
+
+/// A file format: the ending of its names, and the function that reads or writes it.
+template <typename FunctionT>
+struct FileFormat
+{
+  const char* Ending;
+  FunctionT Process;
+};
+
+/// The one with the ending of this name; nullptr if there is none.
+template <typename FunctionT>
+const FileFormat<FunctionT>* FindFormat(
+  const std::vector<FileFormat<FunctionT>>& formats, const std::string& file)
+{
+  for (const FileFormat<FunctionT>& format : formats)
+  {
+    const std::string ending = format.Ending;
+    if (file.size() > ending.size() &&
+      file.compare(file.size() - ending.size(), ending.size(), ending) == 0)
+    {
+      return &format;
+    }
+  }
+  return nullptr;
+}
+
+/// ".vtp, .vtu or .vtk"
+template <typename FunctionT>
+std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
+{
+  std::string list;
+  for (std::size_t i = 0; i < formats.size(); ++i)
+  {
+    list += (i == 0 ? "" : i + 1 < formats.size() ? ", " : " or ") + std::string(formats[i].Ending);
+  }
+  return list;
+}
+
+#endif

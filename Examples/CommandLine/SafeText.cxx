@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SafeText.h"
+
+#include <cstddef>
+#include <cstdio>
+
+namespace
+{
+
+struct Character
+{
+  std::size_t Bytes; ///< how many stand for it
+  unsigned Code;
+  bool Valid; ///< false: one byte that is no UTF-8, and Code is its value
+};
+
+/// The character at text[i].
+Character At(const std::string& text, std::size_t i)
+{
+  const auto byte = [&](std::size_t k)
+  { return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80)
+  {
+    return { 1, first, true };
+  }
+  const std::size_t count = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  unsigned code = first & (0xffu >> (count + 1));
+  bool valid = first >= 0xc2 && first <= 0xf4;
+  for (std::size_t k = 1; k < count; ++k)
+  {
+    valid = valid && (byte(k) & 0xc0u) == 0x80u;
+    code = code << 6 | (byte(k) & 0x3fu);
+  }
+  const unsigned smallest[] = { 0x80, 0x800, 0x10000 };
+  valid = valid && code >= smallest[count - 2] && code <= 0x10ffff && (code & ~0x7ffu) != 0xd800;
+  return valid ? Character{ count, code, true } : Character{ 1, first, false };
+}
+
+bool IsControl(unsigned code)
+{
+  return code < 0x20 || (code >= 0x7f && code < 0xa0);
+}
+
+/// Line breaks, direction marks, and what XML does not allow.
+bool IsInvisible(unsigned code)
+{
+  return code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
+    (code >= 0x2066 && code <= 0x2069) || code == 0xfeff || (code & 0xfffe) == 0xfffe;
+}
+
+std::string Escape(const char* format, unsigned code)
+{
+  char digits[16];
+  std::snprintf(digits, sizeof(digits), format, code);
+  return digits;
+}
+
+}
+
+//------------------------------------------------------------------------------
+std::string Printable(const std::string& text)
+{
+  std::string result;
+  for (std::size_t i = 0; i < text.size();)
+  {
+    const Character c = At(text, i);
+    if (!c.Valid || IsControl(c.Code))
+    {
+      result += Escape("\\x%02x", c.Code);
+    }
+    else if (IsInvisible(c.Code))
+    {
+      result += Escape("\\u%04x", c.Code);
+    }
+    else
+    {
+      result.append(text, i, c.Bytes);
+    }
+    i += c.Bytes;
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::string QuotedForJson(const std::string& text)
+{
+  std::string quoted = "\"";
+  for (std::size_t i = 0; i < text.size();)
+  {
+    const Character c = At(text, i);
+    if (!c.Valid)
+    {
+      quoted += "\\ufffd";
+    }
+    else if (IsControl(c.Code) || (IsInvisible(c.Code) && c.Code < 0x10000))
+    {
+      quoted += Escape("\\u%04x", c.Code);
+    }
+    else
+    {
+      quoted += c.Code == '"' || c.Code == '\\' ? "\\" : "";
+      quoted.append(text, i, c.Bytes);
+    }
+    i += c.Bytes;
+  }
+  return quoted + "\"";
+}

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef SafeText_h
+#define SafeText_h
+
+#include <string>
+
+/// Text from a file or the command line, made fit for a terminal and for XML: one line of UTF-8.
+/// What could steer a terminal (control characters, marks that turn the direction of writing) or is
+/// not UTF-8 becomes its code, "\x1b" or "\u202e". Text that is fit already stays as it is.
+std::string Printable(const std::string& text);
+
+/// The text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
+std::string QuotedForJson(const std::string& text);
+
+#endif

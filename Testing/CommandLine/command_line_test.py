@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the program marching-correctors share."""
+import ctypes
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import particle_files as files
+
+ISO = ["--scalar", "Radius", "--iso", "0.3"]
+WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh"
+
+
+def drop_privileges():
+    """For preexec_fn: root keeps its number but none of its powers, so that the files' modes count.
+    Another user's number would not do: it may not reach the build tree."""
+    if os.geteuid() == 0:
+        libc = ctypes.CDLL(None)
+        for capability in range(64):
+            libc.prctl(24, capability, 0, 0, 0)  # PR_CAPBSET_DROP, which exec then goes by
+
+
+class CommandLineTest(unittest.TestCase):
+    """Runs the program in a directory of its own, with a small good input beside it."""
+
+    program = ""
+    preload = ""  # misbehave.c
+
+    def setUp(self):
+        self.directory = pathlib.Path(tempfile.mkdtemp(prefix="mcor-cli-")).resolve()
+        self.addCleanup(shutil.rmtree, self.directory)
+        self.input = self.directory / "particles.vtp"
+        self.output = self.directory / "surface.vtp"
+        self.points, self.arrays = files.lattice()
+        files.write_vtp(self.input, self.points, self.arrays)
+
+    def tearDown(self):
+        """No temporary file is left, whatever happened."""
+        self.assertEqual([p for p in self.directory.rglob("*") if p.name.startswith((".", "core"))], [])
+
+    def run_program(self, *arguments, **options):
+        defaults = {"cwd": self.directory, "stdin": subprocess.DEVNULL, "capture_output": True,
+                    "text": True, "timeout": 1200}
+        return subprocess.run([self.program, *map(os.fspath, arguments)], **{**defaults, **options})
+
+    def extract(self, *options, source=None, **run_options):
+        return self.run_program(source or self.input, self.output, *options, **run_options)
+
+    def succeed(self, *options, source=None):
+        """Runs the program, which must succeed without a word on stderr; returns its statistics."""
+        statistics = self.directory / "statistics.json"
+        result = self.extract(*options, "--stats", statistics, source=source)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("</VTKFile>", self.output.read_text())
+        return json.loads(statistics.read_text())
+
+    def refuse(self, result, status, sentence):
+        """One line on stderr that matches, nothing else, and no output file of any kind."""
+        self.one_sentence(result, status, sentence)
+        left = [p.name for p in self.directory.iterdir() if p.name.startswith("surface")]
+        self.assertEqual(left, [])
+
+    def one_sentence(self, result, status, sentence):
+        self.assertRegex(result.stderr, sentence)
+        self.assertEqual(result.returncode, status, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertTrue(result.stderr.startswith("marching-correctors: "), result.stderr)
+        self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
+
+    def misbehaving(self, **variables):
+        """The environment for a run with misbehave.c, and its variables MCOR_..."""
+        named = {"MCOR_" + name.upper(): str(value) for name, value in variables.items()}
+        return {**os.environ, "LD_PRELOAD": self.preload,
+                "MCOR_FAILING_FOLDER": str(self.directory), **named}
+
+
+def main():
+    """TEST.py PROGRAM PRELOAD [unittest arguments]"""
+    CommandLineTest.program = os.path.abspath(sys.argv.pop(1))
+    CommandLineTest.preload = os.path.abspath(sys.argv.pop(1))
+    unittest.main(verbosity=2)

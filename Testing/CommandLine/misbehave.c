@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// For LD_PRELOAD: system calls that fail or take long, and an XML library that goes mad, which tests
+// cannot bring about otherwise.
+//
+//   MCOR_FAILING_CALL=fsync|close|rename  fails for files below MCOR_FAILING_FOLDER
+//   MCOR_RENAME_SECONDS=N                 rename takes that long
+//   MCOR_READER=exit|abort|kill|loop|recursion|fault  what the XML library does when VTK asks for it
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+static int is_variable(const char* name, const char* value)
+{
+  const char* found = getenv(name);
+  return found && strcmp(found, value) == 0;
+}
+
+static int fails(const char* call, int descriptor)
+{
+  char link[64];
+  char path[PATH_MAX];
+  const char* folder = getenv("MCOR_FAILING_FOLDER");
+  if (!folder || !is_variable("MCOR_FAILING_CALL", call))
+  {
+    return 0;
+  }
+  snprintf(link, sizeof(link), "/proc/self/fd/%d", descriptor);
+  const ssize_t length = readlink(link, path, sizeof(path) - 1);
+  if (length < 0)
+  {
+    return 0;
+  }
+  path[length] = '\0';
+  return strncmp(path, folder, strlen(folder)) == 0 && strstr(path, "/.") != NULL;
+}
+
+int fsync(int descriptor)
+{
+  int (*real)(int) = (int (*)(int))dlsym(RTLD_NEXT, "fsync");
+  if (fails("fsync", descriptor))
+  {
+    errno = EIO;
+    return -1;
+  }
+  return real(descriptor);
+}
+
+int close(int descriptor)
+{
+  int (*real)(int) = (int (*)(int))dlsym(RTLD_NEXT, "close");
+  const int failed = fails("close", descriptor);
+  const int result = real(descriptor);
+  errno = failed ? EIO : errno;
+  return failed ? -1 : result;
+}
+
+int rename(const char* from, const char* to)
+{
+  int (*real)(const char*, const char*) =
+    (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
+  const char* folder = getenv("MCOR_FAILING_FOLDER");
+  if (folder && strncmp(to, folder, strlen(folder)) == 0)
+  {
+    if (getenv("MCOR_RENAME_SECONDS"))
+    {
+      sleep((unsigned)atoi(getenv("MCOR_RENAME_SECONDS")));
+    }
+    if (is_variable("MCOR_FAILING_CALL", "rename"))
+    {
+      errno = EIO;
+      return -1;
+    }
+  }
+  return real(from, to);
+}
+
+static volatile int never = 0;
+
+static int recurse(int depth)
+{
+  volatile char frame[4096];
+  frame[0] = (char)depth;
+  return never ? depth : recurse(depth + 1) + frame[0];
+}
+
+void* XML_ParserCreate(const char* encoding)
+{
+  if (is_variable("MCOR_READER", "exit"))
+  {
+    exit(0);
+  }
+  if (is_variable("MCOR_READER", "abort"))
+  {
+    fputs("two lines\nthat nobody wants to see\n", stderr);
+    abort();
+  }
+  if (is_variable("MCOR_READER", "kill"))
+  {
+    raise(SIGKILL);
+  }
+  if (is_variable("MCOR_READER", "recursion"))
+  {
+    recurse(0);
+  }
+  if (is_variable("MCOR_READER", "fault"))
+  {
+    *(volatile int*)(size_t)never = 1;
+  }
+  if (is_variable("MCOR_READER", "loop"))
+  {
+    // As an endless loop for a minute and more: the limit that reading has is made shorter.
+    struct rlimit limit = { 0, 0 };
+    getrlimit(RLIMIT_CPU, &limit);
+    if (limit.rlim_cur == RLIM_INFINITY)
+    {
+      exit(3); // reading has none
+    }
+    limit.rlim_cur = 1;
+    setrlimit(RLIMIT_CPU, &limit);
+    while (!never)
+    {
+    }
+  }
+  void* (*real)(const char*) = (void* (*)(const char*))dlsym(RTLD_NEXT, "XML_ParserCreate");
+  return real(encoding);
+}

@@ -1,0 +1,343 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the program marching-correctors writes files: test_output_files.py PROGRAM PRELOAD."""
+import json
+import os
+import pathlib
+import signal
+import stat
+import subprocess
+import threading
+import time
+import unittest
+
+from command_line_test import ISO, WITH_DISPLAY, CommandLineTest, drop_privileges, main
+
+FREE = ["--free-surface", "--quiet"]
+
+
+def mode_of(path):
+    return stat.S_IMODE(path.stat().st_mode)
+
+
+class OutputFiles(CommandLineTest):
+    """Every output is whole or untouched, and what is no regular file stays what it is."""
+
+    def good(self, *options, **run_options):
+        result = self.extract(*FREE, *options, **run_options)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return result
+
+    def whole(self, path):
+        text = path.read_text()
+        self.assertTrue(text.startswith("<?xml") and text.rstrip().endswith("</VTKFile>"))
+        return text
+
+    # What is no regular file
+
+    def device(self, name, minor):
+        """A device of our own where we may make one: the fault would cost the machine its own."""
+        path = self.directory / name
+        try:
+            os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, minor))
+            path.open("wb").close()
+        except PermissionError:
+            path = pathlib.Path("/dev") / name  # such a user cannot replace it
+        return path
+
+    def test_device(self):
+        null = self.device("null", 3)
+        self.good("--stats", null)
+        self.assertTrue(stat.S_ISCHR(null.stat().st_mode))
+
+    def test_fifo(self):
+        fifo = self.directory / "fifo"
+        os.mkfifo(fifo)
+        texts = []
+        reader = threading.Thread(target=lambda: texts.append(fifo.read_text()))
+        reader.start()
+        result = self.extract(*FREE, "--stats", fifo)
+        if not stat.S_ISFIFO(fifo.stat().st_mode):  # the reader would wait for ever
+            os.kill(os.getpid(), signal.SIGKILL)
+        reader.join()
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(json.loads(texts[0])["output"], str(self.output))
+
+    def test_standard_output(self):
+        for name in ("/dev/fd/1", "/proc/self/fd/1"):  # /dev/stdout is a link to it
+            with self.subTest(name):
+                link = self.directory / "link"
+                link.symlink_to(name)
+                self.assertIn("statistics", json.loads(self.good("--stats", link).stdout))
+                self.assertTrue(link.is_symlink())
+                link.unlink()
+
+    def test_standard_output_in_a_file(self):
+        log = self.directory / "log"
+        with log.open("w") as stream:
+            self.extract("--free-surface", "--stats", "/dev/fd/1", capture_output=False, stdout=stream)
+        text = log.read_text()
+        self.assertTrue(text.startswith("particles "), text)  # what came first is still there
+        self.assertIn("statistics", json.loads(text[text.index("{"):]))
+
+    def test_closed_standard_output(self):
+        # No file that the program opens becomes its standard output.
+        result = subprocess.run(["sh", "-c", '"$@" >&-', "sh", self.program, self.input, self.output,
+                                 "--free-surface", "--stats", "s.json"], cwd=self.directory,
+                                capture_output=True, text=True, timeout=1200)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.whole(self.output)
+        json.loads((self.directory / "s.json").read_text())
+
+    def test_full_standard_output(self):
+        with open("/dev/full", "w") as full:
+            result = self.extract("--free-surface", capture_output=False, stdout=full,
+                                  stderr=subprocess.PIPE)
+        self.one_sentence(result, 1, "standard output could not be written")
+        self.whole(self.output)
+        self.one_sentence(self.extract(*FREE, "--stats", self.device("full", 7)), 1,
+                          "/full could not be written: No space left on device")
+
+    # Links and modes
+
+    def test_symbolic_link(self):
+        (self.directory / "a").mkdir()
+        (self.directory / "b").mkdir()
+        target = self.directory / "b" / "target.vtp"
+        link = self.directory / "a" / "link.vtp"
+        link.symlink_to("../b/other.vtp")
+        (self.directory / "b" / "other.vtp").symlink_to("target.vtp")
+        for old in (None, "old"):  # the links lead nowhere at first
+            with self.subTest(old=old):
+                if old:
+                    target.write_text(old)
+                self.output = link
+                self.good()
+                self.whole(target)
+                self.assertFalse(target.is_symlink())
+                self.assertEqual(os.readlink(link), "../b/other.vtp")
+                self.assertEqual(os.readlink(self.directory / "b" / "other.vtp"), "target.vtp")
+
+    def test_link_to_itself(self):
+        self.output.symlink_to(self.output)
+        result = self.extract(*FREE)
+        self.one_sentence(result, 1, "surface.vtp could not be written: Too many levels")
+
+    def test_mode(self):
+        for name, mode in ("surface.vtp", 0o600), ("s.json", 0o646), ("s.json", 0o4755):
+            with self.subTest(name, mode=oct(mode)):
+                path = self.directory / name
+                path.write_text("old")
+                path.chmod(mode)
+                self.good("--stats", "s.json")
+                self.assertEqual(mode_of(path), mode)
+                self.assertNotEqual(path.read_text(), "old")
+
+    def test_mode_of_new_file(self):
+        for mask in (0o022, 0o027, 0o077, 0o002):
+            self.output.unlink(missing_ok=True)
+            self.good(preexec_fn=lambda mask=mask: os.umask(mask))
+            self.assertEqual(oct(mode_of(self.output)), oct(0o666 & ~mask))
+
+    @unittest.skipUnless(os.geteuid() == 0, "only root can give files to others")
+    def test_owner(self):
+        self.output.write_text("old")
+        os.chown(self.output, 12345, 54321)
+        self.output.chmod(0o666)
+        self.good()
+        status = self.output.stat()
+        self.assertEqual((status.st_uid, status.st_gid, mode_of(self.output)), (12345, 54321, 0o666))
+        # Who cannot keep owner and group gives nobody what the old group had.
+        self.good(preexec_fn=drop_privileges)
+        self.assertEqual((self.output.stat().st_uid, oct(mode_of(self.output))), (0, oct(0o606)))
+
+    def test_hard_link(self):
+        other = self.directory / "other"
+        other.write_text("old")
+        os.link(other, self.output)
+        self.good()
+        self.whole(self.output)
+        self.assertEqual(other.read_text(), "old")
+
+    def test_no_fixed_name(self):
+        victim = self.directory / "victim"
+        victim.write_text("precious")
+        part = self.directory / "surface.vtp.part"
+        for plant in (part.symlink_to, part.hardlink_to if hasattr(part, "hardlink_to")
+                      else lambda p: os.link(p, part), lambda p: part.write_text("precious")):
+            plant(victim)
+            self.good("--stats", "s.json")
+            self.one_sentence(self.extract("--scalar", "Nothing", "--iso", "1"), 1, "no point array")
+            self.assertEqual((victim.read_text(), part.read_text()), ("precious", "precious"))
+            part.unlink()
+
+    # The same file twice
+
+    def test_same_file(self):
+        hard = self.directory / "hard.vtp"
+        os.link(self.input, hard)
+        soft = self.directory / "soft.vtp"
+        soft.symlink_to(self.input.name)
+        (self.directory / "folder").symlink_to(self.directory)
+        before = self.input.read_text()
+        for output in self.input, hard, soft, self.directory / "folder" / "particles.vtp":
+            with self.subTest(output):
+                self.one_sentence(self.run_program(self.input, output, *FREE), 2,
+                                  "would overwrite the input")
+        (self.directory / "later").symlink_to("surface.vtp")  # before there is one
+        for name in "folder/surface.vtp", "later", "./surface.vtp":
+            with self.subTest(name):
+                self.one_sentence(self.extract(*FREE, "--stats", name), 2, "would be written twice")
+        self.assertEqual(self.input.read_text(), before)
+        with (self.directory / "log.json").open("w") as log:
+            result = self.extract("--free-surface", "--stats", "log.json", capture_output=False,
+                                  stdout=log, stderr=subprocess.PIPE)
+        self.one_sentence(result, 2, "log.json would be written twice: what is printed goes there")
+
+    # Whole or untouched
+
+    def test_what_may_not_be_written(self):
+        """As a normal user: what the system forbids is not replaced either, and is told early."""
+        self.output.write_text("old")
+        self.output.chmod(0o444)
+        refused = self.extract(*FREE, preexec_fn=drop_privileges)
+        self.one_sentence(refused, 1, "surface.vtp could not be written: Permission denied")
+        self.assertEqual((self.output.read_text(), mode_of(self.output)), ("old", 0o444))
+        folder = self.directory / "folder"
+        folder.mkdir()
+        self.output = folder / "surface.vtp"
+        self.output.write_text("old")
+        folder.chmod(0o555)
+        try:
+            refused = self.extract(*FREE, preexec_fn=drop_privileges)
+        finally:
+            folder.chmod(0o755)
+        self.one_sentence(refused, 1, r"no file can be made in the folder .*folder \(Permission denied")
+        self.assertEqual(self.output.read_text(), "old")
+
+    def test_unreadable_input(self):
+        self.input.chmod(0)
+        self.refuse(self.extract(*FREE, preexec_fn=drop_privileges), 1,
+                    "particles.vtp cannot be read: Permission denied")
+
+    def test_long_names(self):
+        self.output = self.directory / ("a" * 251 + ".vtp")
+        self.good()
+        self.whole(self.output)
+        self.output = self.directory / ("a" * 252 + ".vtp")
+        self.one_sentence(self.extract(*FREE), 1, "could not be written: File name too long")
+        self.output = pathlib.Path("a/" * 3000 + "a.vtp")
+        self.one_sentence(self.extract(*FREE), 1, "could not be written: File name too long")
+        self.one_sentence(self.extract(*FREE, source="a/" * 3000 + "a.vtp"), 1, "File name too long")
+
+    def test_full_disk(self):
+        """On a file system of `pages` pages, of which an older output takes one."""
+        script = """mount -t tmpfs -o size=$1 none full || exit 77
+            echo old >full/$2; shift 2; "$@"; status=$?; ls -A full; cat full/*; exit $status"""
+        unshare = ["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else [])
+        (self.directory / "full").mkdir()
+        for name, pages, option in ("surface.vtp", 8, []), ("s.json", 1, ["--stats", "full/s.json"]), \
+                ("p.png", 2, ["--screenshot", "full/p.png"]):
+            with self.subTest(name):
+                output = "full/surface.vtp" if name == "surface.vtp" else self.output
+                command = [self.program, self.input, output, *FREE, *option]
+                if name == "p.png":
+                    command.insert(0, WITH_DISPLAY)
+                result = subprocess.run(
+                    [*unshare, "sh", "-c", script, "sh", f"{4 * pages}k", name, *command],
+                    cwd=self.directory, capture_output=True, text=True, timeout=1200)
+                if "unshare" in result.stderr or result.returncode == 77:
+                    self.skipTest("no file system can be mounted here")
+                self.one_sentence(result, 1, f"{name} could not be written: No space left on device")
+                self.assertEqual(result.stdout, f"{name}\nold\n")
+
+    def test_failing_calls(self):
+        for call in ("fsync", "close", "rename"):
+            with self.subTest(call):
+                self.output.write_text("old")
+                result = self.extract(*FREE, env=self.misbehaving(failing_call=call))
+                self.one_sentence(result, 1, "surface.vtp could not be written: Input/output error")
+                self.assertEqual(self.output.read_text(), "old")
+
+    def test_two_at_once(self):
+        expected = set()
+        for weight in ("0.3", "0.6"):
+            self.good("--iso", weight)
+            expected.add(self.whole(self.output))
+        self.assertEqual(len(expected), 2)
+        runs = [subprocess.Popen([self.program, self.input, self.output, *FREE, "--iso", weight],
+                                 env=self.misbehaving(rename_seconds=1), stderr=subprocess.PIPE)
+                for weight in ("0.3", "0.6")]
+        self.assertEqual([(run.communicate()[1], run.returncode) for run in runs], [(b"", 0)] * 2)
+        self.assertIn(self.whole(self.output), expected)
+
+    def start_and_wait_for_writing(self, **options):
+        run = subprocess.Popen([self.program, self.input, self.output, *FREE], text=True,
+                               env=self.misbehaving(rename_seconds=1000), stderr=subprocess.PIPE,
+                               **options)
+        self.addCleanup(run.kill)
+        while not any(p.name.startswith(".") and p.stat().st_size > 0
+                      for p in self.directory.iterdir()):
+            self.assertIsNone(run.poll(), "ended before it wrote")
+            time.sleep(0.05)
+        return run
+
+    def test_signals(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number):
+                self.output.write_text("old")
+                run = self.start_and_wait_for_writing()
+                run.send_signal(number)
+                self.assertEqual((run.communicate()[1], run.returncode), ("", -number))
+                self.assertEqual(self.output.read_text(), "old")
+                self.tearDown()
+
+    def test_ctrl_c(self):
+        run = self.start_and_wait_for_writing(start_new_session=True)
+        os.killpg(run.pid, signal.SIGINT)  # to both processes, as a terminal sends it
+        self.assertEqual((run.communicate()[1], run.returncode), ("", -signal.SIGINT))
+        self.assertFalse(self.output.exists())
+
+    def test_nohup(self):
+        run = self.start_and_wait_for_writing(
+            preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        run.send_signal(signal.SIGHUP)
+        time.sleep(0.5)
+        self.assertIsNone(run.poll())
+        run.terminate()
+        run.communicate()
+
+    def test_worker_killed(self):
+        run = self.start_and_wait_for_writing()
+        worker = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
+        self.assertEqual(len(worker), 1)
+        os.kill(int(worker[0]), signal.SIGKILL)
+        sentence = run.communicate()[1]
+        self.assertEqual(run.returncode, 1)
+        self.assertRegex(sentence, "^marching-correctors: .*surface.vtp could not be written: "
+                                   "the program was killed.*\n$")
+        self.assertFalse(self.output.exists())
+
+    def test_failed_picture(self):
+        picture = self.directory / "p.png"
+        picture.write_text("old")
+        environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+        result = self.extract(*FREE, "--screenshot", picture, env=environment)
+        if result.returncode == 0:
+            self.skipTest("this VTK renders without a display")
+        self.one_sentence(result, 1, "p.png could not be written: rendering needs a display")
+        self.assertEqual(picture.read_text(), "old")
+
+    def test_two_runs_match(self):
+        for options in (ISO, [*ISO, "--gradients", "--weight-sum"], ["--free-surface"]):
+            with self.subTest(options):
+                data = []
+                for _ in range(2):
+                    self.assertEqual(self.extract(*options).returncode, 0)
+                    data.append(self.output.read_bytes())
+                    self.output.unlink()
+                self.assertEqual(data[0], data[1])
+
+
+if __name__ == "__main__":
+    main()

@@ -109,8 +109,9 @@
  * set, as everywhere in VTK.
  *
  * @warning
- * An observer of the progress may change the filter while an update runs, which counts from the next
- * update on, but not the values in the input's arrays.
+ * An observer of the progress may change the filter while an update runs, but not the values in the
+ * input's arrays. The update goes on as it began; as with all of VTK's filters, the change counts
+ * when Modified() is called after it.
  *
  * @warning
  * The input is checked for sizes, types and values, but a reader that is given a damaged file may

@@ -4,13 +4,16 @@
 // is never modified.
 #include "TestParticles.h"
 
+#include "vtkBitArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkSOADataArrayTemplate.h"
 #include "vtkShortArray.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkVariantArray.h"
 
 #include <vector>
 
@@ -102,6 +105,112 @@ void TestVectors()
   CHECK(dot->GetNumberOfCells() == square->GetNumberOfCells());
 }
 
+// Kinds of arrays that are rare: each as scalar, and carried to the surface.
+void TestRareArrays()
+{
+  auto cube = test::MakeCube();
+  vtkDataArray* radius = cube->GetPointData()->GetArray("Radius");
+  const auto inside = [radius](vtkIdType i, int)
+  { return radius->GetComponent(i, 0) < 0.6 ? 1.0 : 0.0; };
+  test::AddArray<vtkUnsignedCharArray>(cube, "Byte", 1, inside);
+  test::AddArray<vtkBitArray>(cube, "Bit", 1, inside);
+  vtkNew<vtkVariantArray> variants;
+  variants->SetName("Variant");
+  for (vtkIdType i = 0; i < cube->GetNumberOfPoints(); ++i)
+  {
+    variants->InsertNextValue(vtkVariant(static_cast<int>(i)));
+  }
+  cube->GetPointData()->AddArray(variants);
+  cube->GetPointData()->AddArray(vtkNew<vtkFloatArray>()); // no name, no tuples
+  vtkNew<vtkDoubleArray> none;
+  none->SetName("hsml");
+  cube->GetPointData()->AddArray(none);
+  auto shared = vtkSmartPointer<vtkDataArray>(cube->GetPoints()->GetData());
+  shared->SetName("Position");
+  cube->GetPointData()->AddArray(shared); // the points' own array
+  CHECK(test::SameSurface(Extract(cube, "Byte", 0.5), Extract(cube, "Bit", 0.5)));
+
+  auto filter = test::MakeSphereFilter(cube);
+  filter->Update();
+  vtkPolyData* surface = filter->GetOutput();
+  vtkPointData* data = surface->GetPointData();
+  CHECK(surface->GetNumberOfPoints() > 0);
+  auto* bits = vtkBitArray::SafeDownCast(data->GetArray("Bit"));
+  auto* ids = vtkVariantArray::SafeDownCast(data->GetAbstractArray("Variant"));
+  vtkDataArray *bytes = data->GetArray("Byte"), *positions = data->GetArray("Position");
+  CHECK(bits && ids && bytes && positions && !data->HasArray("hsml"));
+  CHECK(positions && positions != surface->GetPoints()->GetData());
+  for (vtkIdType i = 0; bits && ids && bytes && i < surface->GetNumberOfPoints(); ++i)
+  {
+    CHECK(bits->GetValue(i) == static_cast<int>(bytes->GetComponent(i, 0)));
+    CHECK(bits->GetValue(i) == inside(ids->GetValue(i).ToInt(), 0));
+  }
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    CHECK(data->GetAbstractArray(i)->GetNumberOfTuples() == surface->GetNumberOfPoints());
+  }
+}
+
+// One array in several roles, and the same data as arrays of the output before.
+void TestSharedArrays()
+{
+  auto cube = test::MakeCube();
+  auto filter = test::MakeSphereFilter(cube);
+  filter->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "SmoothingLength");
+  filter->SetFluidArrayName("SmoothingLength");
+  filter->SetFluidValue(test::SmoothingLength);
+  filter->SetMassArrayName("SmoothingLength");
+  filter->SetValue(0, test::SmoothingLength / 2.0);
+  filter->Update();
+  CHECK(!*filter->GetErrorMessage());
+  CHECK(filter->GetOutput()->GetNumberOfPoints() == 0); // constant: nowhere half of it
+
+  // The surface's own points as particles.
+  filter = test::MakeSphereFilter(cube);
+  filter->Update();
+  vtkNew<vtkPolyData> first;
+  first->ShallowCopy(filter->GetOutput());
+  const vtkIdType points = first->GetNumberOfPoints();
+  auto second = vtkSmartPointer<vtkMarchingCorrectors>::New();
+  second->SetInputData(first);
+  second->SetSmoothingLength(test::SmoothingLength);
+  second->FreeSurfaceOn();
+  second->Update();
+  CHECK(!*second->GetErrorMessage() && second->GetOutput()->GetNumberOfPoints() > 0);
+  CHECK(first->GetNumberOfPoints() == points);
+  CHECK(first->GetPointData()->GetNormals()->GetNumberOfTuples() == points);
+}
+
+void TestIntegerPoints()
+{
+  vtkNew<vtkPoints> whole, real;
+  whole->SetDataType(VTK_INT);
+  for (int i = 0; i < 1000; ++i)
+  {
+    const double x[] = { static_cast<double>(i % 10), static_cast<double>(i / 10 % 10),
+      static_cast<double>(i / 100) };
+    whole->InsertNextPoint(x);
+    real->InsertNextPoint(x);
+  }
+  const auto extract = [](vtkPoints* points)
+  {
+    vtkNew<vtkPolyData> particles;
+    particles->SetPoints(points);
+    auto filter = vtkSmartPointer<vtkMarchingCorrectors>::New();
+    filter->SetInputData(particles);
+    filter->SetSmoothingLength(1.3);
+    filter->FreeSurfaceOn();
+    filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    filter->Update();
+    CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
+    vtkSmartPointer<vtkPolyData> surface = filter->GetOutput();
+    filter->SetOutputPointsPrecision(vtkAlgorithm::DEFAULT_PRECISION);
+    return surface;
+  };
+  CHECK(test::SameSurface(extract(whole), extract(real)));
+}
+
 void TestPointTypes()
 {
   const auto asFloat = Extract(test::MakeCube(VTK_FLOAT), "Radius", 0.6);
@@ -120,6 +229,22 @@ void TestPointSets()
   grid->SetPoints(cube->GetPoints());
   grid->GetPointData()->ShallowCopy(cube->GetPointData());
   CHECK(test::SameSurface(expected, Extract(grid, "Radius", 0.6)));
+
+  vtkNew<vtkStructuredGrid> structured;
+  structured->SetDimensions(21, 21, 21);
+  structured->SetPoints(cube->GetPoints());
+  structured->GetPointData()->ShallowCopy(cube->GetPointData());
+  CHECK(test::SameSurface(expected, Extract(structured, "Radius", 0.6)));
+
+  vtkNew<vtkPolyData> vertices;
+  vertices->ShallowCopy(cube);
+  vtkNew<vtkCellArray> cells;
+  for (vtkIdType i = 0; i < cube->GetNumberOfPoints(); ++i)
+  {
+    cells->InsertNextCell(1, &i);
+  }
+  vertices->SetVerts(cells);
+  CHECK(test::SameSurface(expected, Extract(vertices, "Radius", 0.6)));
 
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetNumberOfBlocks(2);
@@ -196,6 +321,9 @@ int TestInputTypes(int, char*[])
 {
   TestScalarTypes();
   TestVectors();
+  TestRareArrays();
+  TestSharedArrays();
+  TestIntegerPoints();
   TestPointTypes();
   TestPointSets();
   TestQuantities();

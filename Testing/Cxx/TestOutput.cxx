@@ -229,6 +229,18 @@ void TestNames()
   filter->ComputeScalarsOff();
   data = extract("Normals");
   CHECK(!data->GetScalars() && data->GetArray("Normals")->GetRange()[1] > 0.6);
+
+  // Active scalars without a name are the default.
+  vtkNew<vtkDoubleArray> unnamed;
+  unnamed->DeepCopy(radius);
+  unnamed->SetName(nullptr);
+  cube->GetPointData()->SetScalars(unnamed);
+  vtkNew<vtkMarchingCorrectors> untold;
+  untold->SetInputData(cube);
+  untold->SetValue(0, 0.6);
+  untold->Update();
+  CHECK(!*untold->GetErrorMessage() && untold->GetOutput()->GetNumberOfPoints() > 0);
+  CHECK(isoArray(untold->GetOutput()->GetPointData()) == "IsoValue");
 }
 
 void TestComputedArrays()

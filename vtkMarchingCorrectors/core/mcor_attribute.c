@@ -21,12 +21,16 @@ static double mcor_component_scale(const mcor_input* input, const mcor_array* ar
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
 }
 
-/* Finds the attributes to leave out, and of the others the components that vary. */
+/* Prepares the surface's attributes: finds those to leave out, and of the others the components that vary. */
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
   mcor_attributes* attributes = &context->attributes;
+  const size_t count = (size_t)input->attribute_count;
   size_t most = 1;
+  surface->attribute_count = input->attribute_count;
+  surface->attributes = calloc(count + 1, sizeof(double*));
+  surface->attribute_not_finite = calloc(count + 1, sizeof(int64_t));
   for (int a = 0; a < input->attribute_count; ++a)
   {
     most += (size_t)mcor_components(&input->attributes[a]);
@@ -34,7 +38,8 @@ mcor_status mcor_list_attributes(
   free(attributes->varying);
   attributes->varying_count = attributes->count = 0;
   attributes->varying = malloc(most * sizeof *attributes->varying);
-  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_RETURN_IF(!attributes->varying || !surface->attributes || !surface->attribute_not_finite,
+    context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];

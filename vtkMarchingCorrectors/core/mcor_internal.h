@@ -206,8 +206,15 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
 
+/* What is only needed until the search grid is made, is as large as the particles, or could only serve
+ * another call. */
+void mcor_release_scratch(mcor_context* context);
+void mcor_release_particles(mcor_context* context);
+void mcor_release_nodes(mcor_context* context);
+
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
+mcor_status mcor_finish_statistics(mcor_context* context);
 
 /* mcor_check.c, mcor_measure.c */
 mcor_status mcor_check_input(
@@ -239,11 +246,11 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
 mcor_status mcor_append_bricks(mcor_context* context);
-mcor_status mcor_grow_cells(mcor_context* context, bool* grown);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int count, int* total);
+mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);

@@ -438,3 +438,26 @@ mcor_status mcor_append_output(
   mcor_release_vertices(context);
   return status != MCOR_OK ? status : unmapped;
 }
+
+void mcor_free_surface(mcor_surface* surface)
+{
+  if (!surface)
+  {
+    return;
+  }
+  void* const arrays[] = { surface->points, surface->triangles, surface->normals,
+    surface->gradients, surface->weight_sum, surface->boundary_eigenvalue,
+    surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value,
+    surface->nearest_particle };
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+  {
+    free(arrays[i]);
+  }
+  for (int a = 0; surface->attributes && a < surface->attribute_count; ++a)
+  {
+    free(surface->attributes[a]);
+  }
+  free(surface->attributes);
+  free(surface->attribute_not_finite);
+  *surface = (mcor_surface){ 0 };
+}

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The paper's seed selection by particle pairs, and the growth from its cells [III-C, III-D.1]. */
+/* The paper's seed selection by particle pairs [III-C]. */
 
 #include "mcor_internal.h"
 
@@ -29,21 +29,4 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso)
     MCOR_BUFFER(marked), MCOR_BUFFER(&bricks->now.cells)));
   mcor_release(context, marked);
   return MCOR_OK;
-}
-
-/* One round of growth; *grown is false when no cell was added. */
-mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
-{
-  mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* flags = &context->scratch[1];
-  cl_int flag;
-  MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_LIGHT, bricks->now.count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.examined),
-    MCOR_BUFFER(&bricks->fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
-    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
-  *grown = flag != 0;
-  return flag & 2 ? mcor_append_bricks(context) : MCOR_OK;
 }

@@ -7,6 +7,18 @@
 
 #define MCOR_TRIM_STEPS 25
 
+/* Evaluates the boundary eigenvalue at `count` points. */
+mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
+  const mcor_buffer* offset, int count, mcor_buffer* eigenvalue)
+{
+  int groups;
+  MCOR_TRY(mcor_reserve(context, eigenvalue, (size_t)count * context->cl.real_size));
+  MCOR_TRY(mcor_make_groups(context, node, 0, count, &groups));
+  return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(node), MCOR_BUFFER(offset),
+    MCOR_BUFFER(eigenvalue));
+}
+
 /* What the vertex threshold applies to, at the vertices on lattice edges. */
 static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {

@@ -1,0 +1,243 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The life of a context: what it begins with, what of the last call still holds, what is given back
+ * when; and how any call on it runs. */
+
+#include "mcor_internal.h"
+
+#include <stdlib.h>
+
+void mcor_set_default_options(mcor_options* options)
+{
+  if (!options)
+  {
+    return;
+  }
+  *options = (mcor_options){ .sph_kernel = MCOR_CUBIC_SPLINE,
+    .field = MCOR_SHEPARD,
+    .seeds = MCOR_COMPLETE,
+    .topology = MCOR_TOPOLOGY_TABLE,
+    .h_scale = 1,
+    .cube_size_factor = 0.5,
+    .node_threshold = 0.1,
+    .vertex_threshold = 0.5,
+    .boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM,
+    .tolerance = 1e-6,
+    .iteration_limit = 30,
+    .precision = MCOR_FLOAT32,
+    .normals = 1 };
+}
+
+mcor_status mcor_create_context(const char* device, mcor_context** context)
+{
+  if (!context)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *context = calloc(1, sizeof **context);
+  if (!*context)
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  mcor_status status = mcor_open_device(*context, device);
+  if (status == MCOR_OK)
+  {
+    uint8_t table[256][16];
+    mcor_make_case_table(table);
+    status = mcor_write(*context, &(*context)->case_table, table, sizeof table);
+  }
+  (*context)->created = status == MCOR_OK;
+  return status;
+}
+
+/* What is needed within a phase only, and is as large as the particles after the search grid. */
+void mcor_release_scratch(mcor_context* context)
+{
+  for (size_t i = 0; i < sizeof context->scratch / sizeof context->scratch[0]; ++i)
+  {
+    mcor_release(context, &context->scratch[i]);
+  }
+  mcor_release_sort(context);
+}
+
+void mcor_release_particles(mcor_context* context)
+{
+  mcor_grid* g = &context->grid;
+  mcor_buffer* const buffers[] = { &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py, &g->pz,
+    &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+}
+
+/* What only another call could use any more. */
+void mcor_release_nodes(mcor_context* context)
+{
+  mcor_release(context, &context->bricks.now.value);
+  mcor_release(context, &context->bricks.now.weight);
+  context->nodes_valid = false;
+}
+
+void mcor_release_memory(mcor_context* context)
+{
+  if (!context)
+  {
+    return;
+  }
+  mcor_bricks* b = &context->bricks;
+  mcor_mesh* m = &context->mesh;
+  mcor_buffer* const buffers[] = { &context->grid.level_buffer, &b->block_keys, &b->block_buckets,
+    &b->block_states, &b->quiet, &b->states, &b->bits, &b->base, &b->neighbours, &b->placed,
+    &b->slot_of, &b->need, &b->fresh, &m->used, &m->edges, &m->vertex_base, &m->triangle_base,
+    &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight,
+    &m->means, &m->flag, &m->evaluations, &m->boundary, &m->triangles, &m->trimmed, &m->remaining,
+    &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index, &m->scanned, &m->decisions,
+    &m->sample_base, &m->sample_node, &m->sample_offset, &m->sample_side, &context->scan_sums,
+    &context->attributes.sorted, &context->groups };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+  mcor_release_scratch(context);
+  mcor_release_particles(context);
+  mcor_release_bricks(context, &b->now);
+  free(context->source);
+  context->source = NULL;
+  free(context->attributes.varying);
+  context->attributes.varying = NULL;
+  context->attributes.varying_count = 0;
+}
+
+void mcor_free_context(mcor_context* context)
+{
+  if (!context)
+  {
+    return;
+  }
+  mcor_release_memory(context);
+  mcor_release(context, &context->case_table);
+  mcor_release(context, &context->topology_cases);
+  mcor_release(context, &context->topology_rows);
+  mcor_close_device(context);
+  free(context);
+}
+
+static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
+{
+  return (a->data == NULL) == (b->data == NULL) && a->type == b->type &&
+    (a->data || a->constant == b->constant);
+}
+
+/* What of the last call still holds. The caller's version numbers stand for the arrays' content;
+ * all else that the search grid, the scalar and the node values depend on is compared. */
+static void mcor_check_reuse(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
+{
+  const mcor_input* last = &context->last_input;
+  const mcor_options* o = &context->last_options;
+  const bool particles = input->particles_version != 0 &&
+    input->particles_version == last->particles_version && input->count == last->count &&
+    mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
+    input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
+    input->estimate_smoothing_length == last->estimate_smoothing_length &&
+    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
+    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
+    mcor_same_array(&input->density, &last->density) &&
+    mcor_same_array(&input->volume, &last->volume) &&
+    (input->solid == NULL) == (last->solid == NULL) && input->ignore_solids == last->ignore_solids;
+  const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
+    options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
+    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision;
+  context->grid_valid =
+    context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
+  context->value_valid = context->value_valid && context->grid_valid &&
+    input->scalar_version != 0 && input->scalar_version == last->scalar_version &&
+    input->scalar_component == last->scalar_component &&
+    (input->scalar_dot.data == NULL) == (last->scalar_dot.data == NULL);
+  context->nodes_valid = context->nodes_valid && context->value_valid;
+}
+
+/* Search grid and scalar for these options, from the last call where they still hold. */
+mcor_status mcor_prepare(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
+{
+  mcor_check_reuse(context, input, options, uses_solids);
+  context->uses_solids = uses_solids;
+  if (!context->value_valid)
+  {
+    MCOR_TRY(mcor_measure_input(context, input, options));
+  }
+  context->grid.has_solids = context->measure.solid_count > 0 && uses_solids;
+  const mcor_build build = { .sph_kernel = options->sph_kernel,
+    .field = options->field,
+    .precision = options->precision,
+    .solids = context->grid.has_solids };
+  MCOR_TRY(mcor_build_program(context, &build));
+  context->phase_begin += context->cl.build_seconds; /* reported apart */
+  if (!context->grid_valid)
+  {
+    MCOR_TRY(mcor_make_grid(context, input));
+  }
+  if (!context->value_valid)
+  {
+    MCOR_TRY(mcor_set_scalar(context, input));
+  }
+  mcor_release_scratch(context);
+  if (!context->nodes_valid)
+  {
+    mcor_release_bricks(context, &context->bricks.now);
+  }
+  context->grid_valid = context->value_valid = context->nodes_valid = true;
+  return MCOR_OK;
+}
+
+/* One attempt; on failure nothing is kept as valid. */
+static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
+{
+  context->error[0] = '\0';
+  context->options = options;
+  context->statistics = statistics;
+  context->phase = MCOR_PHASE_INPUT;
+  context->phase_begin = mcor_seconds();
+  context->correction_count = context->correction_sum = context->correction_squares = 0;
+  context->cl.bytes_peak = context->cl.bytes;
+  const mcor_status status = body(context, input, options, result);
+  context->last_input = *input;
+  context->last_options = *options;
+  if (status != MCOR_OK)
+  {
+    context->grid_valid = context->value_valid = context->nodes_valid = false;
+  }
+  return status;
+}
+
+mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
+{
+  if (!context->created)
+  {
+    return MCOR_DEVICE_ERROR; /* its sentence says why */
+  }
+  mcor_cl* cl = &context->cl;
+  const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
+  cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
+  const int64_t held = cl->bytes;
+  mcor_status status = mcor_try_call(context, input, options, statistics, body, result);
+  if (status == MCOR_OUT_OF_CAPACITY)
+  {
+    mcor_release_memory(context);
+    if (held > cl->bytes)
+    {
+      status = mcor_try_call(context, input, options, statistics, body, result);
+    }
+  }
+  if (status == MCOR_OUT_OF_CAPACITY)
+  {
+    mcor_release_memory(context); /* not in the way of a smaller one */
+  }
+  return status;
+}

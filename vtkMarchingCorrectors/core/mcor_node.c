@@ -1,0 +1,45 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Nodes of the virtual grid: their values, and on which side of the iso value they are. */
+
+#include "mcor_internal.h"
+
+/* Values of all nodes that the cells to examine need and that are not known yet. */
+mcor_status mcor_evaluate_nodes(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int count = bricks->now.count;
+  MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &bricks->fresh, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.examined),
+    MCOR_BUFFER(&bricks->fresh)));
+  /* One item per brick where one gathers for many lanes, else one per node. */
+  const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
+  return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->need),
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
+}
+
+/* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */
+mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated)
+{
+  mcor_bricks* bricks = &context->bricks;
+  return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_LIGHT, bricks->now.count,
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
+    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid));
+}
+
+/* Number of bits set in an array of masks. */
+mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int count, int* total)
+{
+  mcor_buffer* counts = &context->scratch[0];
+  MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_bits", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(masks), MCOR_BUFFER(counts)));
+  return mcor_scan(context, counts, count, total);
+}

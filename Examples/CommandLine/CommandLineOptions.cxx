@@ -100,6 +100,21 @@ std::vector<double> ToNumbers(const std::string& option, const std::string& text
   return values;
 }
 
+std::vector<std::string> ToNames(const std::string& option, const std::string& text)
+{
+  std::vector<std::string> names;
+  std::istringstream stream(text + ",");
+  for (std::string name; std::getline(stream, name, ',');)
+  {
+    if (name.empty())
+    {
+      throw UsageError(option + " needs names with a comma between each two, not '" + text + "'");
+    }
+    names.push_back(Printable(name));
+  }
+  return names;
+}
+
 void SetFluid(CommandLineOptions& options, const std::string& option, const std::string& text)
 {
   const std::size_t equals = text.rfind('=');
@@ -207,6 +222,8 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text, Text) { o.BoundaryEigenvalue = true; } },
     { "--gradients", "", "add the array Gradients",
       [](Options& o, Text, Text) { o.Gradients = true; } },
+    { "--attributes", "NAME[,NAME...]", "carry only these arrays to the surface (default all)",
+      [](Options& o, Text n, Text v) { o.AttributeNames = ToNames(n, v); } },
     { "--no-attributes", "", "leave out the particles' other arrays",
       [](Options& o, Text, Text) { o.Attributes = false; } },
     { "--output-precision", "single|double|input",

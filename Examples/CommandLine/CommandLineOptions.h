@@ -47,6 +47,7 @@ struct CommandLineOptions
   bool BoundaryEigenvalue = false;
   bool Gradients = false;
   bool Attributes = true;
+  std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
   std::string OutputPrecision = "input";
 
   std::string Device;

@@ -22,6 +22,7 @@
 #include "vtkPolyData.h"
 #include "vtkVersion.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -154,7 +155,6 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetComputeWeightSum(options.WeightSum);
   filter->SetComputeBoundaryEigenvalue(options.BoundaryEigenvalue);
   filter->SetComputeGradients(options.Gradients);
-  filter->SetInterpolateAttributes(options.Attributes);
   filter->SetOutputPointsPrecision(options.OutputPrecision == "single"
       ? vtkAlgorithm::SINGLE_PRECISION
       : options.OutputPrecision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
@@ -162,6 +162,30 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetDevice(options.Device.c_str());
   filter->SetDeviceMemoryLimit(options.MemoryLimit);
   filter->KeepDeviceDataOff();
+}
+
+/// All arrays, none, or those that are named.
+void SetAttributes(
+  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
+{
+  const std::vector<std::string>& names = options.AttributeNames;
+  vtkPointData* data = particles->GetPointData();
+  filter->SetInterpolateAttributes(options.Attributes);
+  for (const std::string& name : names)
+  {
+    if (!data->HasArray(name.c_str()))
+    {
+      throw std::runtime_error("there is no point array '" + name + "' to carry to the surface");
+    }
+  }
+  for (int i = 0; !names.empty() && i < data->GetNumberOfArrays(); ++i)
+  {
+    const char* name = data->GetArrayName(i);
+    if (name && std::find(names.begin(), names.end(), name) == names.end())
+    {
+      filter->AddExcludedArray(name);
+    }
+  }
 }
 
 struct Run
@@ -200,10 +224,14 @@ Run Extract(
   return run;
 }
 
-void WarnIfEmpty(vtkPolyData* surface, MessageCapture* messages)
+void Warn(vtkPolyData* surface, MessageCapture* messages)
 {
   if (surface->GetNumberOfCells() > 0)
   {
+    for (const std::string& warning : messages->GetWarnings())
+    {
+      Say("warning: " + warning);
+    }
     return;
   }
   std::string why;
@@ -282,6 +310,7 @@ void Execute(const CommandLineOptions& options)
   SetParticles(filter, options, particles);
   SetContour(filter, options);
   SetMethod(filter, options);
+  SetAttributes(filter, options, particles);
   filter->SetInputData(particles);
   if (ShowsProgress(options))
   {
@@ -305,7 +334,7 @@ void Execute(const CommandLineOptions& options)
                 << std::flush;
     }
   }
-  WarnIfEmpty(surface, messages);
+  Warn(surface, messages);
   const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
   WriteSurface(options.Output, surface, messages);
   if (!options.StatisticsFile.empty())

@@ -24,8 +24,8 @@ class Usage(CommandLineTest):
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
                 --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
-                --weight-sum --boundary-eigenvalue --gradients --no-attributes --device --memory-limit
-                --list-devices --stats --screenshot --repeat --quiet --help
+                --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
+                --memory-limit --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision --support-radius --output-precision""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
@@ -139,6 +139,9 @@ class BadData(CommandLineTest):
 
     def test_no_smoothing_length(self):
         self.refuse_changed("no smoothing length", {"SmoothingLength": None})
+
+    def test_missing_attribute(self):
+        self.refuse_with("no point array 'Colour' to carry", *ISO, "--attributes", "Kind,Colour")
 
     def test_mistyped_arrays(self):
         names = files.string_array("Names", ["a"] * len(self.points))
@@ -430,6 +433,23 @@ class Options(CommandLineTest):
         self.assertIn('Name="Normals"', bare)
         for name in ("Velocity", "Kind"):
             self.assertNotIn(f'Name="{name}"', bare)
+        self.succeed(*ISO, "--attributes", "Kind,Density")
+        chosen = self.output.read_text()
+        for name in ("Normals", "Kind", "Density"):
+            self.assertIn(f'Name="{name}"', chosen)
+        for name in ("Velocity", "Mass"):
+            self.assertNotIn(f'Name="{name}"', chosen)
+
+    def test_array_that_is_not_finite(self):
+        self.arrays["Velocity"] = [(float("nan"), 0.0, 0.0)] + self.arrays["Velocity"][1:]
+        files.write_vtp(self.input, self.points, self.arrays)
+        result = self.extract(*ISO)
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, r"^marching-correctors: warning: The point array "
+                                        r"'Velocity' is NaN or infinite at particle 0 .*\n$")
+        self.assertNotIn('Name="Velocity"', self.output.read_text())
+        result = self.extract(*ISO, "--attributes", "Kind")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_repeat(self):
         found = self.succeed(*ISO, "--repeat", "3")

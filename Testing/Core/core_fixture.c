@@ -257,40 +257,27 @@ void core_build(
   mcor_context* context, mcor_sph_kernel kernel, mcor_field field, mcor_type precision)
 {
   mcor_build build;
-  memset(&build, 0, sizeof build); /* compared bytewise, padding included */
+  memset(&build, 0, sizeof build);
   build.sph_kernel = kernel;
   build.field = field;
   build.precision = precision;
-  CORE_OK(context, mcor_build_program(context, &build));
+  CORE_OK(context, mcor_choose_build(context, &build));
 }
 
-void core_extend_program(mcor_context* context, const char* source)
+/* A program with the sources of all, and more behind them. */
+static cl_program core_make_program(mcor_context* context, const char* source)
 {
-  mcor_cl* cl = &context->cl;
-  size_t length = 0, options_length = 0;
-  assert_int_equal(clGetProgramInfo(cl->program, CL_PROGRAM_SOURCE, 0, NULL, &length), CL_SUCCESS);
-  assert_int_equal(clGetProgramBuildInfo(
-                     cl->program, cl->device, CL_PROGRAM_BUILD_OPTIONS, 0, NULL, &options_length),
-    CL_SUCCESS);
-  char* own = calloc(length + 1, 1);
-  char* options = calloc(options_length + 1, 1);
-  assert_true(own && options);
-  clGetProgramInfo(cl->program, CL_PROGRAM_SOURCE, length, own, NULL);
-  clGetProgramBuildInfo(
-    cl->program, cl->device, CL_PROGRAM_BUILD_OPTIONS, options_length, options, NULL);
-  if (strstr(own, source))
-  {
-    free(own);
-    free(options);
-    return;
-  }
-  const char* sources[] = { own, "\n", source };
+  const mcor_cl* cl = &context->cl;
+  const char* sources[MCOR_SOURCE_LIMIT + 1];
+  const int count = mcor_program_sources(cl, MCOR_PROGRAM_OPTIONS, sources);
+  char options[512];
+  mcor_program_options(cl, MCOR_PROGRAM_OPTIONS, options, sizeof options);
+  sources[count] = source;
   cl_int error;
-  cl_program program = clCreateProgramWithSource(cl->context, 3, sources, NULL, &error);
+  cl_program program =
+    clCreateProgramWithSource(cl->context, (cl_uint)count + 1, sources, NULL, &error);
   assert_int_equal(error, CL_SUCCESS);
   error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
-  free(own);
-  free(options);
   if (error != CL_SUCCESS)
   {
     char log[4000] = "";
@@ -298,6 +285,32 @@ void core_extend_program(mcor_context* context, const char* source)
     clReleaseProgram(program);
     fail_msg("build error %d: %s", (int)error, log);
   }
-  clReleaseProgram(cl->program);
-  cl->program = program;
+  return program;
+}
+
+void core_extend_program(mcor_context* context, const char* source)
+{
+  mcor_cl* cl = &context->cl;
+  cl_program program = core_make_program(context, source);
+  for (const char* at = strstr(source, "__kernel void "); at; at = strstr(at, "__kernel void "))
+  {
+    at += strlen("__kernel void ");
+    char name[sizeof cl->kernels[0].name] = "";
+    memcpy(name, at, strcspn(at, "("));
+    bool known = false;
+    for (int i = 0; i < cl->kernel_count; ++i)
+    {
+      known = known || strcmp(cl->kernels[i].name, name) == 0;
+    }
+    if (!known)
+    {
+      mcor_kernel* kernel = &cl->kernels[cl->kernel_count++];
+      cl_int error;
+      *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_OPTIONS };
+      strcpy(kernel->name, name);
+      kernel->kernel = clCreateKernel(program, name, &error);
+      assert_int_equal(error, CL_SUCCESS);
+    }
+  }
+  clReleaseProgram(program); /* its kernels keep it */
 }

@@ -8,6 +8,7 @@
  * sanitizer sees a read beyond it. */
 
 #include "mcor_internal.h"
+#include "mcor_program.h"
 #include "mesh_check.h"
 #include "oracle.h"
 #include "particle_sets.h"
@@ -94,9 +95,9 @@ void core_check_flags(const mcor_surface* surface);
 /* Point count, points, triangles and every optional array. */
 uint64_t core_hash(const mcor_surface* surface);
 
-/* Compiles the context's program anew with more kernels behind it, for mcor_launch. */
+/* Compiles more kernels behind all sources, for mcor_launch. */
 void core_extend_program(mcor_context* context, const char* source);
-/* Builds the program for a kernel and a field. */
+/* Chooses what kernels are compiled for. */
 void core_build(
   mcor_context* context, mcor_sph_kernel kernel, mcor_field field, mcor_type precision);
 

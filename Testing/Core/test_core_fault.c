@@ -333,9 +333,11 @@ static void test_build_fails(void** state)
   memcpy(log, "line 7: no such thing", 21);
   log[sizeof log - 1] = '\0';
   long_log = log;
-  set_fault(0, CL_BUILD_PROGRAM_FAILURE);
-  assert_int_equal(mcor_build_program(context, &build), MCOR_DEVICE_ERROR);
+  set_fault(1, CL_BUILD_PROGRAM_FAILURE); /* after a kernel was looked for elsewhere */
+  CORE_OK(context, mcor_choose_build(context, &build));
+  const mcor_status status = MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, 1, MCOR_INT(0));
   fail_at = -1;
+  assert_int_equal(status, MCOR_DEVICE_ERROR);
   assert_non_null(strstr(mcor_last_error(context), "CL_BUILD_PROGRAM_FAILURE"));
   assert_non_null(strstr(mcor_last_error(context), "mcor_w_quadratic"));
   assert_non_null(strstr(mcor_last_error(context), "line 7: no such thing"));

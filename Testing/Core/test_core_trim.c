@@ -39,7 +39,10 @@ static void trim(mcor_context* context, flat_mesh* m)
   const mcor_input input = core_input_to_keep(&set);
   options = core_options(&iso);
   options.preview = 1;
+  static mcor_statistics statistics;
   mcor_surface surface = core_extract(context, &input, &options); /* for the search grid */
+  context->options = &options; /* as if the call went on */
+  context->statistics = &statistics;
   mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)m->vertices;
   CORE_OK(context, mcor_write(context, &mesh->node, m->node, n * sizeof m->node[0]));

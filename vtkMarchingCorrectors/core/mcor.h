@@ -213,7 +213,7 @@ extern "C"
   typedef struct mcor_statistics
   {
     double seconds[MCOR_PHASE_COUNT];
-    double build_seconds; /* building or loading the device program; 0 when already there */
+    double build_seconds; /* compiling or loading kernels, in whichever phase; in none of seconds */
     int64_t fluid_particles, solid_particles;
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
     double cube_size;                                  /* unit L */

@@ -42,14 +42,15 @@ static mcor_status mcor_fill_bricks(
     MCOR_BUFFER(&bricks->now.bricks)));
   if (last->count > 0)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_move", MCOR_LIGHT, last->count,
-      MCOR_BRICK_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&last->bricks),
-      MCOR_BUFFER(&last->known), MCOR_BUFFER(&last->cells), MCOR_BUFFER(&last->examined),
-      MCOR_BUFFER(&last->above), MCOR_BUFFER(&last->valid), MCOR_BUFFER(&last->value),
-      MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.cells),
-      MCOR_BUFFER(&bricks->now.examined), MCOR_BUFFER(&bricks->now.above),
-      MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&bricks->now.value),
-      MCOR_BUFFER(&bricks->now.weight)));
+    MCOR_TRY(
+      MCOR_LAUNCH(context, "mcor_brick_move", MCOR_LIGHT, last->count, MCOR_BRICK_ARGS(context),
+        MCOR_INT(last->count), MCOR_BUFFER(&last->bricks), MCOR_BUFFER(&last->known),
+        MCOR_BUFFER(&last->cells), MCOR_BUFFER(&last->examined), MCOR_BUFFER(&last->above),
+        MCOR_BUFFER(&last->valid), MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))),
+        MCOR_BUFFER(&last->value), MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known),
+        MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(&bricks->now.examined),
+        MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
+        MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
   }
   bricks->neighbours_valid = false;
   mcor_release(context, &bricks->placed);

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 #include "mcor_internal.h"
-#include "mcor_sph_kernel.h"
+#include "mcor_program.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -276,27 +276,46 @@ mcor_status mcor_open_device(mcor_context* context, const char* device)
   MCOR_CL_TRY(context, error, "clCreateContext");
   cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
+  cl->timed_queue =
+    clCreateCommandQueue(cl->context, cl->device, CL_QUEUE_PROFILING_ENABLE, &error);
+  MCOR_CL_TRY(context, error, "clCreateCommandQueue");
   return MCOR_OK;
 }
 
-static void mcor_drop_program(mcor_cl* cl)
+/* Drops the programs, or those that depend on what is computed, and their kernels. */
+static void mcor_drop_programs(mcor_cl* cl, bool all)
 {
+  int kept = 0;
   for (int i = 0; i < cl->kernel_count; ++i)
   {
-    clReleaseKernel(cl->kernels[i].kernel);
+    if (!all && cl->kernels[i].program == MCOR_PROGRAM_LATTICE)
+    {
+      cl->kernels[kept++] = cl->kernels[i];
+    }
+    else
+    {
+      clReleaseKernel(cl->kernels[i].kernel);
+    }
   }
-  cl->kernel_count = 0;
-  if (cl->program)
+  cl->kernel_count = kept;
+  for (int p = all ? 0 : MCOR_PROGRAM_LATTICE + 1; p < MCOR_PROGRAM_COUNT; ++p)
   {
-    clReleaseProgram(cl->program);
-    cl->program = NULL;
+    if (cl->programs[p])
+    {
+      clReleaseProgram(cl->programs[p]);
+      cl->programs[p] = NULL;
+    }
   }
 }
 
 void mcor_close_device(mcor_context* context)
 {
   mcor_cl* cl = &context->cl;
-  mcor_drop_program(cl);
+  mcor_drop_programs(cl, true);
+  if (cl->timed_queue)
+  {
+    clReleaseCommandQueue(cl->timed_queue);
+  }
   if (cl->queue)
   {
     clReleaseCommandQueue(cl->queue);
@@ -328,43 +347,22 @@ static int mcor_lanes(const mcor_cl* cl, mcor_type precision)
   return width >= 16 ? 16 : 8;
 }
 
-static void mcor_build_options(const mcor_cl* cl, const mcor_build* build, char* text, size_t size)
-{
-#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, #norm, support, tensor },
-  static const struct
-  {
-    const char *name, *norm;
-    int support, tensor;
-  } kernels[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
-#undef MCOR_ENTRY
-  const int k = (int)build->sph_kernel;
-  const bool is_double = build->precision == MCOR_FLOAT64;
-  snprintf(text, size,
-    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_LANES=%d "
-    "-DMCOR_DOUBLE=%d "
-    "-DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s -DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s "
-    "-DMCOR_SUPPORT=%d.0%s "
-    "-DMCOR_TENSOR=%d -DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
-    cl->lanes, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm,
-    is_double ? "" : "f", kernels[k].support, is_double ? "" : "f", kernels[k].tensor,
-    (int)build->field, build->solids);
-}
-
 static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
 {
   return a->sph_kernel == b->sph_kernel && a->field == b->field && a->precision == b->precision &&
     a->solids == b->solids;
 }
 
-static mcor_status mcor_fail_build(mcor_context* context, cl_int error, const char* options)
+static mcor_status mcor_fail_build(
+  mcor_context* context, cl_program program, cl_int error, const char* options)
 {
   const mcor_cl* cl = &context->cl;
   size_t size = 0;
-  clGetProgramBuildInfo(cl->program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+  clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
   char* log = calloc(size + 1, 1);
   if (log)
   {
-    clGetProgramBuildInfo(cl->program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+    clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
   }
   const mcor_status status = mcor_fail(context, MCOR_DEVICE_ERROR,
     "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
@@ -373,46 +371,43 @@ static mcor_status mcor_fail_build(mcor_context* context, cl_int error, const ch
   return status;
 }
 
-mcor_status mcor_build_program(mcor_context* context, const mcor_build* build)
+mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
   const int lanes = mcor_lanes(cl, build->precision);
-  cl->build_seconds = 0;
-  if (cl->program && cl->lanes == lanes && mcor_same_build(&cl->build, build))
+  if (cl->lanes == lanes && mcor_same_build(&cl->build, build))
   {
     return MCOR_OK;
   }
   MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
     "OpenCL device %s has no double precision; choose another device or single precision.",
     cl->device_name);
-  const double begin = mcor_seconds();
-  mcor_drop_program(cl);
+  mcor_drop_programs(cl, (cl->lanes == 1) != (lanes == 1));
   cl->lanes = lanes;
   cl->build = *build;
   cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
   cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
-  const char* sources[] = { mcor_source_mcor_shared_h, mcor_source_mcor_prelude_cl,
-    mcor_source_mcor_intrinsic_cl, mcor_source_mcor_sph_kernel_h, mcor_source_mcor_query_cl,
-    mcor_source_mcor_tile_cl, mcor_source_mcor_field_cl, mcor_source_mcor_scan_cl,
-    mcor_source_mcor_grid_cl, mcor_source_mcor_brick_cl, mcor_source_mcor_node_cl,
-    mcor_source_mcor_seed_cl, mcor_source_mcor_block_cl, mcor_source_mcor_march_cl,
-    mcor_source_mcor_pair_cl, mcor_source_mcor_points_cl, mcor_source_mcor_attribute_cl,
-    mcor_source_mcor_correct_cl, mcor_source_mcor_topology_cl, mcor_source_mcor_boundary_cl,
-    mcor_source_mcor_trim_cl };
+  return MCOR_OK;
+}
+
+static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
+{
+  mcor_cl* cl = &context->cl;
+  const char* sources[MCOR_SOURCE_LIMIT];
+  const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
   char options[512];
-  mcor_build_options(cl, build, options, sizeof options);
+  mcor_program_options(cl, number, options, sizeof options);
   cl_int error;
-  cl->program = clCreateProgramWithSource(
-    cl->context, sizeof sources / sizeof sources[0], sources, NULL, &error);
+  cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
-  error = clBuildProgram(cl->program, 1, &cl->device, options, NULL, NULL);
+  error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
   if (error != CL_SUCCESS)
   {
-    const mcor_status status = mcor_fail_build(context, error, options);
-    mcor_drop_program(cl);
+    const mcor_status status = mcor_fail_build(context, program, error, options);
+    clReleaseProgram(program);
     return status;
   }
-  cl->build_seconds = mcor_seconds() - begin;
+  cl->programs[number] = program;
   return MCOR_OK;
 }
 
@@ -579,26 +574,66 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
   return status;
 }
 
-static mcor_status mcor_find_kernel(mcor_context* context, const char* name, cl_kernel* kernel)
+/* Tells the caller, once in a phase, that the next is building, which may take seconds. */
+static mcor_status mcor_report_building(mcor_context* context)
+{
+  const mcor_options* options = context->options;
+  const char* phase = "building the OpenCL program (first time only)";
+  const bool told = context->building_told;
+  context->building_told = true;
+  MCOR_RETURN_IF(!told && options && options->progress &&
+      options->progress(options->progress_user, context->fraction, phase) != 0,
+    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
+  return MCOR_OK;
+}
+
+/* Building is reported apart from the phase in which it happens. */
+static void mcor_add_build_seconds(mcor_context* context, double seconds)
+{
+  context->cl.build_seconds += seconds;
+  context->phase_begin += seconds;
+}
+
+/* Makes a kernel of the first program that has it. */
+static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mcor_kernel* kernel)
+{
+  mcor_cl* cl = &context->cl;
+  cl_int error = CL_INVALID_KERNEL_NAME;
+  *kernel = (mcor_kernel){ 0 };
+  snprintf(kernel->name, sizeof kernel->name, "%s", name);
+  for (int p = 0; p < MCOR_PROGRAM_COUNT && error == CL_INVALID_KERNEL_NAME; ++p)
+  {
+    kernel->program = (mcor_program)p;
+    if (!cl->programs[p])
+    {
+      MCOR_TRY(mcor_report_building(context));
+      MCOR_TRY(mcor_build_program(context, kernel->program));
+    }
+    kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
+  }
+  MCOR_CL_TRY(context, error, name);
+  return MCOR_OK;
+}
+
+static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** kernel)
 {
   mcor_cl* cl = &context->cl;
   for (int i = 0; i < cl->kernel_count; ++i)
   {
     if (strcmp(cl->kernels[i].name, name) == 0)
     {
-      *kernel = cl->kernels[i].kernel;
+      *kernel = &cl->kernels[i];
       return MCOR_OK;
     }
   }
-  cl_int error = CL_OUT_OF_RESOURCES;
-  if (cl->kernel_count < MCOR_KERNEL_LIMIT)
-  {
-    *kernel = clCreateKernel(cl->program, name, &error);
-  }
-  MCOR_CL_TRY(context, error, name);
-  snprintf(cl->kernels[cl->kernel_count].name, sizeof cl->kernels[0].name, "%s", name);
-  cl->kernels[cl->kernel_count++].kernel = *kernel;
-  return MCOR_OK;
+  MCOR_RETURN_IF(cl->kernel_count == MCOR_KERNEL_LIMIT, context, MCOR_DEVICE_ERROR,
+    "There is no room for kernel %s.", name);
+  *kernel = &cl->kernels[cl->kernel_count];
+  const double begin = mcor_seconds();
+  const mcor_status status = mcor_make_kernel(context, name, *kernel);
+  mcor_add_build_seconds(context, mcor_seconds() - begin);
+  cl->kernel_count += status == MCOR_OK;
+  return status;
 }
 
 static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const mcor_arg* arg)
@@ -618,6 +653,46 @@ static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const
   }
 }
 
+/* A kernel that was at hand takes less. */
+#define MCOR_COMPILE_SECONDS 0.01
+
+/* Launches a kernel for the first time, alone: drivers may compile it only now. What the kernel
+ * itself does not take is building. */
+static cl_int mcor_enqueue_first(
+  mcor_context* context, cl_kernel kernel, const size_t* global, const size_t* group)
+{
+  mcor_cl* cl = &context->cl;
+  cl_event event;
+  cl_ulong start = 0, end = 0;
+  cl_int error = clFinish(cl->queue);
+  const double begin = mcor_seconds();
+  if (error == CL_SUCCESS)
+  {
+    error =
+      clEnqueueNDRangeKernel(cl->timed_queue, kernel, 1, NULL, global, group, 0, NULL, &event);
+  }
+  if (error != CL_SUCCESS)
+  {
+    return error;
+  }
+  error = clFinish(cl->timed_queue);
+  const double seconds = mcor_seconds() - begin;
+  if (error == CL_SUCCESS &&
+    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, NULL) ==
+      CL_SUCCESS &&
+    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL) == CL_SUCCESS)
+  {
+    const double building = fmax(seconds - 1e-9 * (double)(end - start), 0);
+    mcor_add_build_seconds(context, building);
+    cl->compiles = building > MCOR_COMPILE_SECONDS;
+  }
+  clReleaseEvent(event);
+  return error;
+}
+
+/* From so many work-groups on, PoCL compiles a kernel once more. */
+#define MCOR_LARGE_LAUNCH 65535
+
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count)
 {
@@ -626,20 +701,29 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     return MCOR_OK;
   }
-  cl_kernel kernel = NULL;
+  mcor_kernel* kernel = NULL;
   MCOR_TRY(mcor_find_kernel(context, name, &kernel));
   cl_uint wanted = 0;
-  clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof wanted, &wanted, NULL);
+  clGetKernelInfo(kernel->kernel, CL_KERNEL_NUM_ARGS, sizeof wanted, &wanted, NULL);
   MCOR_RETURN_IF(arg_count != wanted, context, MCOR_DEVICE_ERROR,
     "Kernel %s has %u arguments; %zu were given.", name, (unsigned)wanted, arg_count);
   for (size_t i = 0; i < arg_count; ++i)
   {
-    MCOR_CL_TRY(context, mcor_set_arg(cl, kernel, (cl_uint)i, args + i), name);
+    MCOR_CL_TRY(context, mcor_set_arg(cl, kernel->kernel, (cl_uint)i, args + i), name);
   }
   const size_t group = cl->is_cpu && load == MCOR_HEAVY ? 1 : 64;
   const size_t global = (items + group - 1) / group * group;
+  const bool large = global / group >= MCOR_LARGE_LAUNCH;
+  if (!kernel->launched[large] && cl->compiles)
+  {
+    MCOR_TRY(mcor_report_building(context));
+  }
   MCOR_CL_TRY(context,
-    clEnqueueNDRangeKernel(cl->queue, kernel, 1, NULL, &global, &group, 0, NULL, NULL), name);
+    kernel->launched[large]
+      ? clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, NULL, &global, &group, 0, NULL, NULL)
+      : mcor_enqueue_first(context, kernel->kernel, &global, &group),
+    name);
+  kernel->launched[large] = true;
   return MCOR_OK;
 }
 

@@ -30,29 +30,43 @@ typedef struct mcor_build
   bool solids;
 } mcor_build;
 
+/* Programs are built, and kernels compiled, when they are first needed. */
+typedef enum mcor_program
+{
+  MCOR_PROGRAM_LATTICE, /* whole numbers and masks: the same whatever is computed */
+  MCOR_PROGRAM_FIELD,   /* what every surface of the build needs */
+  MCOR_PROGRAM_OPTIONS, /* what options need */
+  MCOR_PROGRAM_COUNT
+} mcor_program;
+
+typedef struct mcor_kernel
+{
+  char name[48];
+  cl_kernel kernel;
+  mcor_program program;
+  bool launched[2]; /* with few, with many work-groups */
+} mcor_kernel;
+
 typedef struct mcor_cl
 {
   cl_platform_id platform;
   cl_device_id device;
   cl_context context;
-  cl_command_queue queue;
-  cl_program program;
-  mcor_build build; /* of program */
-  struct
-  {
-    char name[48];
-    cl_kernel kernel;
-  } kernels[MCOR_KERNEL_LIMIT];
+  cl_command_queue queue, timed_queue; /* timed: for first launches */
+  cl_program programs[MCOR_PROGRAM_COUNT];
+  mcor_build build; /* of the programs */
+  mcor_kernel kernels[MCOR_KERNEL_LIMIT];
   int kernel_count;
   bool is_cpu; /* the kernels' form for CPUs is used */
   bool has_fp64;
-  int lanes;  /* MCOR_LANES of program */
+  int lanes;  /* of the programs */
   int chunks; /* runs into which scans and sorts cut their arrays */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
   uint64_t memory_limit; /* what of device_memory may be used; of the call under way */
   int64_t bytes, bytes_peak;
-  double build_seconds;
+  double build_seconds; /* of the call under way */
+  bool compiles;        /* the driver does, at a kernel's first launch: the last one took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -97,8 +111,8 @@ typedef enum mcor_load
 
 mcor_status mcor_open_device(mcor_context* context, const char* device);
 void mcor_close_device(mcor_context* context);
-/* Builds the program unless the one at hand fits. */
-mcor_status mcor_build_program(mcor_context* context, const mcor_build* build);
+/* What kernels are compiled for from now on. Those at hand are kept where they fit. */
+mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);

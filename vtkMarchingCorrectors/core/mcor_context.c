@@ -175,8 +175,7 @@ mcor_status mcor_prepare(
     .field = options->field,
     .precision = options->precision,
     .solids = context->grid.has_solids };
-  MCOR_TRY(mcor_build_program(context, &build));
-  context->phase_begin += context->cl.build_seconds; /* reported apart */
+  MCOR_TRY(mcor_choose_build(context, &build));
   if (!context->grid_valid)
   {
     MCOR_TRY(mcor_make_grid(context, input));
@@ -203,11 +202,14 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->statistics = statistics;
   context->phase = MCOR_PHASE_INPUT;
   context->phase_begin = mcor_seconds();
+  context->fraction = context->cl.build_seconds = 0;
   context->correction_count = context->correction_sum = context->correction_squares = 0;
   context->cl.bytes_peak = context->cl.bytes;
   const mcor_status status = body(context, input, options, result);
   context->last_input = *input;
   context->last_options = *options;
+  context->options = NULL;
+  context->statistics = NULL;
   if (status != MCOR_OK)
   {
     context->grid_valid = context->value_valid = context->nodes_valid = false;

@@ -148,11 +148,13 @@ struct mcor_context
   mcor_input last_input; /* what grid and value were made from */
   mcor_options last_options;
   bool grid_valid, value_valid;
-  const mcor_options* options; /* of the call under way */
+  const mcor_options* options; /* of the call under way; NULL between calls */
   bool uses_solids;            /* solid particles are on the device */
   mcor_statistics* statistics;
   mcor_phase phase;
   double phase_begin;
+  double fraction;    /* last reported */
+  bool building_told; /* in this phase */
   double correction_count, correction_sum, correction_squares;
   char error[4096];
 };

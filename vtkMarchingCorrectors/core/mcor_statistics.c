@@ -16,6 +16,8 @@ mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fra
   context->statistics->seconds[context->phase] += now - context->phase_begin;
   context->phase = phase;
   context->phase_begin = now;
+  context->fraction = fraction;
+  context->building_told = false;
   MCOR_RETURN_IF(options->progress &&
       options->progress(options->progress_user, fraction, mcor_phase_name(phase)) != 0,
     context, MCOR_CANCELLED, "The extraction was cancelled before phase \"%s\".",

@@ -120,6 +120,7 @@ void mcor_attribute_group(const mcor_grid* grid, mcor_query* query, const mcor_p
   }
 }
 
+#if MCOR_OF_FIELD
 /* One work-item = one group of points. Writes the means there. */
 __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
@@ -204,3 +205,4 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
     }
   }
 }
+#endif

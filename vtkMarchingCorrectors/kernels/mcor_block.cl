@@ -8,6 +8,7 @@
  *
  * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
 
+#if MCOR_OF_LATTICE
 /* One work-item = one cube of the first level, all of which exist. Writes its key. */
 __kernel void mcor_block_all(const int count, __global ulong* keys)
 {
@@ -17,7 +18,9 @@ __kernel void mcor_block_all(const int count, __global ulong* keys)
     keys[i] = (ulong)i;
   }
 }
+#endif
 
+#if MCOR_OF_FIELD
 /* One work-item = one cube, `size` nodes long. Reads the particles that reach it. Writes its
  * state. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cubes_x,
@@ -36,7 +39,9 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
   mcor_tile_init(&tile);
   states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, sides, iso, node_threshold);
 }
+#endif
 
+#if MCOR_OF_LATTICE
 /* One work-item = one cube. Reads the states of cubes. Writes whether it is quiet. A neighbour that
  * does not exist was part of a quiet larger one. */
 __kernel void mcor_block_quiet(
@@ -117,3 +122,4 @@ __kernel void mcor_block_keep(MCOR_BLOCK_PARAMS, const int brick_count, __global
     mcor_ask_brick(brick_bits, mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
   }
 }
+#endif

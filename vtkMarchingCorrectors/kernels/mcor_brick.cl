@@ -99,6 +99,7 @@ bool mcor_ask_brick(__global uint* brick_bits, int m)
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
+#if MCOR_OF_LATTICE
 /* One work-item = one word of 32 bricks. Counts its bricks. */
 __kernel void mcor_brick_count(
   const int word_count, __global const uint* brick_bits, __global int* counts)
@@ -238,13 +239,14 @@ __kernel void mcor_brick_join(MCOR_BLOCK_PARAMS, const int first, const int bric
 }
 
 /* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,
- * if it has one. */
+ * if it has one. words: of 4 bytes, that the values of a brick's nodes take. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
   __global const ulong* old_examined, __global const ulong* old_above,
-  __global const ulong* old_valid, __global const real* old_value, __global const real* old_weight,
+  __global const ulong* old_valid, const int words, __global const uint* old_value,
+  __global const uint* old_weight,
   __global ulong* known, __global ulong* cells, __global ulong* examined, __global ulong* above,
-  __global ulong* valid, __global real* node_value, __global real* node_weight)
+  __global ulong* valid, __global uint* node_value, __global uint* node_weight)
 {
   const int old = get_global_id(0);
   if (old >= old_count)
@@ -262,12 +264,13 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   examined[slot] = old_examined[old];
   above[slot] = old_above[old];
   valid[slot] = old_valid[old];
-  for (int n = 0; n < 64; ++n)
+  for (int n = 0; n < words; ++n)
   {
-    node_value[slot * 64L + n] = old_value[old * 64L + n];
-    node_weight[slot * 64L + n] = old_weight[old * 64L + n];
+    node_value[slot * (long)words + n] = old_value[old * (long)words + n];
+    node_weight[slot * (long)words + n] = old_weight[old * (long)words + n];
   }
 }
+#endif
 
 /* Gathers a mask of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
 void mcor_brick_masks(

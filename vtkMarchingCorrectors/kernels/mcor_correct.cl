@@ -255,6 +255,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
+#if MCOR_OF_FIELD
 /* One work-item = one group of vertices. Reads edges and end values (against iso). Writes position
  * (node, offset), linear less final position along the edge, value, gradient and trimming weight,
  * how many evaluations were made, and attributes. limit 0: no correction (preview). */
@@ -297,3 +298,4 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     }
   }
 }
+#endif

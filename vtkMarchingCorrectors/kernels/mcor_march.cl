@@ -4,6 +4,7 @@
 /* Extraction [III-D.1]: node values, marching cubes on masks of 64 nodes or cells, vertices
  * numbered by lattice edge. */
 
+#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads the cells to examine. Writes its nodes if they need any and none
  * is known yet: where a surface grows it mostly needs the others next, and the particles are
  * gathered once. Writes which cells are new since the last time, too; they are then kept in
@@ -31,7 +32,9 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   fresh[slot] = cells[slot] & ~examined[slot];
   examined[slot] = cells[slot];
 }
+#endif
 
+#if MCOR_OF_FIELD
 /* One work-item = MCOR_ITEM_NODES nodes of a brick. Where they are needed, reads the particles that
  * reach them. Writes their values and weights. */
 __kernel void mcor_march_nodes(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
@@ -66,6 +69,7 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* evalu
       above + slot, valid + slot);
   }
 }
+#endif
 
 /* From node masks of a brick and its upper neighbours: mask c becomes that of each cell's corner c
  * (bits x, y, z). */
@@ -117,6 +121,7 @@ ulong mcor_cell_crossed(
   return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(m);
 }
 
+#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads the node masks. Writes the used cells: examined, valid at all
  * nodes, with nodes on both sides. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
@@ -133,6 +138,7 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   mcor_cell_corners(m);
   used[slot] = cells[slot] & mcor_cell_crossed(m, neighbours, valid, slot);
 }
+#endif
 
 /* Marching Cubes case of a cell: bit c is set where corner c is above. */
 int mcor_march_case(const ulong* corners, int cell)
@@ -169,6 +175,7 @@ void mcor_march_around(const ulong* m, int axis, ulong* q)
  * fans, so that such an edge has two vertices, the second one for the cell below in the first other
  * axis. */
 
+#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads used cells and node masks. Writes the edge masks for edges that
  * have their lower node in the brick and a used cell around them; counts vertices and triangles. */
 __kernel void mcor_march_count(const int brick_count, __global const int* neighbours,
@@ -207,7 +214,9 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
   }
   triangle_count[slot] = triangles;
 }
+#endif
 
+#if MCOR_OF_FIELD
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
  * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against
  * the iso value. */
@@ -248,6 +257,7 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
     }
   }
 }
+#endif
 
 /* Nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
@@ -315,6 +325,7 @@ __global int* mcor_march_emit(__global const uchar* row, int count,
   return to;
 }
 
+#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads used cells, node masks and edge numbering. Writes triangles. */
 __kernel void mcor_march_triangles(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const ulong* edges,
@@ -349,3 +360,4 @@ __kernel void mcor_march_bits(const int count, __global const ulong* masks, __gl
     bits[i] = (int)popcount(masks[i]);
   }
 }
+#endif

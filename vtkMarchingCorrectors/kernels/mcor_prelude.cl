@@ -3,6 +3,7 @@
 
 /* Types, constants and bit tricks that all kernels share. Set by the host at build time:
  *
+ *   MCOR_PROGRAM  which program this is, see MCOR_OF_LATTICE below and mcor_program.c
  *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, whose
  *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
  *   MCOR_DOUBLE   real is double instead of float
@@ -13,6 +14,12 @@
  * All lengths are in cubes of the virtual grid. A position is a fixed-point number, 2^-fix_bits
  * cubes, counted from the lattice origin, so that a difference of two positions is exact: a node's
  * value does not depend on the brick it is evaluated in, nor on how far away the origin is. */
+
+/* Programs. That of the lattice is compiled once for all kernels, fields and precisions: it knows none
+ * of what is named after MCOR_LANES. */
+#define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
+#define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
+#define MCOR_OF_OPTIONS (MCOR_PROGRAM == 2)
 
 #define MCOR_CAT_(a, b) a##b
 #define MCOR_CAT(a, b) MCOR_CAT_(a, b)

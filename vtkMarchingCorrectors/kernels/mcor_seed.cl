@@ -17,6 +17,7 @@
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* not enough; evaluate */
 
+#if !MCOR_OF_LATTICE
 #if MCOR_TENSOR
 /* Interval of the one-dimensional w over distances [near, far]. */
 void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
@@ -61,6 +62,7 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv i
 #define MCOR_CHUNK MCOR_SIDE_PARTICLES
 #define MCOR_SIDE_MARGIN ((real)1e-5f)
 
+#if MCOR_OF_FIELD
 /* One work-item = one chunk. Writes its fluid particles' sides. */
 __kernel void mcor_seed_sides(const int particle_count, __global const real* weight,
   __global const real* value, const real iso, __global uchar* sides)
@@ -79,6 +81,7 @@ __kernel void mcor_seed_sides(const int particle_count, __global const real* wei
   }
   sides[get_global_id(0)] = (uchar)seen;
 }
+#endif
 
 /* Sides of all particles that may reach a query's box, and maybe some more. */
 int mcor_query_sides(const mcor_grid* grid, mcor_query* query, __global const uchar* sides)
@@ -337,6 +340,7 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wid
  * bricks. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
 
+#if MCOR_OF_FIELD
 /* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
  * the states of its bricks as far as the region tells; asks for those that are not certain, and
  * lists the regions that have such, in any order. */
@@ -463,7 +467,10 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
     }
   }
 }
+#endif
+#endif
 
+#if MCOR_OF_LATTICE
 /* A block and those left and right of it, or -1. */
 int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int x, int y, int z)
 {
@@ -558,3 +565,4 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     }
   }
 }
+#endif

@@ -6,6 +6,7 @@
  * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
  * there. */
 
+#if !MCOR_OF_LATTICE
 /* Bits 0..2: corner above the threshold. One at the threshold is outside, for every triangle around
  * it, so that what remains is a manifold there, too, and one which merely touches the threshold
  * leaves nothing [Fig. 3 b]. */
@@ -321,7 +322,9 @@ __kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAM
   const mcor_grid grid = MCOR_GRID;
   mcor_trim_solve_group(&grid, true, MCOR_TRIM_SOLVE_ARGS);
 }
+#endif
 
+#if MCOR_OF_LATTICE
 /* One work-item = one triangle corner. Writes 1 to its vertex. */
 __kernel void mcor_trim_used(
   const int triangle_count, __global const int* triangles, __global int* used)
@@ -332,3 +335,4 @@ __kernel void mcor_trim_used(
     used[triangles[i]] = 1;
   }
 }
+#endif

@@ -117,7 +117,7 @@ void WritePicture(
   if (display.IsMissing())
   {
     throw std::runtime_error(
-      file + " could not be written: rendering needs a display; try xvfb-run -a");
+      file + " could not be written: rendering needs a display; try xvfb-run -a -s -noreset");
   }
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1.0, 1.0, 1.0);

@@ -506,7 +506,7 @@ class Picture(CommandLineTest):
                 continue
             self.assertEqual(result.returncode, 1)
             self.assertEqual(result.stderr, "marching-correctors: p.png could not be written: "
-                             "rendering needs a display; try xvfb-run -a\n")
+                             "rendering needs a display; try xvfb-run -a -s -noreset\n")
 
 
 if __name__ == "__main__":

@@ -168,7 +168,7 @@ static mcor_status mcor_evaluate_attributes(mcor_context* context, int groups)
   MCOR_TRY(mcor_reserve(context, &mesh->means,
     (size_t)mesh->vertex_count * (size_t)context->attributes.count * context->cl.real_size));
   return MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
     MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
@@ -196,11 +196,11 @@ static mcor_status mcor_add_nearest(
   mcor_context* context, const cl_int* scanned, int groups, mcor_surface* surface)
 {
   const mcor_mesh* mesh = &context->mesh;
-  mcor_buffer* indices = &context->scratch[1];
+  mcor_buffer* indices = &context->attributes.nearest;
   const size_t bytes = (size_t)mesh->vertex_count * sizeof(cl_int);
   MCOR_TRY(mcor_reserve(context, indices, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, groups,
-    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->groups),
+    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
     MCOR_INT(context->measure.support_min == context->measure.support_max),
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
@@ -239,4 +239,10 @@ mcor_status mcor_add_attributes(
     MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));
   }
   return MCOR_OK;
+}
+
+void mcor_release_attributes(mcor_context* context)
+{
+  mcor_attributes* attributes = &context->attributes;
+  MCOR_RELEASE(context, &attributes->sorted, &attributes->nearest);
 }

@@ -21,15 +21,20 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
   return mcor_reserve(context, &data->weight, values);
 }
 
-void mcor_release_bricks(mcor_context* context, mcor_brick_data* data)
+void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
 {
-  mcor_buffer* const buffers[] = { &data->bricks, &data->known, &data->cells, &data->examined,
-    &data->value, &data->weight, &data->above, &data->valid };
-  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
+  MCOR_RELEASE(context, &data->bricks, &data->known, &data->cells, &data->examined, &data->value,
+    &data->weight, &data->above, &data->valid);
   data->count = 0;
+}
+
+void mcor_release_bricks(mcor_context* context)
+{
+  mcor_bricks* b = &context->bricks;
+  MCOR_RELEASE(context, &b->block_keys, &b->block_buckets, &b->block_states, &b->quiet, &b->states,
+    &b->bits, &b->base, &b->neighbours, &b->placed, &b->slot_of, &b->need, &b->fresh,
+    &b->bit_counts);
+  mcor_release_brick_data(context, &b->now);
 }
 
 /* Fills the new set, and moves what is known of the last one there. */
@@ -87,7 +92,7 @@ mcor_status mcor_place_bricks(mcor_context* context)
   mcor_brick_data last = bricks->now;
   bricks->now = (mcor_brick_data){ 0 };
   const mcor_status status = mcor_fill_bricks(context, &last, count, words);
-  mcor_release_bricks(context, &last);
+  mcor_release_brick_data(context, &last);
   return status;
 }
 

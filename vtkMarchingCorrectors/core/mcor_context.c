@@ -51,6 +51,14 @@ mcor_status mcor_create_context(const char* device, mcor_context** context)
   return status;
 }
 
+void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count)
+{
+  for (size_t i = 0; i < count; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+}
+
 /* What is needed within a phase only, and is as large as the particles after the search grid. */
 void mcor_release_scratch(mcor_context* context)
 {
@@ -61,49 +69,21 @@ void mcor_release_scratch(mcor_context* context)
   mcor_release_sort(context);
 }
 
-void mcor_release_particles(mcor_context* context)
-{
-  mcor_grid* g = &context->grid;
-  mcor_buffer* const buffers[] = { &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py, &g->pz,
-    &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides };
-  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
-}
-
-/* What only another call could use any more. */
-void mcor_release_nodes(mcor_context* context)
-{
-  mcor_release(context, &context->bricks.now.value);
-  mcor_release(context, &context->bricks.now.weight);
-  context->nodes_valid = false;
-}
-
 void mcor_release_memory(mcor_context* context)
 {
   if (!context)
   {
     return;
   }
-  mcor_bricks* b = &context->bricks;
-  mcor_mesh* m = &context->mesh;
-  mcor_buffer* const buffers[] = { &context->grid.level_buffer, &b->block_keys, &b->block_buckets,
-    &b->block_states, &b->quiet, &b->states, &b->bits, &b->base, &b->neighbours, &b->placed,
-    &b->slot_of, &b->need, &b->fresh, &m->used, &m->edges, &m->vertex_base, &m->triangle_base,
-    &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight,
-    &m->means, &m->flag, &m->evaluations, &m->boundary, &m->triangles, &m->trimmed, &m->remaining,
-    &m->cuts, &m->cut_keys, &m->cut_distinct, &m->cut_index, &m->scanned, &m->decisions,
-    &m->sample_base, &m->sample_node, &m->sample_offset, &m->sample_side, &context->scan_sums,
-    &context->attributes.sorted, &context->groups };
-  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
   mcor_release_scratch(context);
-  mcor_release_particles(context);
-  mcor_release_bricks(context, &b->now);
+  mcor_release_grid(context);
+  mcor_release_bricks(context);
+  mcor_release_points(context);
+  mcor_release_mesh(context);
+  mcor_release_topology(context);
+  mcor_release_trim(context);
+  mcor_release_attributes(context);
+  mcor_release(context, &context->scan_sums);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);
@@ -119,8 +99,8 @@ void mcor_free_context(mcor_context* context)
   }
   mcor_release_memory(context);
   mcor_release(context, &context->case_table);
-  mcor_release(context, &context->topology_cases);
-  mcor_release(context, &context->topology_rows);
+  mcor_release(context, &context->topology.cases);
+  mcor_release(context, &context->topology.rows);
   mcor_close_device(context);
   free(context);
 }
@@ -187,7 +167,7 @@ mcor_status mcor_prepare(
   mcor_release_scratch(context);
   if (!context->nodes_valid)
   {
-    mcor_release_bricks(context, &context->bricks.now);
+    mcor_release_brick_data(context, &context->bricks.now);
   }
   context->grid_valid = context->value_valid = context->nodes_valid = true;
   return MCOR_OK;

@@ -52,7 +52,7 @@ mcor_status mcor_correct(mcor_context* context, double iso)
   MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, count, &groups));
   MCOR_TRY(
     MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-      MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node),
+      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
       MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
       MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
       MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),

@@ -34,7 +34,7 @@ static mcor_status mcor_extract_iso(
   mcor_release(context, &context->attributes.sorted);
   if (last && input->particles_version == 0 && !mcor_output_evaluates(context))
   {
-    mcor_release_particles(context);
+    mcor_release_grid(context);
   }
   return mcor_append_output(context, input, value, surface);
 }

@@ -227,3 +227,11 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(&grid->value), MCOR_BUFFER(&grid->order));
 }
+
+void mcor_release_grid(mcor_context* context)
+{
+  mcor_grid* g = &context->grid;
+  MCOR_RELEASE(context, &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py,
+    &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides);
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+}

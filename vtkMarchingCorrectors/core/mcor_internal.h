@@ -92,6 +92,7 @@ typedef struct mcor_bricks
   bool neighbours_valid;
   mcor_buffer placed, slot_of; /* of mcor_append_bricks, see mcor_brick.cl */
   mcor_buffer need, fresh;     /* fresh: see mcor_march_need */
+  mcor_buffer bit_counts;      /* of mcor_count_bits */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */
@@ -102,13 +103,33 @@ typedef struct mcor_mesh
   int vertex_count; /* the same and those of the trim boundary */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
-  mcor_buffer means;    /* real [vertex_count][attributes.count] */
-  mcor_buffer boundary; /* real [march_count], MCOR_BOUNDARY_EIGENVALUE only: what w is otherwise */
-  mcor_buffer triangles, trimmed, remaining, cuts, cut_keys, cut_distinct, cut_index;
-  mcor_buffer scanned;
-  /* Of MCOR_TOPOLOGY_FIELD. decisions: see MCOR_DECISION_MASKS. */
-  mcor_buffer decisions, sample_base, sample_node, sample_offset, sample_side;
+  mcor_buffer means; /* real [vertex_count][attributes.count] */
+  mcor_buffer triangles;
+  mcor_buffer scanned; /* of the output, see mcor_is_put */
 } mcor_mesh;
+
+/* Of MCOR_TOPOLOGY_FIELD. */
+typedef struct mcor_topology_data
+{
+  mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
+  mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
+  mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
+} mcor_topology_data;
+
+/* Points at which the field is evaluated, see mcor_make_groups. */
+typedef struct mcor_points
+{
+  mcor_buffer flags, groups;
+} mcor_points;
+
+/* [III-D.3] */
+typedef struct mcor_trim_data
+{
+  mcor_buffer eigenvalue;            /* real, at vertices; what the vertex threshold may apply to */
+  mcor_buffer remaining, cuts;       /* per batch of triangles */
+  mcor_buffer keys, distinct, index; /* of cut edges */
+  mcor_buffer triangles;
+} mcor_trim_data;
 
 /* One component of an attribute. */
 typedef struct mcor_component
@@ -123,7 +144,8 @@ typedef struct mcor_attributes
   mcor_component* varying; /* [varying_count] */
   int varying_count;
   int first, count;
-  mcor_buffer sorted; /* real [count][grid.count] */
+  mcor_buffer sorted;  /* real [count][grid.count] */
+  mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
 
 struct mcor_context
@@ -133,14 +155,15 @@ struct mcor_context
   mcor_grid grid;
   mcor_bricks bricks;
   mcor_mesh mesh;
+  mcor_topology_data topology;
+  mcor_points points;
+  mcor_trim_data trim;
   mcor_lattice lattice;
   mcor_measure measure;
   mcor_buffer case_table;
-  mcor_buffer topology_cases, topology_rows; /* empty until MCOR_TOPOLOGY_FIELD is first used */
-  mcor_buffer scratch[6];                    /* within one function */
+  mcor_buffer scratch[6]; /* within one function */
   mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
   mcor_attributes attributes;
-  mcor_buffer groups;    /* see mcor_make_groups */
   int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift;    /* A0 */
   double heaviest;       /* no particle has a greater V / (scaled h)^3 */
@@ -208,11 +231,13 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
 
-/* What is only needed until the search grid is made, is as large as the particles, or could only serve
- * another call. */
 void mcor_release_scratch(mcor_context* context);
-void mcor_release_particles(mcor_context* context);
-void mcor_release_nodes(mcor_context* context);
+
+/* Gives back buffers; those that are empty stay so. */
+#define MCOR_RELEASE(context, ...)                                                                 \
+  mcor_release_all(context, (mcor_buffer* const[]){ __VA_ARGS__ },                                 \
+    sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
+void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count);
 
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
@@ -239,7 +264,15 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row);
-void mcor_release_bricks(mcor_context* context, mcor_brick_data* data);
+void mcor_release_grid(mcor_context* context);
+void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);
+void mcor_release_bricks(mcor_context* context);
+void mcor_release_nodes(mcor_context* context);
+void mcor_release_points(mcor_context* context);
+void mcor_release_mesh(mcor_context* context);
+void mcor_release_topology(mcor_context* context);
+void mcor_release_trim(mcor_context* context);
+void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_keep_bricks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);

@@ -111,3 +111,11 @@ mcor_status mcor_march(mcor_context* context, double iso)
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }
+
+void mcor_release_mesh(mcor_context* context)
+{
+  mcor_mesh* m = &context->mesh;
+  MCOR_RELEASE(context, &m->used, &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends,
+    &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight, &m->flag,
+    &m->evaluations, &m->means, &m->triangles, &m->scanned);
+}

@@ -37,9 +37,16 @@ mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer
 /* Number of bits set in an array of masks. */
 mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int count, int* total)
 {
-  mcor_buffer* counts = &context->scratch[0];
+  mcor_buffer* counts = &context->bricks.bit_counts;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_bits", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(masks), MCOR_BUFFER(counts)));
   return mcor_scan(context, counts, count, total);
+}
+
+/* Of values, which only another call could use any more. */
+void mcor_release_nodes(mcor_context* context)
+{
+  MCOR_RELEASE(context, &context->bricks.now.value, &context->bricks.now.weight);
+  context->nodes_valid = false;
 }

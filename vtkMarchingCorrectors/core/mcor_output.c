@@ -355,7 +355,7 @@ static mcor_status mcor_add_boundary_eigenvalue(
   {
     return MCOR_OK;
   }
-  mcor_buffer* values = &context->scratch[1];
+  mcor_buffer* values = &context->trim.eigenvalue;
   MCOR_TRY(mcor_evaluate_boundary(context, &mesh->node, &mesh->offset, vertices, values));
   void* view;
   MCOR_TRY(mcor_map(context, values, (size_t)vertices * context->cl.real_size, false, &view));
@@ -405,12 +405,9 @@ bool mcor_output_evaluates(const mcor_context* context)
 static void mcor_release_construction(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
-  mcor_buffer* const buffers[] = { &m->edges, &m->ends, &m->evaluations, &m->remaining, &m->cuts,
-    &m->cut_keys, &m->cut_distinct, &m->cut_index, &context->bricks.need, &context->bricks.fresh };
-  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
+  mcor_release_trim(context);
+  MCOR_RELEASE(
+    context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need, &context->bricks.fresh);
 }
 
 /* Gives back the vertices and attributes, so that the caller finds room for what it makes of the
@@ -418,13 +415,9 @@ static void mcor_release_construction(mcor_context* context)
 static void mcor_release_vertices(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
-  mcor_buffer* const buffers[] = { &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &m->boundary,
-    &context->attributes.sorted };
-  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
+  mcor_release_attributes(context);
+  MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
+    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &context->trim.eigenvalue);
 }
 
 /* Appends the mesh of one iso value to the surface. */

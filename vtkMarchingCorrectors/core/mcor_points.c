@@ -9,13 +9,18 @@
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)
 {
-  mcor_buffer* flags = &context->scratch[0];
-  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
+  mcor_points* points = &context->points;
+  MCOR_TRY(mcor_reserve(context, &points->flags, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_LIGHT,
     (count + MCOR_GROUP_CHUNK - 1) / MCOR_GROUP_CHUNK, MCOR_INT(first), MCOR_INT(count),
-    MCOR_BUFFER(node), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_scan(context, flags, count, group_count));
-  MCOR_TRY(mcor_reserve(context, &context->groups, ((size_t)*group_count + 1) * sizeof(cl_int)));
+    MCOR_BUFFER(node), MCOR_BUFFER(&points->flags)));
+  MCOR_TRY(mcor_scan(context, &points->flags, count, group_count));
+  MCOR_TRY(mcor_reserve(context, &points->groups, ((size_t)*group_count + 1) * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_group_fill", MCOR_LIGHT, count + 1, MCOR_INT(first),
-    MCOR_INT(count), MCOR_BUFFER(flags), MCOR_BUFFER(&context->groups));
+    MCOR_INT(count), MCOR_BUFFER(&points->flags), MCOR_BUFFER(&points->groups));
+}
+
+void mcor_release_points(mcor_context* context)
+{
+  MCOR_RELEASE(context, &context->points.flags, &context->points.groups);
 }

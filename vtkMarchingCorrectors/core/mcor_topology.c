@@ -10,19 +10,19 @@
 
 static mcor_status mcor_upload_topology_table(mcor_context* context)
 {
-  if (context->topology_rows.mem)
+  mcor_topology_data* topology = &context->topology;
+  if (topology->rows.mem)
   {
     return MCOR_OK;
   }
   mcor_topology_table* table = malloc(sizeof *table);
   MCOR_RETURN_IF(!table, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   mcor_make_topology_table(table);
-  mcor_status status =
-    mcor_write(context, &context->topology_cases, table->cases, sizeof table->cases);
+  mcor_status status = mcor_write(context, &topology->cases, table->cases, sizeof table->cases);
   if (status == MCOR_OK)
   {
-    status = mcor_write(context, &context->topology_rows, table->rows,
-      (size_t)table->row_count * sizeof table->rows[0]);
+    status = mcor_write(
+      context, &topology->rows, table->rows, (size_t)table->row_count * sizeof table->rows[0]);
   }
   free(table);
   return status;
@@ -34,39 +34,41 @@ static mcor_status mcor_take_samples(
   mcor_context* context, const char* locate, double iso, int* sample_count)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
+  mcor_topology_data* topology = &context->topology;
   const int count = bricks->now.count;
   int groups;
-  MCOR_TRY(mcor_scan(context, &mesh->sample_base, count, sample_count));
+  MCOR_TRY(mcor_scan(context, &topology->sample_base, count, sample_count));
   const size_t n = (size_t)*sample_count;
-  MCOR_TRY(mcor_reserve(context, &mesh->sample_node, n * sizeof(cl_int4)));
-  MCOR_TRY(mcor_reserve(context, &mesh->sample_offset, n * 4 * context->cl.real_size));
-  MCOR_TRY(mcor_reserve(context, &mesh->sample_side, n));
+  MCOR_TRY(mcor_reserve(context, &topology->sample_node, n * sizeof(cl_int4)));
+  MCOR_TRY(mcor_reserve(context, &topology->sample_offset, n * 4 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &topology->sample_side, n));
   MCOR_TRY(MCOR_LAUNCH(context, locate, MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
-    MCOR_BUFFER(&mesh->decisions), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->sample_base),
-    MCOR_REAL(iso), MCOR_BUFFER(&mesh->sample_node), MCOR_BUFFER(&mesh->sample_offset)));
-  MCOR_TRY(mcor_make_groups(context, &mesh->sample_node, 0, *sample_count, &groups));
+    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&topology->sample_base), MCOR_REAL(iso), MCOR_BUFFER(&topology->sample_node),
+    MCOR_BUFFER(&topology->sample_offset)));
+  MCOR_TRY(mcor_make_groups(context, &topology->sample_node, 0, *sample_count, &groups));
   return MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->sample_node),
-    MCOR_BUFFER(&mesh->sample_offset), MCOR_REAL(iso), MCOR_BUFFER(&mesh->sample_side));
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&topology->sample_node),
+    MCOR_BUFFER(&topology->sample_offset), MCOR_REAL(iso), MCOR_BUFFER(&topology->sample_side));
 }
 
 static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
+  mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
-  mcor_buffer* counts = &context->scratch[1];
+  mcor_buffer* counts = &topology->counts;
   int faces, joined;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->decisions),
-    MCOR_BUFFER(&mesh->sample_base)));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&mesh->sample_base), MCOR_BUFFER(&mesh->sample_side), MCOR_BUFFER(&mesh->decisions),
-    MCOR_BUFFER(counts)));
+    MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
+    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &joined));
   context->statistics->ambiguous_faces += faces;
   context->statistics->joined_faces += joined;
@@ -76,29 +78,30 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
 static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
+  mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->topology_cases),
-    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->decisions),
-    MCOR_BUFFER(&mesh->sample_base)));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
+    MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_take_samples(context, "mcor_topology_middles", iso, &samples));
   context->statistics->ambiguous_cells += samples / 2;
   return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&mesh->sample_base), MCOR_BUFFER(&mesh->sample_side),
-    MCOR_BUFFER(&mesh->decisions));
+    MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
+    MCOR_BUFFER(&topology->decisions));
 }
 
 /* Decides on all ambiguous faces, then on the cells whose loops may be a tunnel. iso: relative to
  * A0. */
 mcor_status mcor_resolve_topology(mcor_context* context, double iso)
 {
-  mcor_mesh* mesh = &context->mesh;
+  mcor_topology_data* topology = &context->topology;
   const size_t n = (size_t)context->bricks.now.count;
   MCOR_TRY(mcor_upload_topology_table(context));
-  MCOR_TRY(mcor_reserve(context, &mesh->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &mesh->sample_base, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &topology->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_resolve_faces(context, iso));
   return mcor_resolve_cells(context, iso);
 }
@@ -107,15 +110,16 @@ mcor_status mcor_resolve_topology(mcor_context* context, double iso)
 mcor_status mcor_count_resolved(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
+  mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
-  mcor_buffer* counts = &context->scratch[1];
+  mcor_buffer* counts = &topology->counts;
   int tunnels;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->decisions),
-    MCOR_BUFFER(&context->topology_cases), MCOR_BUFFER(&context->topology_rows),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(counts)));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &tunnels));
   context->statistics->tunnels += tunnels;
   return MCOR_OK;
@@ -124,11 +128,20 @@ mcor_status mcor_count_resolved(mcor_context* context)
 mcor_status mcor_emit_resolved(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
+  mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->decisions),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->topology_cases),
-    MCOR_BUFFER(&context->topology_rows), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&mesh->triangles));
+}
+
+/* The tables stay. */
+void mcor_release_topology(mcor_context* context)
+{
+  mcor_topology_data* t = &context->topology;
+  MCOR_RELEASE(context, &t->decisions, &t->counts, &t->sample_base, &t->sample_node,
+    &t->sample_offset, &t->sample_side);
 }

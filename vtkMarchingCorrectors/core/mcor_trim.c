@@ -15,7 +15,7 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* nod
   MCOR_TRY(mcor_reserve(context, eigenvalue, (size_t)count * context->cl.real_size));
   MCOR_TRY(mcor_make_groups(context, node, 0, count, &groups));
   return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->groups), MCOR_BUFFER(node), MCOR_BUFFER(offset),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(node), MCOR_BUFFER(offset),
     MCOR_BUFFER(eigenvalue));
 }
 
@@ -23,22 +23,23 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* nod
 static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
   return context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
-    ? &context->mesh.boundary
+    ? &context->trim.eigenvalue
     : &context->mesh.vertex_weight;
 }
 
-/* Counts what remains; ends with scanned counts in mesh->remaining and mesh->cuts. */
+/* Counts what remains; ends with scanned counts in trim->remaining and trim->cuts. */
 static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* remaining, int* cuts)
 {
   mcor_mesh* mesh = &context->mesh;
-  MCOR_TRY(mcor_reserve(context, &mesh->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
+  mcor_trim_data* trim = &context->trim;
+  MCOR_TRY(mcor_reserve(context, &trim->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &trim->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
-    MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts)));
-  MCOR_TRY(mcor_scan(context, &mesh->remaining, batches, remaining));
-  return mcor_scan(context, &mesh->cuts, batches, cuts);
+    MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
+  MCOR_TRY(mcor_scan(context, &trim->remaining, batches, remaining));
+  return mcor_scan(context, &trim->cuts, batches, cuts);
 }
 
 static mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
@@ -60,6 +61,7 @@ static mcor_status mcor_extend_vertices(mcor_context* context, int old, int coun
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
+  mcor_trim_data* trim = &context->trim;
   const mcor_options* options = context->options;
   const int vertices = mesh->march_count;
   int groups;
@@ -72,7 +74,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
-    MCOR_BUFFER(&mesh->cut_distinct), MCOR_INT(vertices), MCOR_REAL(options->vertex_threshold),
+    MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(options->vertex_threshold),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(mcor_trim_quantity(context))));
   MCOR_TRY(mcor_make_groups(context, &mesh->node, vertices, cut_count, &groups));
@@ -80,7 +82,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     ? "mcor_trim_solve_eigenvalue"
     : "mcor_trim_solve_weight";
   return MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context), MCOR_INT(groups),
-    MCOR_BUFFER(&context->groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
+    MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
     MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
     MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
@@ -92,6 +94,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
 mcor_status mcor_trim(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
+  mcor_trim_data* trim = &context->trim;
   int remaining, cuts, cut_count;
   if (context->options->field == MCOR_WEIGHT_SUM || mesh->triangle_count == 0)
   {
@@ -100,27 +103,34 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   if (context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE)
   {
     MCOR_TRY(mcor_evaluate_boundary(
-      context, &mesh->node, &mesh->offset, mesh->march_count, &mesh->boundary));
+      context, &mesh->node, &mesh->offset, mesh->march_count, &context->trim.eigenvalue));
   }
   const int batches = mcor_batches(context, mesh->triangle_count);
   MCOR_TRY(mcor_count_trimmed(context, batches, &remaining, &cuts));
-  MCOR_TRY(mcor_reserve(context, &mesh->cut_keys, (size_t)cuts * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &trim->keys, (size_t)cuts * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
-    MCOR_BUFFER(&mesh->cuts), MCOR_BUFFER(&mesh->cut_keys)));
-  MCOR_TRY(mcor_reserve(context, &mesh->cut_index, sizeof(cl_int)));
-  MCOR_TRY(mcor_unique(context, &mesh->cut_keys, cuts, (uint64_t)mesh->march_count << 32,
-    &mesh->cut_distinct, &mesh->cut_index, &cut_count));
-  MCOR_TRY(mcor_reserve(context, &mesh->trimmed, (size_t)remaining * 3 * sizeof(cl_int)));
+    MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
+  MCOR_TRY(mcor_reserve(context, &trim->index, sizeof(cl_int)));
+  MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
+    &trim->distinct, &trim->index, &cut_count));
+  MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_LIGHT, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
-    MCOR_INT(mesh->march_count), MCOR_BUFFER(&mesh->remaining), MCOR_BUFFER(&mesh->cuts),
-    MCOR_BUFFER(&mesh->cut_index), MCOR_BUFFER(&mesh->trimmed)));
+    MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),
+    MCOR_BUFFER(&trim->index), MCOR_BUFFER(&trim->triangles)));
   mcor_release(context, &mesh->triangles);
-  mesh->triangles = mesh->trimmed;
-  mesh->trimmed = (mcor_buffer){ 0 };
+  mesh->triangles = trim->triangles;
+  trim->triangles = (mcor_buffer){ 0 };
   mesh->triangle_count = remaining;
   return cut_count > 0 ? mcor_place_cuts(context, cut_count, iso) : MCOR_OK;
+}
+
+void mcor_release_trim(mcor_context* context)
+{
+  mcor_trim_data* t = &context->trim;
+  MCOR_RELEASE(context, &t->eigenvalue, &t->remaining, &t->cuts, &t->keys, &t->distinct, &t->index,
+    &t->triangles);
 }

@@ -380,6 +380,26 @@ static void test_statistics(void** state)
   core_free_set(&set);
 }
 
+/* As many lanes as the device's compiler has registers for, whatever width the device claims. */
+static void test_lanes(void** state)
+{
+  mcor_context* context = *state;
+  if (!context->cl.is_cpu || getenv("MCOR_LANES"))
+  {
+    skip();
+  }
+  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
+  const char* source = "#ifndef __AVX512F__\n#error none\n#endif\n__kernel void k(void) {}\n";
+  cl_int error;
+  cl_program program = clCreateProgramWithSource(context->cl.context, 1, &source, NULL, &error);
+  assert_int_equal(error, CL_SUCCESS);
+  const bool wide = clBuildProgram(program, 1, &context->cl.device, "", NULL, NULL) == CL_SUCCESS;
+  clReleaseProgram(program);
+  assert_int_equal(context->cl.lanes, wide ? 16 : 8);
+  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64);
+  assert_int_equal(context->cl.lanes, 8);
+}
+
 static int on_building(void* user, double fraction, const char* phase)
 {
   int* calls = user;
@@ -432,7 +452,7 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_reach),
     cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
     cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_memory_limit),
-    cmocka_unit_test(test_devices), cmocka_unit_test(test_names),
+    cmocka_unit_test(test_devices), cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
     cmocka_unit_test(test_build_seconds), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

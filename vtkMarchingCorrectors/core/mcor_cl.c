@@ -326,31 +326,24 @@ void mcor_close_device(mcor_context* context)
   }
 }
 
-/* Work-items' vector width: what the device's registers hold of the type. */
-static int mcor_lanes(const mcor_cl* cl, mcor_type precision)
+/* Tells the caller, once in a phase, that the next is building, which may take seconds. */
+static mcor_status mcor_report_building(mcor_context* context)
 {
-  const char* forced = getenv("MCOR_LANES"); /* to test the GPU's form of the kernels on a CPU */
-  if (forced && *forced)
-  {
-    const int lanes = atoi(forced);
-    return lanes == 8 || lanes == 16 ? lanes : 1;
-  }
-  if (!cl->is_cpu)
-  {
-    return 1;
-  }
-  cl_uint width = 1;
-  clGetDeviceInfo(cl->device,
-    precision == MCOR_FLOAT64 ? CL_DEVICE_NATIVE_VECTOR_WIDTH_DOUBLE
-                              : CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT,
-    sizeof width, &width, NULL);
-  return width >= 16 ? 16 : 8;
+  const mcor_options* options = context->options;
+  const char* phase = "building the OpenCL program (first time only)";
+  const bool told = context->building_told;
+  context->building_told = true;
+  MCOR_RETURN_IF(!told && options && options->progress &&
+      options->progress(options->progress_user, context->fraction, phase) != 0,
+    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
+  return MCOR_OK;
 }
 
-static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
+/* Building is reported apart from the phase in which it happens. */
+static void mcor_add_build_seconds(mcor_context* context, double seconds)
 {
-  return a->sph_kernel == b->sph_kernel && a->field == b->field && a->precision == b->precision &&
-    a->solids == b->solids;
+  context->cl.build_seconds += seconds;
+  context->phase_begin += seconds;
 }
 
 static mcor_status mcor_fail_build(
@@ -371,25 +364,6 @@ static mcor_status mcor_fail_build(
   return status;
 }
 
-mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
-{
-  mcor_cl* cl = &context->cl;
-  const int lanes = mcor_lanes(cl, build->precision);
-  if (cl->lanes == lanes && mcor_same_build(&cl->build, build))
-  {
-    return MCOR_OK;
-  }
-  MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
-    "OpenCL device %s has no double precision; choose another device or single precision.",
-    cl->device_name);
-  mcor_drop_programs(cl, (cl->lanes == 1) != (lanes == 1));
-  cl->lanes = lanes;
-  cl->build = *build;
-  cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
-  cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
-  return MCOR_OK;
-}
-
 static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
 {
   mcor_cl* cl = &context->cl;
@@ -408,6 +382,84 @@ static mcor_status mcor_build_program(mcor_context* context, mcor_program number
     return status;
   }
   cl->programs[number] = program;
+  return MCOR_OK;
+}
+
+static mcor_status mcor_need_program(mcor_context* context, mcor_program number)
+{
+  if (context->cl.programs[number])
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_report_building(context));
+  const double begin = mcor_seconds();
+  const mcor_status status = mcor_build_program(context, number);
+  mcor_add_build_seconds(context, mcor_seconds() - begin);
+  return status;
+}
+
+/* What the device's compiler has registers for; of the width that it claims where that does not
+ * say. */
+static mcor_status mcor_ask_lanes(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  cl_uint width = 1;
+  cl_int error;
+  size_t lanes[3] = { 1, 1, 1 };
+  MCOR_TRY(mcor_need_program(context, MCOR_PROGRAM_LATTICE));
+  cl_kernel kernel =
+    clCreateKernel(cl->programs[MCOR_PROGRAM_LATTICE], "mcor_register_lanes", &error);
+  MCOR_CL_TRY(context, error, "mcor_register_lanes");
+  clGetKernelWorkGroupInfo(
+    kernel, cl->device, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof lanes, lanes, NULL);
+  clReleaseKernel(kernel);
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  cl->register_lanes = lanes[0] > 1 ? (int)lanes[0] : width >= 16 ? 16 : 8;
+  return MCOR_OK;
+}
+
+/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs. */
+static mcor_status mcor_choose_lanes(mcor_context* context, mcor_type precision, int* lanes)
+{
+  mcor_cl* cl = &context->cl;
+  const char* forced = getenv("MCOR_LANES"); /* for tests */
+  if (forced && *forced)
+  {
+    const int number = atoi(forced);
+    *lanes = number == 8 || number == 16 ? number : 1;
+    return MCOR_OK;
+  }
+  if (cl->is_cpu && cl->register_lanes == 0)
+  {
+    MCOR_TRY(mcor_ask_lanes(context));
+  }
+  *lanes = !cl->is_cpu ? 1 : precision == MCOR_FLOAT64 ? 8 : cl->register_lanes;
+  return MCOR_OK;
+}
+
+static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
+{
+  return a->sph_kernel == b->sph_kernel && a->field == b->field && a->precision == b->precision &&
+    a->solids == b->solids;
+}
+
+mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  int lanes;
+  MCOR_TRY(mcor_choose_lanes(context, build->precision, &lanes));
+  if (cl->lanes == lanes && mcor_same_build(&cl->build, build))
+  {
+    return MCOR_OK;
+  }
+  MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
+    "OpenCL device %s has no double precision; choose another device or single precision.",
+    cl->device_name);
+  mcor_drop_programs(cl, (cl->lanes == 1) != (lanes == 1));
+  cl->lanes = lanes;
+  cl->build = *build;
+  cl->real_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
+  cl->fix_size = build->precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
   return MCOR_OK;
 }
 
@@ -574,26 +626,6 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
   return status;
 }
 
-/* Tells the caller, once in a phase, that the next is building, which may take seconds. */
-static mcor_status mcor_report_building(mcor_context* context)
-{
-  const mcor_options* options = context->options;
-  const char* phase = "building the OpenCL program (first time only)";
-  const bool told = context->building_told;
-  context->building_told = true;
-  MCOR_RETURN_IF(!told && options && options->progress &&
-      options->progress(options->progress_user, context->fraction, phase) != 0,
-    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
-  return MCOR_OK;
-}
-
-/* Building is reported apart from the phase in which it happens. */
-static void mcor_add_build_seconds(mcor_context* context, double seconds)
-{
-  context->cl.build_seconds += seconds;
-  context->phase_begin += seconds;
-}
-
 /* Makes a kernel of the first program that has it. */
 static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mcor_kernel* kernel)
 {
@@ -604,11 +636,7 @@ static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mco
   for (int p = 0; p < MCOR_PROGRAM_COUNT && error == CL_INVALID_KERNEL_NAME; ++p)
   {
     kernel->program = (mcor_program)p;
-    if (!cl->programs[p])
-    {
-      MCOR_TRY(mcor_report_building(context));
-      MCOR_TRY(mcor_build_program(context, kernel->program));
-    }
+    MCOR_TRY(mcor_need_program(context, kernel->program));
     kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
   }
   MCOR_CL_TRY(context, error, name);
@@ -629,9 +657,7 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   MCOR_RETURN_IF(cl->kernel_count == MCOR_KERNEL_LIMIT, context, MCOR_DEVICE_ERROR,
     "There is no room for kernel %s.", name);
   *kernel = &cl->kernels[cl->kernel_count];
-  const double begin = mcor_seconds();
   const mcor_status status = mcor_make_kernel(context, name, *kernel);
-  mcor_add_build_seconds(context, mcor_seconds() - begin);
   cl->kernel_count += status == MCOR_OK;
   return status;
 }

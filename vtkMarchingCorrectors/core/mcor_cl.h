@@ -59,8 +59,9 @@ typedef struct mcor_cl
   int kernel_count;
   bool is_cpu; /* the kernels' form for CPUs is used */
   bool has_fp64;
-  int lanes;  /* of the programs */
-  int chunks; /* runs into which scans and sorts cut their arrays */
+  int lanes;          /* of the programs */
+  int chunks;         /* runs into which scans and sorts cut their arrays */
+  int register_lanes; /* that the device's compiler has registers for; 0: not asked yet */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
   uint64_t memory_limit; /* what of device_memory may be used; of the call under way */

@@ -30,7 +30,7 @@ int mcor_program_sources(
     int programs;
   } all[] = { { mcor_source_mcor_shared_h, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_prelude_cl, LATTICE | FIELD | OPTIONS },
-    { mcor_source_mcor_intrinsic_cl, FIELD | OPTIONS },
+    { mcor_source_mcor_intrinsic_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_sph_kernel_h, FIELD | OPTIONS },
     { mcor_source_mcor_query_cl, FIELD | OPTIONS }, { mcor_source_mcor_tile_cl, FIELD | OPTIONS },
     { mcor_source_mcor_field_cl, FIELD | OPTIONS }, { mcor_source_mcor_scan_cl, LATTICE },

@@ -24,6 +24,7 @@ int mcor_program_sources(
 {
   /* The free surface is not trimmed. */
   const int trim = cl->build.field == MCOR_WEIGHT_SUM ? OPTIONS : FIELD;
+  const bool vectors = cl->lanes > 1;
   const struct
   {
     const char* text;
@@ -32,15 +33,19 @@ int mcor_program_sources(
     { mcor_source_mcor_prelude_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_intrinsic_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_sph_kernel_h, FIELD | OPTIONS },
-    { mcor_source_mcor_query_cl, FIELD | OPTIONS }, { mcor_source_mcor_tile_cl, FIELD | OPTIONS },
-    { mcor_source_mcor_field_cl, FIELD | OPTIONS }, { mcor_source_mcor_scan_cl, LATTICE },
-    { mcor_source_mcor_grid_cl, FIELD }, { mcor_source_mcor_brick_cl, LATTICE | FIELD | OPTIONS },
+    { mcor_source_mcor_field_cl, FIELD | OPTIONS }, { mcor_source_mcor_query_cl, FIELD | OPTIONS },
+    { mcor_source_mcor_points_cl, FIELD | OPTIONS },
+    { vectors ? mcor_source_mcor_gather_lanes_cl : mcor_source_mcor_gather_point_cl,
+      FIELD | OPTIONS },
+    { mcor_source_mcor_scan_cl, LATTICE }, { mcor_source_mcor_grid_cl, FIELD },
+    { mcor_source_mcor_brick_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_node_cl, FIELD | OPTIONS },
+    { vectors ? mcor_source_mcor_node_lanes_cl : mcor_source_mcor_node_point_cl, FIELD | OPTIONS },
     { mcor_source_mcor_seed_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_block_cl, LATTICE | FIELD },
     { mcor_source_mcor_march_cl, LATTICE | FIELD | OPTIONS }, { mcor_source_mcor_pair_cl, OPTIONS },
-    { mcor_source_mcor_points_cl, FIELD | OPTIONS },
     { mcor_source_mcor_attribute_cl, FIELD | OPTIONS },
+    { mcor_source_mcor_evaluate_cl, FIELD | OPTIONS },
     { mcor_source_mcor_correct_cl, FIELD | OPTIONS }, { mcor_source_mcor_topology_cl, OPTIONS },
     { mcor_source_mcor_boundary_cl, trim | OPTIONS },
     { mcor_source_mcor_trim_cl, LATTICE | trim } };

@@ -69,7 +69,7 @@ typedef struct mcor_cell_row
 } mcor_cell_row;
 
 /* Points that one work-item cuts into groups. */
-#define MCOR_GROUP_CHUNK 512
+#define MCOR_GROUP_CHUNK_OF(lanes) ((lanes) == 1 ? 1 : 512)
 
 /* Components of attributes that are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 8

@@ -120,10 +120,10 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      mcor_points_from(at, points, tile->x[i], tile->y[i], tile->z[i], u);
+      mcor_points_from(at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
       const mcor_length length = mcor_length_of(u);
-      mcor_weight_gradient(u, &length, tile->inv_h[i], &slope, along);
-      const realv v = MCOR_TILE_TRIM(tile)[i] * slope, half_v = (real)0.5 * v;
+      mcor_weight_gradient(u, &length, MCOR_EACH(tile, inv_h, i), &slope, along);
+      const realv v = MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i) * slope, half_v = (real)0.5 * v;
       m->xx -= v * (u[0] * along[0]);
       m->yy -= v * (u[1] * along[1]);
       m->zz -= v * (u[2] * along[2]);
@@ -148,13 +148,13 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      mcor_points_from(at, points, tile->x[i], tile->y[i], tile->z[i], u);
-      mcor_weight_second(u, tile->inv_h[i], e, g, d);
+      mcor_points_from(at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
+      mcor_weight_second(u, MCOR_EACH(tile, inv_h, i), e, g, d);
       const realv along_u = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
       const realv along_g = e[0] * g[0] + e[1] * g[1] + e[2] * g[2];
       for (int a = 0; a < 3; ++a)
       {
-        sum[a] -= MCOR_TILE_TRIM(tile)[i] * (e[a] * along_g + along_u * d[a]);
+        sum[a] -= MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i) * (e[a] * along_g + along_u * d[a]);
       }
     }
   }

@@ -276,7 +276,7 @@ __kernel void mcor_grid_density(
     {
       for (int i = 0; i < tile.count; ++i)
       {
-        const int k = tile.list[i];
+        const int k = MCOR_INDEX(&tile, i);
         const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
         const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
         const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;

@@ -55,56 +55,57 @@ void mcor_pair_mark_line(
  * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* Places in the tile of particles on the other side of the iso value and closer to particle j than
- * its smoothing length. A pair in which each is closer than the other's is left to the particle
- * above. */
-int mcor_pair_list(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int j,
-  real iso, real h_scale, int* list)
+/* Which of particles i, i + 1, ... of the tile are on the other side of the iso value and closer to
+ * particle j than its smoothing length. A pair in which each is closer than the other's is left to
+ * the particle above. */
+fixv mcor_pair_chosen(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int i,
+  int j, real iso, real h_scale)
 {
   const real x = (real)(grid->px[j] - query->origin[0]) * grid->unit;
   const real y = (real)(grid->py[j] - query->origin[1]) * grid->unit;
   const real z = (real)(grid->pz[j] - query->origin[2]) * grid->unit;
   const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
-  const bool is_above = grid->value[j] >= iso;
-  const fixv above = is_above ? (fixv)MCOR_TRUE : (fixv)0;
-  int count = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  const fixv above = grid->value[j] >= iso ? (fixv)MCOR_TRUE : (fixv)0;
+  const realv dx = MCOR_TILE(tile, x, i) - x, dy = MCOR_TILE(tile, y, i) - y,
+              dz = MCOR_TILE(tile, z, i) - z, other = MCOR_TILE(tile, inv_h, i) * scale;
+  const realv r2 = dx * dx + dy * dy + dz * dz;
+  return r2 * inv_h * inv_h < (real)1 && (MCOR_TILE(tile, value, i) >= iso) != above &&
+    MCOR_TILE(tile, weight, i) != 0 && (above || r2 * other * other >= (real)1);
+}
+
+/* Marks the cells between particles j and k. */
+void mcor_pair_mark_pair(
+  const mcor_grid* grid, MCOR_BLOCK_PARAMS, int j, int k, __global uint* cells)
+{
+  const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
+  const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
+  real p[3], q[3];
+  int cell[3], end[3];
+  for (int c = 0; c < 3; ++c)
   {
-    const realv dx = MCOR_LOAD(i, tile->x) - x, dy = MCOR_LOAD(i, tile->y) - y,
-                dz = MCOR_LOAD(i, tile->z) - z, other = MCOR_LOAD(i, tile->inv_h) * scale;
-    const realv r2 = dx * dx + dy * dy + dz * dz;
-    const fixv chosen = r2 * inv_h * inv_h < (real)1 &&
-      (MCOR_LOAD(i, tile->value) >= iso) != above && MCOR_LOAD(i, tile->weight) != 0 &&
-      (above || r2 * other * other >= (real)1);
-    const mcor_mask mask = MCOR_MASK(chosen, min(MCOR_LANES, tile->count - i));
-    MCOR_PACK_INDEX(mask, i, list + count);
-    count += MCOR_MASK_COUNT(mask);
+    /* Relative to the first cell, so that single precision suffices. */
+    cell[c] = (int)(own[c] >> grid->fix_bits);
+    end[c] = (int)(other[c] >> grid->fix_bits);
+    p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
+    q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
   }
-  return count;
+  mcor_pair_mark_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
 }
 
 /* Marks the cells between particle j and the particles of the tile that pair with it. */
 void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mcor_query* query,
   const mcor_tile* tile, int j, real iso, real h_scale, __global uint* cells)
 {
-  int list[MCOR_TILE + 16];
-  const int count = mcor_pair_list(grid, query, tile, j, iso, h_scale, list);
-  const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const int k = tile->list[list[i]];
-    const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
-    real p[3], q[3];
-    int cell[3], end[3];
-    for (int c = 0; c < 3; ++c)
+    const fixv chosen = mcor_pair_chosen(grid, query, tile, i, j, iso, h_scale);
+    for (int lane = 0; MCOR_ANY(chosen) && lane < min(MCOR_LANES, tile->count - i); ++lane)
     {
-      /* Relative to the first cell, so that single precision suffices. */
-      cell[c] = (int)(own[c] >> grid->fix_bits);
-      end[c] = (int)(other[c] >> grid->fix_bits);
-      p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
-      q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
+      if (MCOR_GET_FIX(chosen, lane))
+      {
+        mcor_pair_mark_pair(grid, MCOR_BLOCK_ARGS, j, MCOR_INDEX(tile, i + lane), cells);
+      }
     }
-    mcor_pair_mark_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
   }
 }
 
@@ -124,7 +125,7 @@ real mcor_pair_finest(const mcor_tile* tile)
   realv most = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    most = fmax(most, MCOR_LOAD(i, tile->inv_h));
+    most = fmax(most, MCOR_TILE(tile, inv_h, i));
   }
   real finest = 0;
   for (int lane = 0; lane < MCOR_LANES; ++lane)

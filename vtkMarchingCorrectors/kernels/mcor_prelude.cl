@@ -87,11 +87,8 @@ real mcor_lane_sum(realv v)
   return sum;
 }
 
-/* Particles that one gather collects at most before they are evaluated. A GPU has little private
- * memory per work-item. */
-#define MCOR_TILE (MCOR_LANES == 1 ? 32 : 1024)
-
 #define MCOR_BATCH MCOR_BATCH_OF(MCOR_LANES)
+#define MCOR_GROUP_CHUNK MCOR_GROUP_CHUNK_OF(MCOR_LANES)
 
 /* Masks of a brick's nodes or cells, see mcor_shared.h. */
 #define MCOR_LOW_X 0x1111111111111111UL

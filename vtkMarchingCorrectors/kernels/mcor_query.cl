@@ -274,3 +274,47 @@ int mcor_query_particles(
   mcor_query_place(grid, query, query->low);
   return count;
 }
+
+/* The particles of a query are gone through by tiles. What those are, and what one work-item does
+ * with them, is up to mcor_gather_lanes.cl (copies of particles, packed, for MCOR_LANES points at
+ * once) and mcor_gather_point.cl (the particles themselves, for one point); the host embeds one.
+ * Both define
+ *
+ *   mcor_tile tile;                  particles that may reach the query's box, maybe more: one that
+ *   mcor_tile_init(&tile);           does not adds exactly 0
+ *   for (bool first = true; mcor_tile_next(grid, &query, &tile, first); first = false)
+ *     for (int i = 0; i < tile.count; ++i)
+ *       ... MCOR_EACH(&tile, x, i), MCOR_INDEX(&tile, i) ...
+ *
+ * MCOR_EACH is an element, for all lanes; MCOR_TILE that of particles i, i + 1, ..., one for each
+ * lane; MCOR_INDEX the place in the sorted arrays. The elements are x, y, z (from the query's
+ * origin, in cubes: exact in single precision while below 16 cubes), inv_h, weight, trim_weight (to
+ * be read as MCOR_TRIM_WEIGHT) and value.
+ *
+ * The loop may be repeated. What is `complete` fits one tile and is then not gathered again, and
+ * mcor_tile_narrow(&wide, &query, &tile) fills a tile, but for MCOR_INDEX, from a complete one of a
+ * query with the same origin and a box that holds this one's.
+ *
+ * For points (mcor_points.cl), whose lanes may see different particles at a time:
+ *
+ *   mcor_reach reach;
+ *   mcor_tile_init(&reach.tile);
+ *   for (bool first = true; mcor_reach_next(grid, &query, &points, iso, &reach, first); ...)
+ *     for (int i = 0; i < MCOR_REACH_COUNT(&reach); ++i)
+ *       ... MCOR_REACH(&reach, x, i), MCOR_REACH_TERM(&reach, i, iso) ...
+ *       MCOR_REACH_KEEP(&reach, i, w);    the kernel's value, for mcor_attribute_sums
+ *
+ * mcor_attribute_sums(grid, &query, &points, iso, &reach, evaluated, ...) adds weights, and weights
+ * times attributes, of the particles; evaluated: the weights that were kept last hold. */
+#if MCOR_SOLIDS
+#define MCOR_TRIM_WEIGHT trim_weight
+#else
+#define MCOR_TRIM_WEIGHT weight
+#endif
+
+/* What the field is made of at a particle: its weight times this. */
+#if MCOR_FIELD == 0
+#define MCOR_FIELD_TERM(value, iso) ((value) - (iso)) /* both relative to A0 */
+#else
+#define MCOR_FIELD_TERM(value, iso) (value)
+#endif

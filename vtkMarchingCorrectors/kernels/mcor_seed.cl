@@ -129,11 +129,11 @@ mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
 /* c_j of MCOR_LANES particles of the tile. */
 realv mcor_seed_coefficients(const mcor_tile* tile, int i, real iso)
 {
-  const realv weight = MCOR_LOAD(i, tile->weight);
+  const realv weight = MCOR_TILE(tile, weight, i);
 #if MCOR_FIELD == 0
-  return weight * (MCOR_LOAD(i, tile->value) - iso);
+  return weight * (MCOR_TILE(tile, value, i) - iso);
 #elif MCOR_FIELD == 1
-  return weight * MCOR_LOAD(i, tile->value);
+  return weight * MCOR_TILE(tile, value, i);
 #else
   return weight;
 #endif
@@ -146,10 +146,10 @@ real mcor_seed_middle(const mcor_query* query, const mcor_tile* tile, real iso)
   realv sum = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv scale = MCOR_LOAD(i, tile->inv_h) * (1 / MCOR_SUPPORT);
-    const realv x = (MCOR_LOAD(i, tile->x) - query->center[0]) * scale;
-    const realv y = (MCOR_LOAD(i, tile->y) - query->center[1]) * scale;
-    const realv z = (MCOR_LOAD(i, tile->z) - query->center[2]) * scale;
+    const realv scale = MCOR_TILE(tile, inv_h, i) * (1 / MCOR_SUPPORT);
+    const realv x = (MCOR_TILE(tile, x, i) - query->center[0]) * scale;
+    const realv y = (MCOR_TILE(tile, y, i) - query->center[1]) * scale;
+    const realv z = (MCOR_TILE(tile, z, i) - query->center[2]) * scale;
     const realv near = fmax((real)1 - x * x - y * y - z * z, (realv)0);
     sum += mcor_seed_coefficients(tile, i, iso) * near * near * near;
   }
@@ -163,8 +163,8 @@ int mcor_tile_sides(const mcor_tile* tile, real iso)
   fixv above = 0, below = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv value = MCOR_LOAD(i, tile->value), margin = MCOR_SIDE_MARGIN * fabs(value);
-    const fixv counts = MCOR_LOAD(i, tile->weight) != 0;
+    const realv value = MCOR_TILE(tile, value, i), margin = MCOR_SIDE_MARGIN * fabs(value);
+    const fixv counts = MCOR_TILE(tile, weight, i) != 0;
     above = above || (counts && value >= iso - margin);
     below = below || (counts && value < iso + margin);
   }
@@ -184,17 +184,17 @@ void mcor_seed_bound(
   const real e = query->half_size[0];
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv x = MCOR_LOAD(i, tile->x) - query->center[0];
-    const realv y = MCOR_LOAD(i, tile->y) - query->center[1];
-    const realv z = MCOR_LOAD(i, tile->z) - query->center[2];
-    const realv inv_h = MCOR_LOAD(i, tile->inv_h), c = mcor_seed_coefficients(tile, i, iso);
+    const realv x = MCOR_TILE(tile, x, i) - query->center[0];
+    const realv y = MCOR_TILE(tile, y, i) - query->center[1];
+    const realv z = MCOR_TILE(tile, z, i) - query->center[2];
+    const realv inv_h = MCOR_TILE(tile, inv_h, i), c = mcor_seed_coefficients(tile, i, iso);
     const realv side = (c > 0) == (fixv)(from_below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
     const realv w = mcor_seed_weight(x, y, z, e, side, inv_h);
     bound->sum += c * w;
     bound->size += fabs(c) * fabs(w);
 #if MCOR_FIELD != 2
     bound->weight +=
-      MCOR_LOAD(i, MCOR_TILE_TRIM(tile)) * mcor_seed_weight(x, y, z, e, (realv)-1, inv_h);
+      MCOR_TILE(tile, MCOR_TRIM_WEIGHT, i) * mcor_seed_weight(x, y, z, e, (realv)-1, inv_h);
 #endif
   }
 }
@@ -285,8 +285,8 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
   realv volume = 0, inv_h = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv s = MCOR_LOAD(i, tile->inv_h);
-    volume += MCOR_LOAD(i, tile->weight) / fmax(s * s * s, (realv)1e-30f);
+    const realv s = MCOR_TILE(tile, inv_h, i);
+    volume += MCOR_TILE(tile, weight, i) / fmax(s * s * s, (realv)1e-30f);
     inv_h += s;
   }
   const real r = -query->radius * MCOR_SUPPORT * tile->count / mcor_lane_sum(inv_h);

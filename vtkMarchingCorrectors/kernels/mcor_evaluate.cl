@@ -1,0 +1,96 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Field and gradient at MCOR_LANES points at a time. */
+
+/* Field minus iso value, its gradient, and the trimming weight with its gradient; per cube. */
+typedef struct
+{
+  realv value, gx, gy, gz;
+  realv weight, wx, wy, wz;
+} mcor_field_at;
+
+/* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
+void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
+  const mcor_points* points, real iso, mcor_field_at* at)
+{
+  realv s = 0, sx = 0, sy = 0, sz = 0, w = 0, wx = 0, wy = 0, wz = 0;
+#if MCOR_SOLIDS
+  realv t = 0, tx = 0, ty = 0, tz = 0;
+#endif
+  realv at_node[3], d[3], along[3], slope;
+  mcor_points_relative(grid, query, points, at_node);
+  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
+  {
+    for (int begin = 0; begin < MCOR_REACH_COUNT(reach); begin += MCOR_STEP)
+    {
+      mcor_length length[MCOR_STEP];
+      const int end = min(begin + MCOR_STEP, MCOR_REACH_COUNT(reach));
+      for (int i = begin; i < end; ++i)
+      {
+        mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+          MCOR_REACH(reach, z, i), d);
+        length[i - begin] = mcor_length_of(d);
+      }
+      for (int i = begin; i < end; ++i)
+      {
+        /* Again: to keep it takes longer. */
+        mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
+          MCOR_REACH(reach, z, i), d);
+        const realv k =
+          mcor_weight_gradient(d, length + (i - begin), MCOR_REACH(reach, inv_h, i), &slope, along);
+        const realv m = MCOR_REACH(reach, weight, i), ms = m * slope;
+        MCOR_REACH_KEEP(reach, i, k);
+#if MCOR_FIELD != 2
+        const realv c = MCOR_REACH_TERM(reach, i, iso), cs = c * slope;
+        s += c * k;
+        sx += cs * along[0];
+        sy += cs * along[1];
+        sz += cs * along[2];
+#endif
+        w += m * k;
+        wx += ms * along[0];
+        wy += ms * along[1];
+        wz += ms * along[2];
+#if MCOR_SOLIDS
+        const realv mt = MCOR_REACH(reach, MCOR_TRIM_WEIGHT, i), ts = mt * slope;
+        t += mt * k;
+        tx += ts * along[0];
+        ty += ts * along[1];
+        tz += ts * along[2];
+#endif
+      }
+    }
+  }
+#if MCOR_FIELD == 0
+  /* In a void between fluid particles, which solids keep valid, there is no value: a huge one makes
+   * the iteration look for the void's border. */
+  const fixv none = fabs(w) < (real)1e-12f;
+  const realv inv_w = (real)1 / (none ? (realv)1 : w);
+  at->value = none ? (realv)1e30f : s * inv_w;
+  at->gx = (sx - at->value * wx) * inv_w;
+  at->gy = (sy - at->value * wy) * inv_w;
+  at->gz = (sz - at->value * wz) * inv_w;
+#elif MCOR_FIELD == 1
+  at->value = s - iso;
+  at->gx = sx;
+  at->gy = sy;
+  at->gz = sz;
+#else
+  at->value = w - iso;
+  at->gx = wx;
+  at->gy = wy;
+  at->gz = wz;
+#endif
+#if MCOR_SOLIDS
+  at->weight = t;
+  at->wx = tx;
+  at->wy = ty;
+  at->wz = tz;
+#else
+  at->weight = w;
+  at->wx = wx;
+  at->wy = wy;
+  at->wz = wz;
+#endif
+}

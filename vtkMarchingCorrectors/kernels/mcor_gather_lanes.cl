@@ -1,0 +1,403 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Particles for MCOR_LANES points at once, as a CPU wants it; the interface is that at the end of
+ * mcor_query.cl. */
+
+/* Particles that one gather collects at most before they are evaluated. */
+#define MCOR_TILE_SIZE 1024
+
+/* Of arrays that are read MCOR_LANES elements at a time: no such access then touches two cache
+ * lines. */
+#define MCOR_ALIGNED __attribute__((aligned(sizeof(real) * MCOR_LANES)))
+
+/* Copies of the particles that reach a query's box, MCOR_TILE_SIZE at a time. */
+typedef struct
+{
+  int count;
+  bool complete;  /* the tile holds everything */
+  bool delivered; /* nothing is left for this loop */
+  MCOR_ALIGNED int list[MCOR_TILE_SIZE + 16];
+  /* Position from the query's origin, in cubes: exact in single precision while it is below 16
+   * cubes. */
+  MCOR_ALIGNED real x[MCOR_TILE_SIZE + 16], y[MCOR_TILE_SIZE + 16], z[MCOR_TILE_SIZE + 16];
+  real inv_h[MCOR_TILE_SIZE + 16], weight[MCOR_TILE_SIZE + 16], value[MCOR_TILE_SIZE + 16];
+#if MCOR_SOLIDS
+  real trim_weight[MCOR_TILE_SIZE + 16];
+#endif
+} mcor_tile;
+
+/* Particles i, i + 1, ... of a tile, one in each lane; particle i in all lanes; its index. */
+#define MCOR_TILE(tile, name, i) MCOR_LOAD(i, (tile)->name)
+#define MCOR_EACH(tile, name, i) ((tile)->name[i])
+#define MCOR_INDEX(tile, i) ((tile)->list[i])
+
+void mcor_tile_init(mcor_tile* tile)
+{
+  tile->complete = false;
+}
+
+/* Whether particles at (x, y, z) are within `share` of their support from a box of half size
+ * (hx, hy, hz) around (cx, cy, cz). The margin covers rounding: a particle kept in vain adds
+ * exactly 0. */
+fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, real cz, real hx,
+  real hy, real hz, realv share)
+{
+  const realv dx = fmax(fabs(x - cx) - hx, (realv)0);
+  const realv dy = fmax(fabs(y - cy) - hy, (realv)0);
+  const realv dz = fmax(fabs(z - cz) - hz, (realv)0);
+#if MCOR_TENSOR
+  return fmax(dx, fmax(dy, dz)) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
+#else
+  return (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
+    share * share * (MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001);
+#endif
+}
+
+/* Puts the particles of a mask behind the tile's first `count`, but for the list. */
+void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_h, realv weight,
+  realv value, realv trim_weight, int count, mcor_tile* tile)
+{
+  MCOR_PACK_REAL(*mask, x, tile->x + count);
+  MCOR_PACK_REAL(*mask, y, tile->y + count);
+  MCOR_PACK_REAL(*mask, z, tile->z + count);
+  MCOR_PACK_REAL(*mask, inv_h, tile->inv_h + count);
+  MCOR_PACK_REAL(*mask, weight, tile->weight + count);
+#if MCOR_FIELD != 2
+  MCOR_PACK_REAL(*mask, value, tile->value + count);
+#endif
+#if MCOR_SOLIDS
+  MCOR_PACK_REAL(*mask, trim_weight, tile->trim_weight + count);
+#endif
+}
+
+/* Tests the particles that are left of the query's row, and puts those that reach its box behind
+ * the tile's first `count`, while there is room. Returns the new count. */
+int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
+{
+  const real unit = grid->unit;
+  const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
+  const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
+  const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
+  /* Within their own support, or within the query's radius. */
+  const bool own = query->radius < 0;
+  const realv reach = own ? -query->radius : (real)1;
+  const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
+  int j = query->begin;
+  for (; j < query->end && count <= MCOR_TILE_SIZE - MCOR_LANES; j += MCOR_LANES)
+  {
+    const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - ox) * unit;
+    const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - oy) * unit;
+    const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - oz) * unit;
+    const realv inv_h = MCOR_LOAD(j, grid->inv_h);
+    const fixv near =
+      mcor_tile_near(x, y, z, own ? inv_h : inv_radius, cx, cy, cz, hx, hy, hz, reach);
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, query->end - j));
+    MCOR_PACK_INDEX(mask, j, tile->list + count);
+    mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_LOAD(j, grid->weight), MCOR_LOAD(j, grid->value),
+      MCOR_LOAD(j, grid->trim_weight), count, tile);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  query->begin = min(j, query->end);
+  return count;
+}
+
+/* Sets the lanes beyond the end, which loads of MCOR_LANES particles see, to particles without
+ * weight. */
+void mcor_tile_pad(mcor_tile* tile)
+{
+  real* const arrays[] = { tile->x, tile->y, tile->z, tile->inv_h, tile->weight, tile->value,
+    tile->MCOR_TRIM_WEIGHT };
+  for (int a = 0; a < 7; ++a)
+  {
+    MCOR_CAT(vstore, MCOR_LANES)((realv)0, 0, arrays[a] + tile->count);
+  }
+}
+
+void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
+{
+  int count = 0;
+  tile->delivered = false;
+  while (count <= MCOR_TILE_SIZE - MCOR_LANES)
+  {
+    if (query->begin >= query->end && !mcor_query_next_row(grid, query))
+    {
+      tile->delivered = true;
+      break;
+    }
+    count = mcor_tile_append(grid, query, count, tile);
+  }
+  tile->count = count;
+  mcor_tile_pad(tile);
+}
+
+bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool first)
+{
+  if (!first && tile->delivered)
+  {
+    return false;
+  }
+  if (first && tile->complete)
+  {
+    tile->delivered = true;
+    return true;
+  }
+  if (first)
+  {
+    mcor_query_next_level(grid, query, 0);
+  }
+  mcor_tile_fill(grid, query, tile);
+  tile->complete = first && tile->delivered;
+  return true;
+}
+
+/* Fills a tile, but for its list, from a complete one of a query with the same origin and a box
+ * that holds this one's. */
+void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
+{
+  const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
+  const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
+  int count = 0;
+  for (int i = 0; i < wide->count; i += MCOR_LANES)
+  {
+    const realv x = MCOR_TILE(wide, x, i), y = MCOR_TILE(wide, y, i), z = MCOR_TILE(wide, z, i),
+                inv_h = MCOR_TILE(wide, inv_h, i);
+    const fixv near = mcor_tile_near(x, y, z, inv_h, cx, cy, cz, hx, hy, hz, -query->radius);
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, wide->count - i));
+    mcor_tile_pack(&mask, x, y, z, inv_h, MCOR_TILE(wide, weight, i), MCOR_TILE(wide, value, i),
+      MCOR_TILE(wide, MCOR_TRIM_WEIGHT, i), count, tile);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  tile->count = count;
+  tile->complete = true;
+  mcor_tile_pad(tile);
+}
+
+/* The particles of a tile as each lane sees them. */
+#if MCOR_PARTS == 1
+typedef struct
+{
+  mcor_tile tile;
+  realv w[MCOR_TILE_SIZE]; /* of each particle in each lane, as last evaluated */
+} mcor_reach;
+
+#define MCOR_REACH_COUNT(reach) ((reach)->tile.count)
+#define MCOR_REACH(reach, name, i) ((realv)((reach)->tile.name[i]))
+#define MCOR_REACH_TERM(reach, i, iso)                                                             \
+  ((realv)((reach)->tile.weight[i] * MCOR_FIELD_TERM((reach)->tile.value[i], iso)))
+
+bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points* points, real iso,
+  mcor_reach* reach, bool first)
+{
+  return mcor_tile_next(grid, query, &reach->tile, first);
+}
+#else
+#define MCOR_REACH_SIZE (MCOR_PARTS * (MCOR_TILE_SIZE + 16))
+
+/* Which particles of a tile reach each part: one mask for MCOR_LANES of them. */
+typedef struct
+{
+  mcor_mask mask[MCOR_PARTS][MCOR_TILE_SIZE / MCOR_LANES + 1];
+  int chunks, longest; /* masks of a part; particles of the part with most */
+} mcor_reach_masks;
+
+typedef struct
+{
+  mcor_tile tile;
+  realv w[MCOR_TILE_SIZE]; /* as above */
+  mcor_reach_masks masks;
+  MCOR_ALIGNED real x[MCOR_REACH_SIZE], y[MCOR_REACH_SIZE], z[MCOR_REACH_SIZE];
+  real inv_h[MCOR_REACH_SIZE], weight[MCOR_REACH_SIZE];
+  real term[MCOR_REACH_SIZE]; /* weight * MCOR_FIELD_TERM */
+#if MCOR_SOLIDS
+  real trim_weight[MCOR_REACH_SIZE];
+#endif
+} mcor_reach;
+
+realv mcor_each_lane(float4 parts)
+{
+  return (realv)(parts, parts, parts, parts);
+}
+
+#define MCOR_REACH_COUNT(reach) ((reach)->masks.longest)
+#define MCOR_REACH(reach, name, i) mcor_each_lane(vload4(i, (reach)->name))
+#define MCOR_REACH_TERM(reach, i, iso) MCOR_REACH(reach, term, i)
+
+void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reach_masks* masks)
+{
+  masks->chunks = (tile->count + MCOR_LANES - 1) / MCOR_LANES;
+  masks->longest = 0;
+  for (int part = 0; part < MCOR_PARTS; ++part)
+  {
+    const real cx = points->center[0][part], cy = points->center[1][part],
+               cz = points->center[2][part];
+    const real hx = points->half_size[0][part], hy = points->half_size[1][part],
+               hz = points->half_size[2][part];
+    int count = 0;
+    for (int j = 0; j < masks->chunks; ++j)
+    {
+      const int i = j * MCOR_LANES;
+      const fixv near = mcor_tile_near(MCOR_LOAD(i, tile->x), MCOR_LOAD(i, tile->y),
+        MCOR_LOAD(i, tile->z), MCOR_LOAD(i, tile->inv_h), cx, cy, cz, hx, hy, hz, 1);
+      const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
+      masks->mask[part][j] = mask;
+      count += MCOR_MASK_COUNT(mask);
+    }
+    masks->longest = max(masks->longest, count);
+  }
+}
+
+/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. Ends of
+ * the shorter lists become 0, which is no weight. */
+void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
+{
+  MCOR_ALIGNED real packed[MCOR_PARTS][MCOR_TILE_SIZE + 2 * MCOR_LANES];
+  for (int part = 0; part < MCOR_PARTS; ++part)
+  {
+    real* next = packed[part];
+    for (int j = 0; j < masks->chunks; ++j)
+    {
+      const mcor_mask mask = masks->mask[part][j];
+      MCOR_PACK_REAL(mask, MCOR_LOAD(j * MCOR_LANES, array), next);
+      next += MCOR_MASK_COUNT(mask);
+    }
+    for (const real* end = packed[part] + masks->longest; next < end; next += MCOR_LANES)
+    {
+      MCOR_CAT(vstore, MCOR_LANES)((realv)0, 0, next);
+    }
+  }
+  for (int i = 0; i < masks->longest; i += MCOR_LANES, to += MCOR_PARTS * MCOR_LANES)
+  {
+    mcor_interleave4(MCOR_LOAD(i, packed[0]), MCOR_LOAD(i, packed[1]), MCOR_LOAD(i, packed[2]),
+      MCOR_LOAD(i, packed[3]), to);
+  }
+}
+
+bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points* points, real iso,
+  mcor_reach* reach, bool first)
+{
+  const bool kept = first && reach->tile.complete;
+  mcor_tile* tile = &reach->tile;
+  if (!mcor_tile_next(grid, query, tile, first))
+  {
+    return false;
+  }
+  if (kept)
+  {
+    return true;
+  }
+  mcor_reach_test(tile, points, &reach->masks);
+  mcor_reach_pack(&reach->masks, tile->x, reach->x);
+  mcor_reach_pack(&reach->masks, tile->y, reach->y);
+  mcor_reach_pack(&reach->masks, tile->z, reach->z);
+  mcor_reach_pack(&reach->masks, tile->inv_h, reach->inv_h);
+  mcor_reach_pack(&reach->masks, tile->weight, reach->weight);
+#if MCOR_FIELD != 2
+  MCOR_ALIGNED real term[MCOR_TILE_SIZE + MCOR_LANES];
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    MCOR_CAT(vstore, MCOR_LANES)
+    (MCOR_LOAD(i, tile->weight) * MCOR_FIELD_TERM(MCOR_LOAD(i, tile->value), iso), 0, term + i);
+  }
+  mcor_reach_pack(&reach->masks, term, reach->term);
+#endif
+#if MCOR_SOLIDS
+  mcor_reach_pack(&reach->masks, tile->trim_weight, reach->trim_weight);
+#endif
+  return true;
+}
+#endif
+
+#define MCOR_REACH_KEEP(reach, i, weight) ((reach)->w[i] = (weight))
+
+/* Values of an attribute at the particles of a reach, to be read by MCOR_VALUE. */
+#if MCOR_PARTS == 1
+#define MCOR_VALUE(values, i) (values)[i]
+void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
+{
+  for (int i = 0; i < reach->tile.count; ++i)
+  {
+    values[i] = attribute[reach->tile.list[i]];
+  }
+}
+#else
+#define MCOR_VALUE(values, i) mcor_each_lane(vload4(i, values))
+void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
+{
+  MCOR_ALIGNED real of_tile[MCOR_TILE_SIZE + 16];
+  for (int i = 0; i < reach->tile.count; ++i)
+  {
+    of_tile[i] = attribute[reach->tile.list[i]];
+  }
+  mcor_reach_pack(&reach->masks, of_tile, values);
+}
+#endif
+
+/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes:
+ * together, as a sum alone would wait for its last addition. weight: w_i in each lane. */
+#define MCOR_ATTRIBUTE_STEP 4
+void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes, const int stride,
+  int count, const realv* weight, realv sums[MCOR_ATTRIBUTE_STEP])
+{
+  real values[MCOR_ATTRIBUTE_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
+  for (int c = 0; c < count; ++c)
+  {
+    mcor_attribute_load(reach, attributes + c * (long)stride, values[c]);
+  }
+  const real *v1 = values[count > 1], *v2 = values[count > 2 ? 2 : 0],
+             *v3 = values[count > 3 ? 3 : 0];
+  realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  {
+    s0 += weight[i] * MCOR_VALUE(values[0], i);
+    s1 += weight[i] * MCOR_VALUE(v1, i);
+    s2 += weight[i] * MCOR_VALUE(v2, i);
+    s3 += weight[i] * MCOR_VALUE(v3, i);
+  }
+  sums[0] = s0;
+  sums[1] = s1;
+  sums[2] = s2;
+  sums[3] = s3;
+}
+
+/* Sets reach->w at the points, as mcor_evaluate does. */
+void mcor_reach_evaluate(
+  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, mcor_reach* reach)
+{
+  realv at[3], d[3], along[3], slope;
+  mcor_points_relative(grid, query, points, at);
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  {
+    mcor_points_from(
+      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+    const mcor_length length = mcor_length_of(d);
+    reach->w[i] = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+  }
+}
+
+void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
+  real iso, mcor_reach* reach, bool evaluated, int count, const int stride,
+  __global const real* attributes, realv sums[MCOR_ATTRIBUTE_LIMIT], realv* weight_sum)
+{
+  const bool known = evaluated && reach->tile.complete;
+  realv w = 0;
+  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
+  {
+    realv weight[MCOR_TILE_SIZE];
+    if (!known)
+    {
+      mcor_reach_evaluate(grid, query, points, reach);
+    }
+    for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+    {
+      weight[i] = MCOR_REACH(reach, weight, i) * reach->w[i];
+      w += weight[i];
+    }
+    for (int c = 0; c < count; c += MCOR_ATTRIBUTE_STEP)
+    {
+      mcor_attribute_add(reach, attributes + c * (long)stride, stride,
+        min(count - c, MCOR_ATTRIBUTE_STEP), weight, sums + c);
+    }
+  }
+  *weight_sum = w;
+}

@@ -1,0 +1,102 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Particles for one point per work-item, as a GPU wants it: they are read where they are, a row of
+ * search cells at a time, and nothing is copied. The interface is that at the end of
+ * mcor_query.cl. */
+
+/* Particles of a row that may reach the query's box. */
+typedef struct
+{
+  mcor_grid grid;
+  fix origin[3];
+  int begin, count;
+  bool complete; /* never: nothing is kept */
+} mcor_tile;
+
+real mcor_tile_position(const mcor_tile* tile, __global const fix* position, int axis, int i)
+{
+  return (real)(position[tile->begin + i] - tile->origin[axis]) * tile->grid.unit;
+}
+
+#define mcor_tile_x(tile, i) mcor_tile_position(tile, (tile)->grid.px, 0, i)
+#define mcor_tile_y(tile, i) mcor_tile_position(tile, (tile)->grid.py, 1, i)
+#define mcor_tile_z(tile, i) mcor_tile_position(tile, (tile)->grid.pz, 2, i)
+#define mcor_tile_inv_h(tile, i) ((tile)->grid.inv_h[(tile)->begin + (i)])
+#define mcor_tile_weight(tile, i) ((tile)->grid.weight[(tile)->begin + (i)])
+#define mcor_tile_trim_weight(tile, i) ((tile)->grid.trim_weight[(tile)->begin + (i)])
+#define mcor_tile_value(tile, i) ((tile)->grid.value[(tile)->begin + (i)])
+#define MCOR_TILE(tile, name, i) MCOR_CAT(mcor_tile_, name)(tile, i)
+#define MCOR_EACH MCOR_TILE
+#define MCOR_INDEX(tile, i) ((tile)->begin + (i))
+
+void mcor_tile_init(mcor_tile* tile)
+{
+  tile->complete = false;
+}
+
+bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool first)
+{
+  if (first)
+  {
+    mcor_query_next_level(grid, query, 0);
+    tile->grid = *grid;
+    for (int a = 0; a < 3; ++a)
+    {
+      tile->origin[a] = query->origin[a];
+    }
+  }
+  const bool some = mcor_query_next_row(grid, query);
+  tile->begin = query->begin;
+  tile->count = some ? query->end - query->begin : 0;
+  return some || first;
+}
+
+/* Not called: no tile is complete. */
+void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
+{
+  mcor_tile_init(tile);
+}
+
+typedef struct
+{
+  mcor_tile tile;
+} mcor_reach;
+
+#define MCOR_REACH_COUNT(reach) ((reach)->tile.count)
+#define MCOR_REACH(reach, name, i) MCOR_EACH(&(reach)->tile, name, i)
+#define MCOR_REACH_TERM(reach, i, iso)                                                             \
+  (MCOR_REACH(reach, weight, i) * MCOR_FIELD_TERM(MCOR_REACH(reach, value, i), iso))
+#define MCOR_REACH_KEEP(reach, i, weight)
+
+bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points* points, real iso,
+  mcor_reach* reach, bool first)
+{
+  return mcor_tile_next(grid, query, &reach->tile, first);
+}
+
+void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
+  real iso, mcor_reach* reach, bool evaluated, int count, const int stride,
+  __global const real* attributes, real sums[MCOR_ATTRIBUTE_LIMIT], real* weight_sum)
+{
+  const mcor_tile* tile = &reach->tile;
+  real at[3], d[3], along[3], slope, w = 0;
+  mcor_points_relative(grid, query, points, at);
+  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
+  {
+    for (int i = 0; i < tile->count; ++i)
+    {
+      mcor_points_from(
+        at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), d);
+      const mcor_length length = mcor_length_of(d);
+      const real weight = MCOR_EACH(tile, weight, i) *
+        mcor_weight_gradient(d, &length, MCOR_EACH(tile, inv_h, i), &slope, along);
+      w += weight;
+      for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
+      {
+        sums[c] += c < count ? weight * attributes[c * (long)stride + MCOR_INDEX(tile, i)] : (real)0;
+      }
+    }
+  }
+  *weight_sum = w;
+}

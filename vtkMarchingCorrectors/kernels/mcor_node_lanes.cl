@@ -1,0 +1,177 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: with 16 lanes
+ * 2 x 2 x 4, with 8 2 x 2 x 2. The interface is that of mcor_node.cl. */
+
+#define MCOR_GROUP_XY 2
+#define MCOR_GROUP_Z (MCOR_LANES / 4)
+
+/* First node of group g. */
+int4 mcor_group_node(int g)
+{
+  return (int4)(2 * (g & 1), 2 * (g >> 1 & 1), MCOR_GROUP_Z * (g >> 2), 0);
+}
+
+int mcor_group_of(int n)
+{
+  return (n >> 1 & 1) | (n >> 3 & 1) << 1 | (n >> 4) / MCOR_GROUP_Z << 2;
+}
+
+int mcor_lane_of(int n)
+{
+  return (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
+}
+
+/* Places in the tile of the particles that reach a group, whose first node is (x, y, z). */
+int mcor_node_list(const mcor_tile* tile, real x, real y, real z, real share, int* list)
+{
+  const real exy = (real)0.5 * (MCOR_GROUP_XY - 1), ez = (real)0.5 * (MCOR_GROUP_Z - 1);
+  int count = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const fixv near =
+      mcor_tile_near(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i), MCOR_TILE(tile, z, i),
+        MCOR_TILE(tile, inv_h, i), x + exy, y + exy, z + ez, exy, exy, ez, share);
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
+    MCOR_PACK_INDEX(mask, i, list + count);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  return count;
+}
+
+/* Nodes of a group from its query's origin, and weights there in two steps, see
+ * mcor_distance. */
+#if MCOR_TENSOR
+/* A group has few different x, y and z, so that one evaluation of w serves them all: lanes 0 and 1
+ * are x, 2 and 3 y, from 4 on z. */
+typedef struct
+{
+  realv at;
+} mcor_group_nodes;
+
+mcor_group_nodes mcor_group_place(real x, real y, real z)
+{
+#if MCOR_LANES == 8
+  const mcor_group_nodes nodes = { (realv)(x, x + 1, y, y + 1, z, z + 1, z, z) };
+#else
+  const mcor_group_nodes nodes = { (
+    realv)(x, x + 1, y, y + 1, z, z + 1, z + 2, z + 3, z, z, z, z, z, z, z, z) };
+#endif
+  return nodes;
+}
+
+realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z, real inv_h)
+{
+#if MCOR_LANES == 8
+  const realv from = (realv)(x, x, y, y, z, z, z, z);
+#else
+  const realv from = (realv)(x, x, y, y, z, z, z, z, z, z, z, z, z, z, z, z);
+#endif
+  return MCOR_W(fabs(from - nodes->at) * inv_h);
+}
+
+realv mcor_group_weight(realv w, real inv_h)
+{
+#if MCOR_LANES == 8
+  return w.s01010101 * w.s22332233 * w.s44445555;
+#else
+  return w.s0101010101010101 * w.s2233223322332233 * w.s4444555566667777;
+#endif
+}
+#else
+typedef struct
+{
+  realv x, y, z;
+} mcor_group_nodes;
+
+mcor_group_nodes mcor_group_place(real x, real y, real z)
+{
+  const fixv lane = mcor_lane_index();
+  const mcor_group_nodes nodes = { x + MCOR_CONVERT_REALV(lane & 1),
+    y + MCOR_CONVERT_REALV(lane >> 1 & 1), z + MCOR_CONVERT_REALV(lane >> 2) };
+  return nodes;
+}
+
+realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z, real inv_h)
+{
+  return mcor_distance(x - nodes->x, y - nodes->y, z - nodes->z, inv_h);
+}
+
+#define mcor_group_weight mcor_weight
+#endif
+
+/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's origin.
+ * term: their weights times values. */
+void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real y, real z,
+  real share, mcor_node_sums* sums)
+{
+  const mcor_group_nodes nodes = mcor_group_place(x, y, z);
+  int list[MCOR_TILE_SIZE + 16];
+  const int count = mcor_node_list(tile, x, y, z, share, list);
+  realv s = sums->s[g], w = sums->w[g];
+#if MCOR_SOLIDS
+  realv t = sums->t[g];
+#endif
+  for (int begin = 0; begin < count; begin += MCOR_STEP)
+  {
+    realv distance[MCOR_STEP];
+    const int end = min(begin + MCOR_STEP, count);
+    for (int k = begin; k < end; ++k)
+    {
+      const int i = list[k];
+      distance[k - begin] =
+        mcor_group_distance(&nodes, tile->x[i], tile->y[i], tile->z[i], tile->inv_h[i]);
+    }
+    for (int k = begin; k < end; ++k)
+    {
+      const int i = list[k];
+      const realv v = mcor_group_weight(distance[k - begin], tile->inv_h[i]);
+#if MCOR_FIELD != 2
+      s += term[i] * v;
+#endif
+      w += tile->weight[i] * v;
+#if MCOR_SOLIDS
+      t += MCOR_EACH(tile, trim_weight, i) * v;
+#endif
+    }
+  }
+  sums->s[g] = s;
+  sums->w[g] = w;
+#if MCOR_SOLIDS
+  sums->t[g] = t;
+#endif
+}
+
+void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
+{
+  const real share = -query->radius;
+  real first[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    first[a] = (real)(query->low[a] - query->origin[a]) * grid->unit;
+  }
+  for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+  {
+    sums->s[g] = sums->w[g] = 0;
+#if MCOR_SOLIDS
+    sums->t[g] = 0;
+#endif
+  }
+  for (bool begin = true; mcor_tile_next(grid, query, tile, begin); begin = false)
+  {
+    MCOR_ALIGNED real term[MCOR_TILE_SIZE + 16];
+#if MCOR_FIELD != 2
+    for (int i = 0; i < tile->count; ++i)
+    {
+      term[i] = tile->weight[i] * tile->value[i];
+    }
+#endif
+    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+    {
+      const int4 node = mcor_group_node(g);
+      mcor_node_add(tile, term, g, first[0] + (real)node.x, first[1] + (real)node.y,
+        first[2] + (real)node.z, share, sums);
+    }
+  }
+}

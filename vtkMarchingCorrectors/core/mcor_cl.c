@@ -236,8 +236,9 @@ static bool mcor_has_cpu_form(const mcor_cl* cl)
 static void mcor_query_device(mcor_cl* cl)
 {
   cl_uint units = 1;
-  cl_device_fp_config fp64 = 0;
+  cl_device_fp_config fp32 = 0, fp64 = 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof fp32, &fp32, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL);
   clGetDeviceInfo(
     cl->device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof cl->device_memory, &cl->device_memory, NULL);
@@ -246,6 +247,7 @@ static void mcor_query_device(mcor_cl* cl)
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
   cl->is_cpu = mcor_has_cpu_form(cl);
   cl->has_fp64 = fp64 != 0;
+  cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   cl->chunks = cl->is_cpu ? (int)units * 8 : 4096;
 }
 

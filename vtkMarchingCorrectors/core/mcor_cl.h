@@ -57,10 +57,10 @@ typedef struct mcor_cl
   mcor_build build; /* of the programs */
   mcor_kernel kernels[MCOR_KERNEL_LIMIT];
   int kernel_count;
-  bool is_cpu; /* the kernels' form for CPUs is used */
-  bool has_fp64;
-  int lanes;          /* of the programs */
-  int chunks;         /* runs into which scans and sorts cut their arrays */
+  bool is_cpu;                    /* the kernels' form for CPUs is used */
+  bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
+  int lanes;                      /* of the programs */
+  int chunks;                     /* runs into which scans and sorts cut their arrays */
   int register_lanes; /* that the device's compiler has registers for; 0: not asked yet */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;

@@ -73,8 +73,8 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
   const char* f = is_double ? "" : "f";
-  int length = snprintf(text, size,
-    "-w -cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -DMCOR_PROGRAM=%d", (int)program);
+  int length = snprintf(text, size, "-w -cl-std=CL1.2%s -DMCOR_PROGRAM=%d",
+    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", (int)program);
   if (program == MCOR_PROGRAM_LATTICE)
   {
     /* It knows no vectors, only whether to work for a CPU. */

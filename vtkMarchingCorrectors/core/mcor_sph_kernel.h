@@ -28,14 +28,14 @@ realv mcor_w_cubic(realv q)
 {
   const realv d = (real)2 - q;
   const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0), b2 = b * b;
-  return a * ((real)0.25 * (a * a) - b2) + b2;
+  return MCOR_FMA(a, MCOR_FMA((real)0.25, a * a, -b2), b2);
 }
 
 realv mcor_dw_cubic(realv q)
 {
   const realv d = (real)2 - q;
   const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0);
-  return (real)-3 * ((real)0.25 * (a * a) - b * b);
+  return (real)-3 * MCOR_FMA((real)0.25, a * a, -(b * b));
 }
 
 realv mcor_ddw_cubic(realv q)
@@ -64,13 +64,13 @@ realv mcor_ddw_quadratic(realv q)
 realv mcor_w_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
-  return (real)0.5 * a * a * ((real)1 - q) - b * b * ((real)1 - (real)2 * q);
+  return MCOR_FMA((real)0.5 * a * a, (real)1 - q, -(b * b * MCOR_FMA((real)-2, q, (real)1)));
 }
 
 realv mcor_dw_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
-  return (real)2 * b * (b + (real)1 - (real)2 * q) - a * ((real)1 - q + (real)0.5 * a);
+  return (real)2 * b * MCOR_FMA((real)-2, q, b + (real)1) - a * MCOR_FMA((real)0.5, a, (real)1 - q);
 }
 
 realv mcor_ddw_mprime4(realv q)
@@ -84,7 +84,7 @@ realv mcor_w_quintic(realv q)
   const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
               c = fmax((real)1 - q, (realv)0);
   const realv a2 = a * a, b2 = b * b, c2 = c * c;
-  return a2 * a2 * a - (real)6 * b2 * b2 * b + (real)15 * c2 * c2 * c;
+  return MCOR_FMA((real)15 * c2 * c2, c, MCOR_FMA((real)-6 * b2 * b2, b, a2 * a2 * a));
 }
 
 realv mcor_dw_quintic(realv q)
@@ -92,7 +92,7 @@ realv mcor_dw_quintic(realv q)
   const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
               c = fmax((real)1 - q, (realv)0);
   const realv a2 = a * a, b2 = b * b, c2 = c * c;
-  return (real)-5 * (a2 * a2 - (real)6 * b2 * b2 + (real)15 * c2 * c2);
+  return (real)-5 * MCOR_FMA((real)15 * c2, c2, MCOR_FMA((real)-6 * b2, b2, a2 * a2));
 }
 
 realv mcor_ddw_quintic(realv q)
@@ -104,19 +104,19 @@ realv mcor_ddw_quintic(realv q)
 
 realv mcor_w_wendland(realv q)
 {
-  const realv a = fmax((real)1 - (real)0.5 * q, (realv)0), a2 = a * a;
-  return a2 * a2 * ((real)2 * q + (real)1);
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a;
+  return a2 * a2 * MCOR_FMA((real)2, q, (real)1);
 }
 
 realv mcor_dw_wendland(realv q)
 {
-  const realv a = fmax((real)1 - (real)0.5 * q, (realv)0);
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0);
   return (real)-5 * q * a * a * a;
 }
 
 realv mcor_ddw_wendland(realv q)
 {
-  const realv a = fmax((real)1 - (real)0.5 * q, (realv)0);
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0);
   return (real)2.5 * a * a * ((real)3 * q - (real)2 * a);
 }
 

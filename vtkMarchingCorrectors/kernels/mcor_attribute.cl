@@ -79,7 +79,7 @@ void mcor_attribute_nearer(
       }
       mcor_points_from(
         at, points, MCOR_EACH(&tile, x, i), MCOR_EACH(&tile, y, i), MCOR_EACH(&tile, z, i), d);
-      const realv r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      const realv r2 = mcor_square(d[0], d[1], d[2]);
       const real own = query->radius < 0 ? MCOR_SUPPORT / MCOR_EACH(&tile, inv_h, i) : (real)0;
       const fixv nearer = r2 < *least && (query->radius >= 0 || r2 < own * own);
       *index = nearer ? (fixv)MCOR_INDEX(&tile, i) : *index;

@@ -46,7 +46,7 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
       bend[a] * w[b] * w[c] * e[a] + slope[a] * (slope[b] * w[c] * e[b] + slope[c] * w[b] * e[c]);
   }
 #else
-  const realv r2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+  const realv r2 = mcor_square(u[0], u[1], u[2]);
   const realv inv_r = mcor_rsqrt(r2), q = r2 * inv_r * inv_h;
   const realv slope = MCOR_DW(q) * inv_h, bend = MCOR_DDW(q) * inv_h * inv_h;
   const realv along = (e[0] * u[0] + e[1] * u[1] + e[2] * u[2]) * inv_r;
@@ -59,16 +59,21 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
 #endif
 }
 
+/* Elements of M are about 1 where they are not 0. Smaller ones count as 0, so that no product is a
+ * denormal number, which some devices do not know. */
+#define MCOR_EIGEN_LEAST (MCOR_DOUBLE ? (real)1e-100 : (real)1e-9f)
+
 /* Jacobi's rotation in the plane of axes p and q, after which pq is 0; r is the third axis. */
 void mcor_eigen_rotate(
   realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
 {
-  const realv d = *qq - *pp, root2 = d * d + (real)4 * *pq * *pq;
+  const realv off = fabs(*pq) < MCOR_EIGEN_LEAST ? (realv)0 : *pq;
+  const realv d = *qq - *pp, root2 = d * d + (real)4 * off * off;
   const realv t =
-    (d < 0 ? (realv)-2 : (realv)2) * *pq / (fabs(d) + root2 * mcor_rsqrt(root2) + (real)1e-30f);
+    (d < 0 ? (realv)-2 : (realv)2) * off / (fabs(d) + root2 * mcor_rsqrt(root2) + (real)1e-30f);
   const realv c = mcor_rsqrt((real)1 + t * t), s = t * c, p = *rp, q = *rq;
-  *pp -= t * *pq;
-  *qq += t * *pq;
+  *pp -= t * off;
+  *qq += t * off;
   *pq = 0;
   *rp = c * p - s * q;
   *rq = s * p + c * q;
@@ -120,16 +125,17 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      mcor_points_from(at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
+      mcor_points_from(
+        at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
       const mcor_length length = mcor_length_of(u);
       mcor_weight_gradient(u, &length, MCOR_EACH(tile, inv_h, i), &slope, along);
       const realv v = MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i) * slope, half_v = (real)0.5 * v;
-      m->xx -= v * (u[0] * along[0]);
-      m->yy -= v * (u[1] * along[1]);
-      m->zz -= v * (u[2] * along[2]);
-      m->xy -= half_v * (u[0] * along[1] + u[1] * along[0]);
-      m->yz -= half_v * (u[1] * along[2] + u[2] * along[1]);
-      m->zx -= half_v * (u[2] * along[0] + u[0] * along[2]);
+      m->xx = MCOR_FMA(-v, u[0] * along[0], m->xx);
+      m->yy = MCOR_FMA(-v, u[1] * along[1], m->yy);
+      m->zz = MCOR_FMA(-v, u[2] * along[2], m->zz);
+      m->xy = MCOR_FMA(-half_v, MCOR_FMA(u[0], along[1], u[1] * along[0]), m->xy);
+      m->yz = MCOR_FMA(-half_v, MCOR_FMA(u[1], along[2], u[2] * along[1]), m->yz);
+      m->zx = MCOR_FMA(-half_v, MCOR_FMA(u[2], along[0], u[0] * along[2]), m->zx);
     }
   }
 }
@@ -148,13 +154,15 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
   {
     for (int i = 0; i < tile->count; ++i)
     {
-      mcor_points_from(at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
+      mcor_points_from(
+        at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
       mcor_weight_second(u, MCOR_EACH(tile, inv_h, i), e, g, d);
       const realv along_u = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
       const realv along_g = e[0] * g[0] + e[1] * g[1] + e[2] * g[2];
       for (int a = 0; a < 3; ++a)
       {
-        sum[a] -= MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i) * (e[a] * along_g + along_u * d[a]);
+        sum[a] = MCOR_FMA(-MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i),
+          MCOR_FMA(e[a], along_g, along_u * d[a]), sum[a]);
       }
     }
   }

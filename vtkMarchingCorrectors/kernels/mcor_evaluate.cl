@@ -43,21 +43,21 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
         MCOR_REACH_KEEP(reach, i, k);
 #if MCOR_FIELD != 2
         const realv c = MCOR_REACH_TERM(reach, i, iso), cs = c * slope;
-        s += c * k;
-        sx += cs * along[0];
-        sy += cs * along[1];
-        sz += cs * along[2];
+        s = MCOR_FMA(c, k, s);
+        sx = MCOR_FMA(cs, along[0], sx);
+        sy = MCOR_FMA(cs, along[1], sy);
+        sz = MCOR_FMA(cs, along[2], sz);
 #endif
-        w += m * k;
-        wx += ms * along[0];
-        wy += ms * along[1];
-        wz += ms * along[2];
+        w = MCOR_FMA(m, k, w);
+        wx = MCOR_FMA(ms, along[0], wx);
+        wy = MCOR_FMA(ms, along[1], wy);
+        wz = MCOR_FMA(ms, along[2], wz);
 #if MCOR_SOLIDS
         const realv mt = MCOR_REACH(reach, MCOR_TRIM_WEIGHT, i), ts = mt * slope;
-        t += mt * k;
-        tx += ts * along[0];
-        ty += ts * along[1];
-        tz += ts * along[2];
+        t = MCOR_FMA(mt, k, t);
+        tx = MCOR_FMA(ts, along[0], tx);
+        ty = MCOR_FMA(ts, along[1], ty);
+        tz = MCOR_FMA(ts, along[2], tz);
 #endif
       }
     }

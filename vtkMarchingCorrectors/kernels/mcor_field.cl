@@ -19,21 +19,21 @@ realv mcor_rsqrt_guess(realv x)
 /* p(e) */
 realv mcor_rsqrt_series(realv e)
 {
-  const realv p = (real)0.31393823f + e * (real)0.2740815f;
-  return (real)0.49999833f + e * ((real)0.37500035f + e * p);
+  const realv p = MCOR_FMA(e, (real)0.2740815f, (real)0.31393823f);
+  return MCOR_FMA(e, MCOR_FMA(e, p, (real)0.37500035f), (real)0.49999833f);
 }
 
 /* 1 / sqrt(x), finite at 0. */
 realv mcor_rsqrt(realv x)
 {
-  const realv y = mcor_rsqrt_guess(x), e = (real)1 - (x * y) * y;
-  return y + (e * y) * mcor_rsqrt_series(e);
+  const realv y = mcor_rsqrt_guess(x), e = MCOR_FMA(-(x * y), y, (real)1);
+  return MCOR_FMA(e * y, mcor_rsqrt_series(e), y);
 }
 
 realv mcor_sqrt(realv x)
 {
-  const realv y = mcor_rsqrt_guess(x), r = x * y, e = (real)1 - r * y;
-  return r + (e * r) * mcor_rsqrt_series(e);
+  const realv y = mcor_rsqrt_guess(x), r = x * y, e = MCOR_FMA(-r, y, (real)1);
+  return MCOR_FMA(e * r, mcor_rsqrt_series(e), r);
 }
 #else
 realv mcor_rsqrt(realv x)
@@ -47,6 +47,11 @@ realv mcor_sqrt(realv x)
 }
 #endif
 
+realv mcor_square(realv x, realv y, realv z)
+{
+  return MCOR_FMA(z, z, MCOR_FMA(y, y, x * x));
+}
+
 /* W / norm * h^3 at offset (dx, dy, dz). In two steps, to be made for MCOR_STEP particles in turn:
  * as a chain, they take longer than a CPU can look ahead. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
@@ -57,7 +62,7 @@ realv mcor_distance(realv dx, realv dy, realv dz, realv inv_h)
 #if MCOR_TENSOR
   return MCOR_W(fabs(dx) * inv_h) * MCOR_W(fabs(dy) * inv_h) * MCOR_W(fabs(dz) * inv_h);
 #else
-  return mcor_sqrt(dx * dx + dy * dy + dz * dz);
+  return mcor_sqrt(mcor_square(dx, dy, dz));
 #endif
 }
 
@@ -81,7 +86,7 @@ mcor_length mcor_length_of(const realv d[3])
 #if MCOR_TENSOR
   const realv r2 = 0, inv_r = 0; /* not needed */
 #else
-  const realv r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], inv_r = mcor_rsqrt(r2);
+  const realv r2 = mcor_square(d[0], d[1], d[2]), inv_r = mcor_rsqrt(r2);
 #endif
   const mcor_length length = { r2, inv_r };
   return length;

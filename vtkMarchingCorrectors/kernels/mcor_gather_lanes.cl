@@ -49,7 +49,7 @@ fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, re
 #if MCOR_TENSOR
   return fmax(dx, fmax(dy, dz)) * inv_h < share * (MCOR_SUPPORT * (real)1.0001);
 #else
-  return (dx * dx + dy * dy + dz * dz) * inv_h * inv_h <
+  return mcor_square(dx, dy, dz) * inv_h * inv_h <
     share * share * (MCOR_SUPPORT * MCOR_SUPPORT * (real)1.0001);
 #endif
 }
@@ -349,10 +349,10 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
   realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
   for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
-    s0 += weight[i] * MCOR_VALUE(values[0], i);
-    s1 += weight[i] * MCOR_VALUE(v1, i);
-    s2 += weight[i] * MCOR_VALUE(v2, i);
-    s3 += weight[i] * MCOR_VALUE(v3, i);
+    s0 = MCOR_FMA(weight[i], MCOR_VALUE(values[0], i), s0);
+    s1 = MCOR_FMA(weight[i], MCOR_VALUE(v1, i), s1);
+    s2 = MCOR_FMA(weight[i], MCOR_VALUE(v2, i), s2);
+    s3 = MCOR_FMA(weight[i], MCOR_VALUE(v3, i), s3);
   }
   sums[0] = s0;
   sums[1] = s1;

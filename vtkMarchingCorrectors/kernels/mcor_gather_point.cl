@@ -94,7 +94,10 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
       w += weight;
       for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
       {
-        sums[c] += c < count ? weight * attributes[c * (long)stride + MCOR_INDEX(tile, i)] : (real)0;
+        if (c < count)
+        {
+          sums[c] = MCOR_FMA(weight, attributes[c * (long)stride + MCOR_INDEX(tile, i)], sums[c]);
+        }
       }
     }
   }

@@ -281,7 +281,7 @@ __kernel void mcor_grid_density(
         const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
         const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
         const realv m = inside ? (realv)mass[k] : (realv)0;
-        sum += m * mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1);
+        sum = MCOR_FMA(m, mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1), sum);
       }
     }
   }

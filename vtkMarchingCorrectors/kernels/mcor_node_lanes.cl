@@ -128,11 +128,11 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real 
       const int i = list[k];
       const realv v = mcor_group_weight(distance[k - begin], tile->inv_h[i]);
 #if MCOR_FIELD != 2
-      s += term[i] * v;
+      s = MCOR_FMA(term[i], v, s);
 #endif
-      w += tile->weight[i] * v;
+      w = MCOR_FMA(tile->weight[i], v, w);
 #if MCOR_SOLIDS
-      t += MCOR_EACH(tile, trim_weight, i) * v;
+      t = MCOR_FMA(tile->trim_weight[i], v, t);
 #endif
     }
   }

@@ -29,11 +29,11 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
                       MCOR_EACH(tile, z, i) - z, inv_h),
           inv_h);
 #if MCOR_FIELD != 2
-      s += weight * MCOR_EACH(tile, value, i) * v;
+      s = MCOR_FMA(weight * MCOR_EACH(tile, value, i), v, s);
 #endif
-      w += weight * v;
+      w = MCOR_FMA(weight, v, w);
 #if MCOR_SOLIDS
-      t += MCOR_EACH(tile, trim_weight, i) * v;
+      t = MCOR_FMA(MCOR_EACH(tile, trim_weight, i), v, t);
 #endif
     }
   }

@@ -21,6 +21,11 @@
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
 #define MCOR_OF_OPTIONS (MCOR_PROGRAM == 2)
 
+/* Every device is to give the same bits. Additions and multiplications are exact to the last bit
+ * everywhere, and so is fma, slow as it may be where it is no instruction; but a compiler may not
+ * choose between them. */
+#pragma OPENCL FP_CONTRACT OFF
+
 #define MCOR_CAT_(a, b) a##b
 #define MCOR_CAT(a, b) MCOR_CAT_(a, b)
 
@@ -64,6 +69,9 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_SET(v, lane) (((real*)&(v))[lane])
 #define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
 #endif
+
+/* a * b + c, rounded once, in each lane. In loops over particles. */
+#define MCOR_FMA(a, b, c) fma((realv)(a), (realv)(b), (realv)(c))
 
 /* 0, 1, ... MCOR_LANES - 1. */
 fixv mcor_lane_index(void)

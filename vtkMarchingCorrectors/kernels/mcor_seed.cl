@@ -48,7 +48,7 @@ realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv i
   const realv x = fmax(fabs(dx) + side * e, (realv)0);
   const realv y = fmax(fabs(dy) + side * e, (realv)0);
   const realv z = fmax(fabs(dz) + side * e, (realv)0);
-  return MCOR_W(mcor_sqrt(x * x + y * y + z * z) * inv_h);
+  return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * inv_h);
 }
 #endif
 
@@ -150,8 +150,8 @@ real mcor_seed_middle(const mcor_query* query, const mcor_tile* tile, real iso)
     const realv x = (MCOR_TILE(tile, x, i) - query->center[0]) * scale;
     const realv y = (MCOR_TILE(tile, y, i) - query->center[1]) * scale;
     const realv z = (MCOR_TILE(tile, z, i) - query->center[2]) * scale;
-    const realv near = fmax((real)1 - x * x - y * y - z * z, (realv)0);
-    sum += mcor_seed_coefficients(tile, i, iso) * near * near * near;
+    const realv near = fmax((real)1 - mcor_square(x, y, z), (realv)0);
+    sum = MCOR_FMA(mcor_seed_coefficients(tile, i, iso) * near, near * near, sum);
   }
   return mcor_lane_sum(sum) /
     ((real)0.6383 * MCOR_NORM * MCOR_SUPPORT * MCOR_SUPPORT * MCOR_SUPPORT);
@@ -190,11 +190,11 @@ void mcor_seed_bound(
     const realv inv_h = MCOR_TILE(tile, inv_h, i), c = mcor_seed_coefficients(tile, i, iso);
     const realv side = (c > 0) == (fixv)(from_below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
     const realv w = mcor_seed_weight(x, y, z, e, side, inv_h);
-    bound->sum += c * w;
-    bound->size += fabs(c) * fabs(w);
+    bound->sum = MCOR_FMA(c, w, bound->sum);
+    bound->size = MCOR_FMA(fabs(c), fabs(w), bound->size);
 #if MCOR_FIELD != 2
-    bound->weight +=
-      MCOR_TILE(tile, MCOR_TRIM_WEIGHT, i) * mcor_seed_weight(x, y, z, e, (realv)-1, inv_h);
+    bound->weight = MCOR_FMA(MCOR_TILE(tile, MCOR_TRIM_WEIGHT, i),
+      mcor_seed_weight(x, y, z, e, (realv)-1, inv_h), bound->weight);
 #endif
   }
 }

@@ -191,7 +191,7 @@ fixv mcor_trim_normalize(realv* value, realv gradient[3])
     gradient[a] *= inv_most;
     length2 += gradient[a] * gradient[a];
   }
-  const realv inv = none ? (realv)0 : rsqrt(fmax(length2, (realv)1));
+  const realv inv = none ? (realv)0 : mcor_rsqrt(fmax(length2, (realv)1));
   for (int a = 0; a < 3; ++a)
   {
     gradient[a] *= inv;
@@ -218,7 +218,7 @@ fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real
   const realv y = lf * gf[1] + lw * gw[1];
   const realv z = lf * gf[2] + lw * gw[2];
   const realv damp =
-    fmin(MCOR_TRIM_STEP * rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
+    fmin(MCOR_TRIM_STEP * mcor_rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
   *dx = damp * x;
   *dy = damp * y;
   *dz = damp * z;

@@ -5,7 +5,8 @@ import math
 import unittest
 
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints, vtkObject
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+from vtkmodules.vtkCommonDataModel import (vtkCompositeDataSet, vtkDataObject,
+                                           vtkMultiBlockDataSet, vtkPolyData)
 
 from marchingcorrectors import vtkMarchingCorrectors
 
@@ -122,6 +123,45 @@ class TestFilter(unittest.TestCase):
         extract.Update()
         vtkObject.GlobalWarningDisplayOn()
         self.assertIn("'Pair' has 2 components", extract.GetErrorMessage())
+
+    def test_cost_is_no_part_of_the_output(self):
+        extract = make_filter(make_particles())
+        extract.Update()
+        run, data = extract.GetRunStatistics(), extract.GetOutput().GetFieldData()
+        seconds = run.GetArray("Seconds")
+        names = [seconds.GetComponentName(i) for i in range(seconds.GetNumberOfComponents())]
+        self.assertEqual((names[0], names[-1]), ("input", "total"))
+        self.assertGreater(seconds.GetComponent(0, len(names) - 1), 0)
+        self.assertFalse(data.HasArray("Seconds"))
+        self.assertTrue(data.HasArray("Triangles"))
+
+    def test_excluded_arrays(self):
+        extract = make_filter(make_particles())
+        extract.Update()
+        self.assertTrue(extract.GetOutput().GetPointData().HasArray("hsml"))
+        extract.AddExcludedArray("hsml")
+        extract.Update()
+        self.assertEqual(extract.GetExcludedArray(0), "hsml")
+        self.assertFalse(extract.GetOutput().GetPointData().HasArray("hsml"))
+        self.assertEqual(extract.GetUsedSmoothingLengthArrayName(), "hsml")
+
+    def test_blocks(self):
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, make_particles())
+        blocks.SetBlock(1, make_particles())
+        blocks.GetBlock(1).GetPointData().RemoveArray("Radius")
+        blocks.GetMetaData(1).Set(vtkCompositeDataSet.NAME(), "bare")
+        extract = vtkMarchingCorrectors()
+        extract.SetInputDataObject(blocks)
+        extract.SetInputArrayToProcess(0, 0, 0, POINTS, "Radius")
+        extract.SetValue(0, 0.3)
+        vtkObject.GlobalWarningDisplayOff()
+        extract.Update()
+        vtkObject.GlobalWarningDisplayOn()
+        self.assertRegex(extract.GetErrorMessage(), "^Block 'bare', index 2: .*'Radius'")
+        surfaces = extract.GetOutputDataObject(0)
+        self.assertGreater(surfaces.GetBlock(0).GetNumberOfCells(), 100)
+        self.assertEqual(surfaces.GetBlock(1).GetNumberOfCells(), 0)
 
     def test_enumerations(self):
         extract = vtkMarchingCorrectors()

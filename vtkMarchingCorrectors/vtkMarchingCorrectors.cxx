@@ -3,7 +3,6 @@
 #include "vtkMarchingCorrectors.h"
 
 #include "mcor.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataSetAttributes.h"
@@ -11,10 +10,12 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMarchingCorrectorsBlocks.h"
 #include "vtkMarchingCorrectorsInput.h"
+#include "vtkMarchingCorrectorsInternals.h"
 #include "vtkMarchingCorrectorsOutput.h"
+#include "vtkMarchingCorrectorsValues.h"
 #include "vtkObjectFactory.h"
-#include "vtkPartitionedDataSet.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkVersionMacros.h"
@@ -22,52 +23,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
-
-//------------------------------------------------------------------------------
-// What outlives a run: the core's context, and what the last run's particles and scalar were.
-class vtkMarchingCorrectors::vtkInternals
-{
-public:
-  ~vtkInternals() { mcor_free_context(this->Context); }
-
-  mcor_context* Context = nullptr;
-  std::string Device; // what the context was created for
-  bool InRun = false;
-  bool ReleaseAfterRun = false; // asked for by an observer, while the memory is in use
-
-  std::vector<std::uint64_t> Particles, Scalar;
-  std::uint64_t ParticlesVersion = 0, ScalarVersion = 0;
-
-  // The scalar is kept in the order of the particles: new particles make a new scalar.
-  void SetVersions(vtkMarchingCorrectorsInput& input)
-  {
-    const bool sameParticles = input.ParticlesSignature == this->Particles;
-    if (!sameParticles || input.ScalarSignature != this->Scalar)
-    {
-      ++this->ScalarVersion;
-    }
-    if (!sameParticles)
-    {
-      ++this->ParticlesVersion;
-    }
-    this->Particles = input.ParticlesSignature;
-    this->Scalar = input.ScalarSignature;
-    input.Core.particles_version = this->ParticlesVersion;
-    input.Core.scalar_version = this->ScalarVersion;
-  }
-
-  // After a failure nothing is assumed about what is on the device, or about the device itself.
-  void Forget(mcor_status status)
-  {
-    this->Particles.clear();
-    this->Scalar.clear();
-    if (status == MCOR_DEVICE_ERROR)
-    {
-      mcor_free_context(this->Context);
-      this->Context = nullptr;
-    }
-  }
-};
 
 // These are handed to the core as they are.
 static_assert(static_cast<int>(vtkMarchingCorrectors::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
@@ -81,11 +36,6 @@ static_assert(static_cast<int>(vtkMarchingCorrectors::CUBIC_SPLINE) == MCOR_CUBI
 
 namespace
 {
-int IsOn(vtkTypeBool value)
-{
-  return value ? 1 : 0;
-}
-
 bool IsAborted(vtkMarchingCorrectors* filter)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230101)
@@ -102,37 +52,6 @@ int ReportProgress(void* user, double fraction, const char* phase)
   filter->SetProgressText(phase);
   filter->UpdateProgress(fraction);
   return IsAborted(filter) ? 1 : 0;
-}
-
-// What to call the blocks, in the order of their iteration: by name if there is one, of the block
-// or of what it is a partition of, and by flat index, as ParaView does.
-std::vector<std::string> NameBlocks(vtkDataObjectTree* tree)
-{
-  std::vector<std::string> names;
-  std::string whole; // of which the blocks up to index `last` are partitions
-  unsigned int last = 0;
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(tree->NewTreeIterator());
-  iterator->VisitOnlyLeavesOff();
-  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-  {
-    const unsigned int index = iterator->GetCurrentFlatIndex();
-    vtkInformation* about =
-      iterator->HasCurrentMetaData() ? iterator->GetCurrentMetaData() : nullptr;
-    const char* own = about ? about->Get(vtkCompositeDataSet::NAME()) : nullptr;
-    if (auto* parts = vtkPartitionedDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
-    {
-      whole = own ? own : "";
-      last = index + parts->GetNumberOfPartitions();
-    }
-    else if (!iterator->GetCurrentDataObject()->IsA("vtkCompositeDataSet"))
-    {
-      const std::string name = own ? own : index <= last ? whole : "";
-      names.push_back(
-        "Block " + (name.empty() ? "" : "'" + name + "', ") + "index " + std::to_string(index));
-    }
-  }
-  return names;
 }
 
 void PrintName(ostream& os, vtkIndent indent, const char* label, const std::string& name)
@@ -236,15 +155,7 @@ vtkFieldData* vtkMarchingCorrectors::GetRunStatistics()
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectors::ReleaseDeviceMemory()
 {
-  vtkInternals& internals = *this->Internals;
-  if (internals.InRun)
-  {
-    internals.ReleaseAfterRun = true;
-  }
-  else if (internals.Context)
-  {
-    mcor_release_memory(internals.Context);
-  }
+  this->Internals->Release();
 }
 
 //------------------------------------------------------------------------------
@@ -322,25 +233,6 @@ int vtkMarchingCorrectors::Fail(const std::string& message)
 }
 
 //------------------------------------------------------------------------------
-bool vtkMarchingCorrectors::PrepareDevice()
-{
-  vtkInternals& internals = *this->Internals;
-  if (internals.Context && internals.Device == this->Device)
-  {
-    return true;
-  }
-  internals.Forget(MCOR_DEVICE_ERROR);
-  internals.Device = this->Device;
-  if (mcor_create_context(this->Device.c_str(), &internals.Context) == MCOR_OK)
-  {
-    return true;
-  }
-  this->Fail(mcor_last_error(internals.Context));
-  internals.Forget(MCOR_DEVICE_ERROR);
-  return false;
-}
-
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::FillOptions(mcor_options& options) const
 {
   mcor_set_default_options(&options);
@@ -357,19 +249,19 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options) const
   options.boundary_detection =
     this->BoundaryDetection == EIGENVALUE ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->VertexThreshold;
-  options.preview = IsOn(this->Preview);
+  options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
   options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
-  options.normals = IsOn(this->ComputeNormals);
-  options.gradients = IsOn(this->ComputeGradients);
-  options.weight_sum = IsOn(this->ComputeWeightSum);
-  options.boundary_eigenvalue = IsOn(this->ComputeBoundaryEigenvalue);
-  options.correction_length = IsOn(this->ComputeCorrectionLength);
-  options.residual = IsOn(this->ComputeResidual);
-  options.boundary_flag = IsOn(this->ComputeBoundaryFlag);
-  options.iso_value = IsOn(this->ComputeScalars);
+  options.normals = this->ComputeNormals;
+  options.gradients = this->ComputeGradients;
+  options.weight_sum = this->ComputeWeightSum;
+  options.boundary_eigenvalue = this->ComputeBoundaryEigenvalue;
+  options.correction_length = this->ComputeCorrectionLength;
+  options.residual = this->ComputeResidual;
+  options.boundary_flag = this->ComputeBoundaryFlag;
+  options.iso_value = this->ComputeScalars;
 }
 
 //------------------------------------------------------------------------------
@@ -405,7 +297,7 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrec
     input.Choice.FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
   if (values->GetNumberOfContours() == 0)
   {
-    return { input.Choice.FreeSurface ? 0.5 : input.MiddleOfScalarRange() };
+    return { input.Choice.FreeSurface ? 0.5 : vtkMarchingCorrectorsMiddleOfRange(input.Core) };
   }
   return { values->GetValues(), values->GetValues() + values->GetNumberOfContours() };
 }
@@ -414,21 +306,15 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrec
 int vtkMarchingCorrectors::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkInternals& internals = *this->Internals;
   this->ErrorMessage.clear();
   this->BlockName.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
-  internals.InRun = true;
+  this->Internals->BeginRun();
   const int done = vtkDataObjectTree::GetData(inputVector[0])
     ? this->ExtractBlocks(
         vtkDataObjectTree::GetData(inputVector[0]), vtkDataObjectTree::GetData(outputVector))
     : this->ExtractFrom(vtkPointSet::GetData(inputVector[0]), vtkPolyData::GetData(outputVector));
-  internals.InRun = false;
-  if (internals.ReleaseAfterRun)
-  {
-    internals.ReleaseAfterRun = false;
-    this->ReleaseDeviceMemory();
-  }
+  this->Internals->EndRun();
   return done;
 }
 
@@ -437,7 +323,7 @@ int vtkMarchingCorrectors::RequestData(
 int vtkMarchingCorrectors::ExtractBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
   output->CopyStructure(input);
-  const std::vector<std::string> names = NameBlocks(input);
+  const std::vector<std::string> names = vtkMarchingCorrectorsNameBlocks(input);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(input->NewTreeIterator());
   iterator->InitTraversal();
@@ -494,7 +380,8 @@ int vtkMarchingCorrectors::ExtractFrom(vtkPointSet* particles, vtkPolyData* outp
                     << choice.FluidValue << ", so there is no fluid and no surface.");
     return 1;
   }
-  return this->PrepareDevice() ? this->Extract(input, options, output) : 0;
+  const std::string lacking = this->Internals->Prepare(this->Device);
+  return lacking.empty() ? this->Extract(input, options, output) : this->Fail(lacking);
 }
 
 //------------------------------------------------------------------------------

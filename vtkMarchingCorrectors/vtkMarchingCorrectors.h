@@ -764,7 +764,6 @@ private:
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
   std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
-  bool PrepareDevice();
   void SetUsedNames(const vtkMarchingCorrectorsInput& input);
   int Fail(const std::string& message);
 

@@ -3,19 +3,14 @@
 #include "vtkMarchingCorrectorsInput.h"
 
 #include "vtkAOSDataArrayTemplate.h"
-#include "vtkArrayDispatch.h"
-#include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
+#include "vtkMarchingCorrectorsValues.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkSMPTools.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
-#include <cmath>
 #include <cstring>
 
 namespace
@@ -71,61 +66,6 @@ std::uint64_t BitsOf(double value)
 bool Contains(const std::vector<std::string>& names, const std::string& name)
 {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/** work(values, index of the first) for all values of an array of any layout, in parallel. */
-template <typename WorkT>
-void ForValues(vtkDataArray* array, const WorkT& work)
-{
-  const auto run = [&work](auto* typed)
-  {
-    vtkSMPTools::For(0, typed->GetNumberOfValues(), 65536,
-      [&](vtkIdType begin, vtkIdType end)
-      { work(vtk::DataArrayValueRange(typed, begin, end), begin); });
-  };
-  if (!vtkArrayDispatch::Dispatch::Execute(array, run))
-  {
-    run(array);
-  }
-}
-
-vtkSmartPointer<vtkDataArray> CopyAsDouble(vtkDataArray* array)
-{
-  auto copy = vtkSmartPointer<vtkDoubleArray>::New();
-  copy->SetNumberOfComponents(array->GetNumberOfComponents());
-  copy->SetNumberOfTuples(array->GetNumberOfTuples());
-  double* to = copy->GetPointer(0);
-  ForValues(array,
-    [to](auto values, vtkIdType first)
-    {
-      std::transform(values.begin(), values.end(), to + first,
-        [](auto value) { return static_cast<double>(value); });
-    });
-  return copy;
-}
-
-/** Value i of what View() has made. */
-double ValueOf(const mcor_array& array, vtkIdType i)
-{
-  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
-                                    : static_cast<const double*>(array.data)[i];
-}
-
-double ScalarOf(const mcor_input& core, vtkIdType particle)
-{
-  const int components = core.scalar.components;
-  const vtkIdType first = particle * components;
-  if (core.scalar_component >= 0 && !core.scalar_dot.data)
-  {
-    return ValueOf(core.scalar, first + core.scalar_component);
-  }
-  double sum = 0.0;
-  for (vtkIdType i = first; i < first + components; ++i)
-  {
-    sum +=
-      ValueOf(core.scalar, i) * ValueOf(core.scalar_dot.data ? core.scalar_dot : core.scalar, i);
-  }
-  return core.scalar_dot.data ? sum : std::sqrt(sum);
 }
 
 /** VTK's modification times are unique in a process, so that object and time identify a state. */
@@ -332,21 +272,8 @@ bool vtkMarchingCorrectorsInput::CollectSolids()
     return false;
   }
   this->Solid.resize(static_cast<size_t>(this->Core.count));
-  std::atomic<vtkIdType> fluidCount{ 0 };
-  ForValues(this->Fluid,
-    [&](auto values, vtkIdType first)
-    {
-      vtkIdType n = 0;
-      std::uint8_t* solid = this->Solid.data() + first;
-      for (const auto value : values)
-      {
-        const bool isFluid = static_cast<double>(value) == this->Choice.FluidValue;
-        *solid++ = isFluid ? 0 : 1;
-        n += isFluid ? 1 : 0;
-      }
-      fluidCount += n;
-    });
-  this->FluidCount = fluidCount;
+  this->FluidCount =
+    vtkMarchingCorrectorsMarkSolids(this->Fluid, this->Choice.FluidValue, this->Solid.data());
   this->Core.solid = this->Solid.data();
   return true;
 }
@@ -463,7 +390,7 @@ mcor_array vtkMarchingCorrectorsInput::View(vtkDataArray* array)
   vtkSmartPointer<vtkDataArray> doubles = array;
   if (!vtkAOSDataArrayTemplate<double>::FastDownCast(array))
   {
-    doubles = CopyAsDouble(array);
+    doubles = vtkMarchingCorrectorsCopyAsDouble(array);
   }
   view.type = MCOR_FLOAT64;
   view.data = doubles->GetVoidPointer(0);
@@ -544,36 +471,4 @@ std::string vtkMarchingCorrectorsInput::ListPointArrays() const
     list += (i ? ", " : "") + NameOf(pointData->GetAbstractArray(i));
   }
   return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
-}
-
-//------------------------------------------------------------------------------
-double vtkMarchingCorrectorsInput::MiddleOfScalarRange() const
-{
-  std::vector<double> values(static_cast<size_t>(this->Core.count));
-  vtkSMPTools::For(0, this->Core.count,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        values[static_cast<size_t>(i)] = ScalarOf(this->Core, i);
-      }
-    });
-  size_t count = 0;
-  for (size_t i = 0; i < values.size(); ++i)
-  {
-    if (std::isfinite(values[i]) && (this->Solid.empty() || !this->Solid[i]))
-    {
-      values[count++] = values[i];
-    }
-  }
-  values.resize(count);
-  if (values.empty())
-  {
-    return 0.0;
-  }
-  const auto margin = static_cast<std::ptrdiff_t>(values.size() / 50);
-  std::nth_element(values.begin(), values.begin() + margin, values.end());
-  const double low = values[static_cast<size_t>(margin)];
-  std::nth_element(values.begin(), values.end() - 1 - margin, values.end());
-  return 0.5 * low + 0.5 * *(values.end() - 1 - margin);
 }

@@ -78,12 +78,6 @@ public:
    */
   bool Collect();
 
-  /**
-   * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest
-   * and highest values are left out, because single particles of a spray have extreme ones.
-   */
-  double MiddleOfScalarRange() const;
-
   const vtkMarchingCorrectorsChoice Choice;
   mcor_input Core = {};
   std::string Error;

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMarchingCorrectorsInternals.h"
+
+#include "vtkMarchingCorrectorsInput.h"
+
+//------------------------------------------------------------------------------
+vtkMarchingCorrectors::vtkInternals::~vtkInternals()
+{
+  mcor_free_context(this->Context);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMarchingCorrectors::vtkInternals::Prepare(const std::string& device)
+{
+  if (this->Context && this->Device == device)
+  {
+    return "";
+  }
+  this->Forget(MCOR_DEVICE_ERROR);
+  this->Device = device;
+  if (mcor_create_context(device.c_str(), &this->Context) == MCOR_OK)
+  {
+    return "";
+  }
+  const std::string why = mcor_last_error(this->Context);
+  this->Forget(MCOR_DEVICE_ERROR);
+  return why;
+}
+
+//------------------------------------------------------------------------------
+// The scalar is kept in the order of the particles: new particles make a new scalar.
+void vtkMarchingCorrectors::vtkInternals::SetVersions(vtkMarchingCorrectorsInput& input)
+{
+  const bool sameParticles = input.ParticlesSignature == this->Particles;
+  if (!sameParticles || input.ScalarSignature != this->Scalar)
+  {
+    ++this->ScalarVersion;
+  }
+  if (!sameParticles)
+  {
+    ++this->ParticlesVersion;
+  }
+  this->Particles = input.ParticlesSignature;
+  this->Scalar = input.ScalarSignature;
+  input.Core.particles_version = this->ParticlesVersion;
+  input.Core.scalar_version = this->ScalarVersion;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::vtkInternals::Forget(mcor_status status)
+{
+  this->Particles.clear();
+  this->Scalar.clear();
+  if (status == MCOR_DEVICE_ERROR)
+  {
+    mcor_free_context(this->Context);
+    this->Context = nullptr;
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::vtkInternals::Release()
+{
+  if (this->InRun)
+  {
+    this->ReleaseAfterRun = true;
+  }
+  else if (this->Context)
+  {
+    mcor_release_memory(this->Context);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::vtkInternals::BeginRun()
+{
+  this->InRun = true;
+  this->ReleaseAfterRun = false;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::vtkInternals::EndRun()
+{
+  this->InRun = false;
+  if (this->ReleaseAfterRun)
+  {
+    this->Release();
+  }
+}

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: what outlives a run, the core's context and what the particles and the
+ * scalar were that it keeps.
+ */
+#ifndef vtkMarchingCorrectorsInternals_h
+#define vtkMarchingCorrectorsInternals_h
+
+#include "mcor.h"
+#include "vtkMarchingCorrectors.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkMarchingCorrectorsInput;
+
+class vtkMarchingCorrectors::vtkInternals
+{
+public:
+  ~vtkInternals();
+
+  /** A context for this device, the same one if there is one. Nothing if it is usable, else why not.
+   */
+  std::string Prepare(const std::string& device);
+
+  /** Tells the core what is the same as in the run before. */
+  void SetVersions(vtkMarchingCorrectorsInput& input);
+
+  /** After a failure nothing is assumed about what is on the device, or about the device itself. */
+  void Forget(mcor_status status);
+
+  /** Gives memory back: between a BeginRun() and an EndRun(), where it is in use, at the end. */
+  void Release();
+  void BeginRun();
+  void EndRun();
+
+  mcor_context* Context = nullptr;
+
+private:
+  std::string Device; // what the context was created for
+  bool InRun = false;
+  bool ReleaseAfterRun = false;
+  std::vector<std::uint64_t> Particles, Scalar;
+  std::uint64_t ParticlesVersion = 0, ScalarVersion = 0;
+};
+
+#endif

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMarchingCorrectorsValues.h"
+
+#include "vtkArrayDispatch.h"
+#include "vtkDataArrayRange.h"
+#include "vtkDoubleArray.h"
+#include "vtkSMPTools.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+namespace
+{
+/** work(values, index of the first) for all values of an array of any layout, in parallel. */
+template <typename WorkT>
+void ForValues(vtkDataArray* array, const WorkT& work)
+{
+  const auto run = [&work](auto* typed)
+  {
+    vtkSMPTools::For(0, typed->GetNumberOfValues(), 65536,
+      [&](vtkIdType begin, vtkIdType end)
+      { work(vtk::DataArrayValueRange(typed, begin, end), begin); });
+  };
+  if (!vtkArrayDispatch::Dispatch::Execute(array, run))
+  {
+    run(array);
+  }
+}
+
+/** Value i, of either type. */
+double ValueOf(const mcor_array& array, vtkIdType i)
+{
+  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
+                                    : static_cast<const double*>(array.data)[i];
+}
+
+double ScalarOf(const mcor_input& core, vtkIdType particle)
+{
+  const int components = core.scalar.components;
+  const vtkIdType first = particle * components;
+  if (core.scalar_component >= 0 && !core.scalar_dot.data)
+  {
+    return ValueOf(core.scalar, first + core.scalar_component);
+  }
+  double sum = 0.0;
+  for (vtkIdType i = first; i < first + components; ++i)
+  {
+    sum +=
+      ValueOf(core.scalar, i) * ValueOf(core.scalar_dot.data ? core.scalar_dot : core.scalar, i);
+  }
+  return core.scalar_dot.data ? sum : std::sqrt(sum);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* array)
+{
+  auto copy = vtkSmartPointer<vtkDoubleArray>::New();
+  copy->SetNumberOfComponents(array->GetNumberOfComponents());
+  copy->SetNumberOfTuples(array->GetNumberOfTuples());
+  double* to = copy->GetPointer(0);
+  ForValues(array,
+    [to](auto values, vtkIdType first)
+    {
+      std::transform(values.begin(), values.end(), to + first,
+        [](auto value) { return static_cast<double>(value); });
+    });
+  return copy;
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid)
+{
+  std::atomic<vtkIdType> fluidCount{ 0 };
+  ForValues(array,
+    [&](auto values, vtkIdType first)
+    {
+      vtkIdType count = 0;
+      std::uint8_t* to = solid + first;
+      for (const auto value : values)
+      {
+        const bool isFluid = static_cast<double>(value) == fluid;
+        *to++ = isFluid ? 0 : 1;
+        count += isFluid ? 1 : 0;
+      }
+      fluidCount += count;
+    });
+  return fluidCount;
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core)
+{
+  std::vector<double> values(static_cast<size_t>(core.count));
+  vtkSMPTools::For(0, core.count,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        values[static_cast<size_t>(i)] = ScalarOf(core, i);
+      }
+    });
+  size_t count = 0;
+  for (size_t i = 0; i < values.size(); ++i)
+  {
+    if (std::isfinite(values[i]) && (!core.solid || !core.solid[i]))
+    {
+      values[count++] = values[i];
+    }
+  }
+  values.resize(count);
+  if (values.empty())
+  {
+    return 0.0;
+  }
+  const auto margin = static_cast<std::ptrdiff_t>(values.size() / 50);
+  std::nth_element(values.begin(), values.begin() + margin, values.end());
+  const double low = values[static_cast<size_t>(margin)];
+  std::nth_element(values.begin(), values.end() - 1 - margin, values.end());
+  return 0.5 * low + 0.5 * *(values.end() - 1 - margin);
+}

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: what is done with every value of an array, on all processors.
+ */
+#ifndef vtkMarchingCorrectorsValues_h
+#define vtkMarchingCorrectorsValues_h
+
+#include "mcor.h"
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+
+class vtkDataArray;
+
+/** Of any type and layout. */
+vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* array);
+
+/** Writes 0 to `solid` where the array has the value `fluid`, else 1. Returns how many are 0. */
+vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid);
+
+/**
+ * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest and
+ * highest values are left out, because single particles of a spray have extreme ones.
+ */
+double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core);
+
+#endif

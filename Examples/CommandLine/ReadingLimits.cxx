@@ -55,7 +55,7 @@ double MostBytes(double fileBytes)
 /// The slowest form, numbers as text, is read at 10 MB a second.
 double MostSeconds(double fileBytes)
 {
-  return 60.0 + fileBytes / 100000.0;
+  return 10.0 + fileBytes / 100000.0;
 }
 
 double SecondsUsed()

@@ -94,7 +94,7 @@ void SetHandlers(void (*handler)(int))
 }
 
 /// Waits for the child's end, removes what it left, and returns what waitpid says of it.
-int WaitAndCleanUp()
+int WaitAndCleanUp(const std::function<void()>& cleanUp)
 {
   // Not yet gone while signals are still handed on: its number could be another process's soon.
   siginfo_t ignored;
@@ -112,6 +112,7 @@ int WaitAndCleanUp()
   {
     std::remove(file.c_str());
   }
+  cleanUp();
   SetHandlers(SIG_DFL);
   return status;
 }
@@ -156,7 +157,7 @@ int Report(int status)
 }
 
 //------------------------------------------------------------------------------
-int RunSupervised(const std::function<int()>& work)
+int RunSupervised(const std::function<int()>& work, const std::function<void()>& cleanUp)
 {
   void* memory =
     mmap(nullptr, sizeof(SharedState), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -174,7 +175,9 @@ int RunSupervised(const std::function<int()>& work)
   }
   if (memory == MAP_FAILED || Child < 0)
   {
-    std::cerr << "marching-correctors: no process could be started: " << std::strerror(errno)
+    const int error = errno;
+    cleanUp();
+    std::cerr << "marching-correctors: no process could be started: " << std::strerror(error)
               << "\n";
     return 1;
   }
@@ -182,7 +185,7 @@ int RunSupervised(const std::function<int()>& work)
   {
     Work(work, self);
   }
-  return Report(WaitAndCleanUp());
+  return Report(WaitAndCleanUp(cleanUp));
 }
 
 //------------------------------------------------------------------------------

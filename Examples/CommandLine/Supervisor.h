@@ -11,8 +11,8 @@
 /// and graphics libraries can crash, abort, exit or use up all memory; none of that reaches this
 /// process, which then says in one sentence what happened, and removes a file half written. Signals
 /// sent to this process are handed on, and end both. Returns the exit status: what the work
-/// returned, or 1.
-int RunSupervised(const std::function<int()>& work);
+/// returned, or 1. `cleanUp` runs here when the child is gone, however it ended.
+int RunSupervised(const std::function<int()>& work, const std::function<void()>& cleanUp);
 
 /// For as long as it lives, what is said if the work ends unexpectedly: "FAILURE: ...; HINT".
 class Activity

@@ -11,6 +11,7 @@
 #include "Supervisor.h"
 #include "SurfaceFile.h"
 #include "SurfacePicture.h"
+#include "TemporaryCache.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkFieldData.h"
@@ -414,5 +415,6 @@ int main(int argc, char* argv[])
   {
     return status;
   }
-  return RunSupervised([&] { return Status([&] { Execute(options); }); });
+  TemporaryCache cache;
+  return RunSupervised([&] { return Status([&] { Execute(options); }); }, [&] { cache.Remove(); });
 }

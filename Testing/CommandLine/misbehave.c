@@ -117,7 +117,7 @@ void* XML_ParserCreate(const char* encoding)
   }
   if (is_variable("MCOR_READER", "loop"))
   {
-    // As an endless loop for a minute and more: the limit that reading has is made shorter.
+    // As an endless loop: the limit that reading has is made shorter.
     struct rlimit limit = { 0, 0 };
     getrlimit(RLIMIT_CPU, &limit);
     if (limit.rlim_cur == RLIM_INFINITY)

@@ -191,6 +191,19 @@ class BadData(CommandLineTest):
         self.refuse_with("(?i)device.*nonesuch", *ISO, "--device", "nonesuch")
         self.refuse_with("(?i)device.*99", *ISO, "--device", "99")
 
+    def test_no_home(self):
+        """PoCL wants a folder for its programs, which a home that is none cannot give."""
+        temporary = self.directory / "temporary"
+        temporary.mkdir()
+        environment = {k: v for k, v in os.environ.items()
+                       if k not in ("POCL_CACHE_DIR", "XDG_CACHE_HOME")}
+        environment.update({"HOME": str(self.input), "TMPDIR": str(temporary)})
+        result = self.run_program("--list-devices", env=environment)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        result = self.extract("--free-surface", env=environment)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(list(temporary.iterdir()), [])
+
     def test_no_platform(self):
         # The ICD loader of Debian then finds no driver at all.
         environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere")}

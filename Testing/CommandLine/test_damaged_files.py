@@ -1,0 +1,139 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Damaged files, over which VTK's readers crash: test_damaged_files.py PROGRAM PRELOAD.
+
+MCOR_MUTATIONS=N in the environment tries N damaged files (default 150), MCOR_FIRST_MUTATION=K begins
+at the Kth. A file that fails is the same in every run.
+"""
+import os
+import random
+import re
+import unittest
+
+import binary_files
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+COUNT = int(os.environ.get("MCOR_MUTATIONS", "150"))
+FIRST = int(os.environ.get("MCOR_FIRST_MUTATION", "0"))
+NUMBERS = [b"0", b"-1", b"1", b"3", b"26", b"28", b"1000000", b"2147483647", b"2147483648",
+           b"4294967295", b"100000000000", b"9223372036854775807", b"-9223372036854775808", b"1e300",
+           b"nan", b""]
+
+
+def mutated(data, rng):
+    """A little of it changed: a number or a word, a tag or a line, a byte, or some bytes lost."""
+    def replaced(match, by):
+        return data[:match.start()] + by + data[match.end():]
+
+    head = min(len(data), rng.choice([300, 600, len(data)]))
+    kind = rng.randrange(6)
+    if kind < 3:
+        matches = list(re.finditer(rb"(?<=[\" ])-?\d+" if kind < 2 else rb"[A-Za-z]+", data[:head]))
+        by = rng.choice(NUMBERS) if kind < 2 else rng.choice(matches).group()
+        return replaced(rng.choice(matches), by)
+    if kind == 3:
+        matches = list(re.finditer(rb"<[^>]*>|[^\n]*\n", data))
+        match = rng.choice(matches)
+        return replaced(match, rng.choice([b"", 2 * match.group(), rng.choice(matches).group()]))
+    at = rng.randrange(head)
+    lost = 1 if kind == 4 else rng.randrange(1, 40)
+    return data[:at] + (bytes([rng.randrange(256)]) if kind == 4 else b"") + data[at + lost:]
+
+
+class DamagedFiles(CommandLineTest):
+    """A damaged file is read all the same or refused: status 0 or 1, and one sentence at most."""
+
+    def setUp(self):
+        super().setUp()
+        points, arrays = files.lattice(3)
+        self.forms = binary_files.all_forms(points, arrays)
+        for name, write in (("ascii.vtp", files.write_vtp), ("ascii.vtu", files.write_vtu),
+                            ("ascii.vtk", files.write_legacy)):
+            write(self.directory / name, points, arrays)
+            self.forms[name] = (self.directory / name).read_bytes()
+
+    def run_with(self, name, data, **options):
+        path = self.directory / name
+        path.write_bytes(data)
+        return self.extract("--free-surface", "--quiet", source=path, **options)
+
+    def cannot_read(self, result, name, why):
+        self.refuse(result, 1, f"^marching-correctors: .*{name} cannot be read: .*{why}")
+
+    def test_undamaged(self):
+        sizes = set()
+        for name, data in self.forms.items():
+            with self.subTest(name):
+                result = self.run_with(name, data)
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+                sizes.add(self.output.stat().st_size)
+        self.assertEqual(len(sizes), 1)
+
+    def test_mutations(self):
+        names = sorted(self.forms)
+        statuses = set()
+        for seed in range(FIRST, FIRST + COUNT):
+            rng = random.Random(seed)
+            name = names[seed % len(names)]
+            data = self.forms[name]
+            for _ in range(rng.choice([1, 1, 1, 2, 3])):
+                data = mutated(data, rng)
+            with self.subTest(seed=seed, form=name):
+                self.output.unlink(missing_ok=True)
+                path = self.directory / ("damaged" + name)
+                path.write_bytes(data)
+                result = self.extract("--scalar", "Nothing", "--iso", "1", source=path, timeout=300)
+                if "no point array 'Nothing'" in result.stderr:  # it could be read: now in earnest
+                    result = self.extract("--free-surface", "--quiet", source=path, timeout=300)
+                statuses.add(result.returncode)
+                if result.returncode == 0:
+                    self.assertRegex(result.stderr, r"\A(marching-correctors: warning: [^\n]*\n)*\Z")
+                    self.assertTrue(self.output.read_text().rstrip().endswith("</VTKFile>"))
+                else:
+                    self.refuse(result, 1, "[a-z]")
+        self.assertLessEqual({0, 1}, statuses)
+
+    def test_crash(self):
+        """Files that crash the readers of VTK 9.1 and 9.3."""
+        for name in ("inline.vtp", "appended.vtu"):
+            with self.subTest(name):
+                data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')
+                self.refuse(self.run_with(name, data), 1, f"{name} (cannot be read|holds no points)")
+        data = self.forms["binary.vtk"].replace(b"POINT_DATA 27", b"POINT_DATA 2700000")
+        self.cannot_read(self.run_with("binary.vtk", data), "binary.vtk", "")
+
+    def test_huge_numbers(self):
+        """No memory is asked for that a file of some kilobytes cannot need."""
+        for name, good, bad in (
+                ("inline.vtp", b'Components="1"', b'Components="2147483647"'),
+                ("inline.vtu", b'NumberOfPoints="27"', b'NumberOfPoints="4000000000"'),
+                ("binary.vtk", b"Density 1 27", b"Density 2147483647 27"),
+                ("ascii.vtk", b"POINTS 27", b"POINTS 2000000000")):
+            with self.subTest(name):
+                self.assertIn(good, self.forms[name])
+                result = self.run_with(name, self.forms[name].replace(good, bad))
+                self.cannot_read(result, name, "")
+
+    def test_any_end_of_the_reader(self):
+        """Whatever the reader does: VTK's XML library is replaced by one that ends the process."""
+        for reader, why in (("exit", "the program was ended in the middle of it"),
+                            ("abort", r"the program crashed there \(Aborted\)"),
+                            ("kill", "the program was killed, as is done where memory runs out"),
+                            ("fault", r"the program crashed there \(Segmentation fault\)"),
+                            ("recursion", r"the program crashed there \(Segmentation fault\)"),
+                            ("loop", "it took too much processor time")):
+            with self.subTest(reader):
+                result = self.extract("--free-surface", env=self.misbehaving(reader=reader))
+                if result.returncode == 0:
+                    self.skipTest("this VTK has an XML library of its own")
+                self.cannot_read(result, "particles.vtp", why + "; the file may be damaged$")
+
+    def test_wrong_sizes(self):
+        """An array of fewer entries than points never reaches the filter."""
+        data = self.forms["ascii.vtk"].replace(b"POINTS 27", b"POINTS 26")
+        self.cannot_read(self.run_with("ascii.vtk", data), "ascii.vtk", "")
+
+
+if __name__ == "__main__":
+    main()

@@ -61,7 +61,8 @@ typedef struct mcor_cl
   bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
   int lanes;                      /* of the programs */
   int chunks;                     /* runs into which scans and sorts cut their arrays */
-  int register_lanes; /* that the device's compiler has registers for; 0: not asked yet */
+  int register_lanes;  /* that the device's compiler has registers for; 0: not asked yet */
+  bool keeps_binaries; /* programs are kept in files, see mcor_cache.h */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
   uint64_t memory_limit; /* what of device_memory may be used; of the call under way */

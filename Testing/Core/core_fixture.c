@@ -25,6 +25,24 @@ int core_tear_down(void** state)
   return 0;
 }
 
+void core_create_form(mcor_context** context, const char* form)
+{
+  const char* kept = getenv("MCOR_DEVICE_FORM");
+  char* last = kept ? core_copy(kept, strlen(kept) + 1) : NULL;
+  setenv("MCOR_DEVICE_FORM", form, 1);
+  const mcor_status status = mcor_create_context(NULL, context);
+  if (last)
+  {
+    setenv("MCOR_DEVICE_FORM", last, 1);
+  }
+  else
+  {
+    unsetenv("MCOR_DEVICE_FORM");
+  }
+  free(last);
+  CORE_OK(*context, status);
+}
+
 void* core_copy(const void* data, size_t bytes)
 {
   void* copy = malloc(bytes);

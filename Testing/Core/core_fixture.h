@@ -52,6 +52,8 @@ typedef struct core_set
 /* Group fixtures: *state is a mcor_context*. */
 int core_set_up(void** state);
 int core_tear_down(void** state);
+/* A context with the form of the kernels for "cpu" or "gpu", whatever the device is. */
+void core_create_form(mcor_context** context, const char* form);
 
 /* A block of heap memory that holds a copy of exactly these bytes. */
 void* core_copy(const void* data, size_t bytes);

@@ -391,10 +391,135 @@ static void test_smoothing_lengths(void** state)
   core_free_set(&set);
 }
 
+/* What of the grid must not depend on the order of the input: a row for each array. */
+typedef struct sorted_set
+{
+  int count;
+  int32_t* x[3];
+  float *inv_h, *weight, *value;
+  int32_t* order;
+} sorted_set;
+
+static void* read_array(mcor_context* context, const mcor_buffer* buffer, int count)
+{
+  void* data = malloc((size_t)count * 4);
+  assert_non_null(data);
+  CORE_OK(context, mcor_read(context, buffer, 0, data, (size_t)count * 4));
+  return data;
+}
+
+static sorted_set sort_set(mcor_context* context, const core_set* set)
+{
+  const double iso = 100; /* no surface: the grid is all that is wanted */
+  const mcor_input input = core_input_to_keep(set);
+  mcor_options options = core_options(&iso);
+  options.seeds = MCOR_PAIRS;
+  options.cube_size = 0.5;
+  mcor_surface surface = core_extract(context, &input, &options);
+  mcor_free_surface(&surface);
+  const mcor_grid* g = &context->grid;
+  const int n = g->count;
+  return (sorted_set){ n,
+    { read_array(context, &g->px, n), read_array(context, &g->py, n),
+      read_array(context, &g->pz, n) },
+    read_array(context, &g->inv_h, n), read_array(context, &g->trim_weight, n),
+    read_array(context, &g->value, n), read_array(context, &g->order, n) };
+}
+
+static void free_sorted(sorted_set* s)
+{
+  void* const arrays[] = { s->x[0], s->x[1], s->x[2], s->inv_h, s->weight, s->value, s->order };
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+  {
+    free(arrays[i]);
+  }
+}
+
+/* Every particle once, its scalar with it; a cell's particles by x; coincident ones by scalar. */
+static void check_sorted(mcor_context* context, const core_set* set, const sorted_set* s)
+{
+  uint8_t* seen = calloc((size_t)set->count, 1);
+  assert_non_null(seen);
+  assert_int_equal(s->count, set->count);
+  int descents = 0;
+  for (int i = 0; i < s->count; ++i)
+  {
+    const int j = s->order[i];
+    CORE_CHECK(j >= 0 && j < s->count && !seen[j], "place %d has particle %d", i, j);
+    seen[j] = 1;
+    CORE_CHECK(s->value[i] == (float)(set->scalar[j] - context->value_shift),
+      "place %d has the scalar %g, not that of particle %d", i, (double)s->value[i], j);
+    if (i > 0)
+    {
+      descents += s->x[0][i] < s->x[0][i - 1];
+      const int same = s->x[0][i] == s->x[0][i - 1] && s->x[1][i] == s->x[1][i - 1] &&
+        s->x[2][i] == s->x[2][i - 1] && s->weight[i] == s->weight[i - 1];
+      CORE_CHECK(!same || s->value[i - 1] <= s->value[i],
+        "coincident particles at place %d are not sorted", i);
+    }
+  }
+  CORE_CHECK(descents < 16, "x descends %d times in at most 16 cells", descents);
+  free(seen);
+}
+
+static void check_same_order(const sorted_set* a, const sorted_set* b)
+{
+  for (int i = 0; i < a->count; ++i)
+  {
+    CORE_CHECK(a->x[0][i] == b->x[0][i] && a->x[1][i] == b->x[1][i] && a->x[2][i] == b->x[2][i] &&
+        a->inv_h[i] == b->inv_h[i] && a->weight[i] == b->weight[i] && a->value[i] == b->value[i],
+      "place %d depends on the order of the input", i);
+  }
+}
+
+/* `count` particles, all in few cells, `coincident` of them at one place. */
+static void check_crowd(mcor_context* context, int count, int coincident)
+{
+  core_set set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
+  uint64_t seed = 9;
+  for (int i = 0; i < count + 40; ++i)
+  {
+    set.scalar[i] = (double)(random_bits(&seed) % 1000);
+    set.volume[i] = i % 3 ? 1 : 2;
+    for (int a = 0; a < 3; ++a)
+    {
+      double* x = set.position + 3 * i + a;
+      *x = i < coincident ? 0.1 : i < count ? floor(*x * 30) / 30 : *x + 3;
+      set.volume[i] = i < coincident ? 1 : set.volume[i];
+    }
+  }
+  sorted_set sorted = sort_set(context, &set);
+  check_sorted(context, &set, &sorted);
+  int64_t* order = core_make_order(set.count, 4);
+  core_set permuted = core_permute(&set, order);
+  sorted_set other = sort_set(context, &permuted);
+  check_same_order(&sorted, &other);
+  free_sorted(&sorted);
+  free_sorted(&other);
+  core_free_set(&permuted);
+  core_free_set(&set);
+  free(order);
+}
+
+/* Cells with more particles than one work-item sorts, and more coincident ones. */
+static void test_crowds(void** state)
+{
+  static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },
+    { 257, 0 }, { 1000, 130 }, { 1000, 1000 }, { 5000, 700 }, { 20000, 0 }, { 20000, 9000 } };
+  mcor_context* gpu = NULL;
+  core_create_form(&gpu, "gpu");
+  for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i)
+  {
+    check_crowd(*state, counts[i][0], counts[i][1]);
+    check_crowd(gpu, counts[i][0], counts[i][1]);
+  }
+  mcor_free_context(gpu);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_query), cmocka_unit_test(test_volumes),
     cmocka_unit_test(test_volumes_of_solids), cmocka_unit_test(test_estimate),
-    cmocka_unit_test(test_smoothing_lengths) };
+    cmocka_unit_test(test_smoothing_lengths), cmocka_unit_test(test_crowds) };
   return cmocka_run_group_tests_name("grid", tests, core_set_up, core_tear_down);
 }

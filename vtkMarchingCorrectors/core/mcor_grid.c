@@ -92,15 +92,85 @@ static mcor_status mcor_reserve_particles(mcor_context* context, int count)
     : MCOR_OK;
 }
 
+/* What sorts groups of particles with the same key, see mcor_sort_before. */
+typedef struct mcor_group_sort
+{
+  const mcor_buffer *keys, *xyz, *inv_h, *size, *solid, *value;
+  int by_value, most; /* particles of a group */
+} mcor_group_sort;
+
+#define MCOR_SORT_ARGS(c, s)                                                                       \
+  MCOR_INT((c)->grid.count), MCOR_BUFFER((s)->keys), MCOR_BUFFER((s)->xyz),                        \
+    MCOR_BUFFER((s)->inv_h), MCOR_BUFFER((s)->size), MCOR_BUFFER((s)->solid),                      \
+    MCOR_INT((s)->by_value), MCOR_BUFFER((s)->value)
+
+/* Sorts groups that are too large for one work-item. */
+static mcor_status mcor_sort_groups(mcor_context* context, const mcor_group_sort* sort)
+{
+  mcor_grid* grid = &context->grid;
+  const int batches = mcor_batches(context, grid->count);
+  MCOR_TRY(mcor_reserve(context, &context->sort_values, (size_t)grid->count * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_LIGHT, batches,
+    MCOR_SORT_ARGS(context, sort), MCOR_BUFFER(&grid->order)));
+  for (int64_t width = MCOR_INSERTION_OF(context->cl.lanes); width < sort->most; width *= 2)
+  {
+    MCOR_TRY(
+      MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_LIGHT, batches, MCOR_SORT_ARGS(context, sort),
+        MCOR_INT((int)width), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&context->sort_values)));
+    const mcor_buffer merged = context->sort_values;
+    context->sort_values = grid->order;
+    grid->order = merged;
+  }
+  mcor_release_sort(context);
+  return MCOR_OK;
+}
+
+#define MCOR_GRID_INPUT(xyz, inv_h, size, solid)                                                   \
+  MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size), MCOR_BUFFER(solid)
+#define MCOR_GRID_OUTPUT(g)                                                                        \
+  MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
+    MCOR_BUFFER((g)->has_solids ? &(g)->fluid_weight : &(g)->trim_weight),                         \
+    MCOR_BUFFER(&(g)->trim_weight)
+
+/* Orders the particles within each cell, and moves them into that order. */
+static mcor_status mcor_order_cells(mcor_context* context)
+{
+  mcor_grid* grid = &context->grid;
+  const int count = grid->count;
+  const mcor_buffer *xyz = &context->scratch[MCOR_STAGE_XYZ],
+                    *inv_h = &context->scratch[MCOR_STAGE_INV_H],
+                    *size = &context->scratch[MCOR_STAGE_SIZE],
+                    *solid = &context->scratch[MCOR_STAGE_SOLID];
+  mcor_buffer* most = &context->scratch[MCOR_STAGE_COUNT];
+  cl_int most_in_cell = MCOR_USUAL_IN_CELL;
+  MCOR_TRY(mcor_write(context, most, &most_in_cell, sizeof most_in_cell));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
+    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_GRID_INPUT(xyz, inv_h, size, solid),
+    MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid), MCOR_BUFFER(most)));
+  MCOR_TRY(mcor_read(context, most, 0, &most_in_cell, sizeof most_in_cell));
+  grid->most_in_cell = most_in_cell;
+  if (most_in_cell <= MCOR_INSERTION_OF(context->cl.lanes))
+  {
+    return MCOR_OK;
+  }
+  const mcor_group_sort sort = { .keys = &grid->cell_keys,
+    .xyz = xyz,
+    .inv_h = inv_h,
+    .size = size,
+    .solid = solid,
+    .value = inv_h,
+    .most = most_in_cell };
+  MCOR_TRY(mcor_sort_groups(context, &sort));
+  return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->order), MCOR_GRID_INPUT(xyz, inv_h, size, solid), MCOR_GRID_OUTPUT(grid));
+}
+
 /* Sorts by search cell, then within a cell, and moves the particles into that order. */
 static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)staging->count;
   const mcor_buffer *xyz = &context->scratch[MCOR_STAGE_XYZ],
-                    *inv_h = &context->scratch[MCOR_STAGE_INV_H],
-                    *size = &context->scratch[MCOR_STAGE_SIZE],
-                    *solid = &context->scratch[MCOR_STAGE_SOLID],
                     *level = &context->scratch[MCOR_STAGE_LEVEL];
   const uint64_t cells = mcor_make_levels(context, staging);
   const int count = grid->count = staging->count;
@@ -114,12 +184,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
   mcor_release_sort(context);
   MCOR_TRY(mcor_reserve_particles(context, count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
-    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h),
-    MCOR_BUFFER(size), MCOR_BUFFER(solid), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&grid->px),
-    MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h),
-    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-    MCOR_BUFFER(&grid->trim_weight)));
+  MCOR_TRY(mcor_order_cells(context));
   MCOR_TRY(
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
@@ -196,6 +261,50 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   return mcor_needs_density(input) ? mcor_compute_volumes(context, input) : MCOR_OK;
 }
 
+#define MCOR_COINCIDENT_ARGS(g)                                                                    \
+  MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
+    MCOR_BUFFER((g)->has_solids ? &(g)->fluid_weight : &(g)->trim_weight),                         \
+    MCOR_BUFFER(&(g)->trim_weight)
+
+/* Orders particles that differ in the scalar only, which mcor_sort_values has just put in place. */
+static mcor_status mcor_order_coincident(mcor_context* context)
+{
+  mcor_grid* grid = &context->grid;
+  const int count = grid->count;
+  const mcor_buffer* raw = &context->scratch[0]; /* the scalar in the order of the input */
+  mcor_buffer *many = &context->scratch[1], *flags = &context->scratch[2],
+              *keys = &context->scratch[3];
+  cl_int some = 0;
+  int places;
+  MCOR_TRY(mcor_fill(context, many, 0, sizeof some));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_COINCIDENT_ARGS(grid), MCOR_BUFFER(&grid->value), MCOR_BUFFER(&grid->order),
+    MCOR_BUFFER(many)));
+  MCOR_TRY(mcor_read(context, many, 0, &some, sizeof some));
+  if (!some)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, keys, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count_places", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_COINCIDENT_ARGS(grid), MCOR_BUFFER(flags)));
+  MCOR_TRY(mcor_scan(context, flags, count, &places));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(flags), MCOR_BUFFER(keys)));
+  const mcor_group_sort sort = { .keys = keys,
+    .xyz = &grid->px,
+    .inv_h = raw,
+    .size = raw,
+    .solid = flags,
+    .value = raw,
+    .by_value = 1,
+    .most = count };
+  MCOR_TRY(mcor_sort_groups(context, &sort));
+  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(&grid->value), MCOR_INT(0));
+}
+
 /* A Shepard mean shifts with its values. A - A0 with A0 where most values are keeps the digits of a
  * scalar with a large offset, and of one with a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
@@ -221,11 +330,7 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
     low, high, single ? "single" : "double",
     single ? "Use double precision, or" : "Use another unit, or");
   MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, &grid->value, 0));
-  return MCOR_LAUNCH(context, "mcor_grid_order_value", MCOR_LIGHT, grid->count,
-    MCOR_INT(grid->count), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
-    MCOR_BUFFER(&grid->inv_h),
-    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-    MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(&grid->value), MCOR_BUFFER(&grid->order));
+  return mcor_order_coincident(context);
 }
 
 void mcor_release_grid(mcor_context* context)

@@ -63,6 +63,7 @@ typedef struct mcor_grid
   mcor_buffer level_buffer, buckets, cell_keys, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
   mcor_buffer value;
+  int most_in_cell;  /* particles, at least MCOR_USUAL_IN_CELL */
   mcor_buffer sides; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
   bool has_solids;
 } mcor_grid;
@@ -276,6 +277,7 @@ void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_keep_bricks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
+double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
 mcor_status mcor_mark_pairs(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
@@ -338,6 +340,7 @@ extern const char mcor_source_mcor_scan_cl[];
 extern const char mcor_source_mcor_grid_cl[];
 extern const char mcor_source_mcor_brick_cl[];
 extern const char mcor_source_mcor_node_cl[];
+extern const char mcor_source_mcor_bound_cl[];
 extern const char mcor_source_mcor_seed_cl[];
 extern const char mcor_source_mcor_block_cl[];
 extern const char mcor_source_mcor_march_cl[];
@@ -362,6 +365,11 @@ extern const char mcor_source_mcor_attribute_cl[];
     MCOR_BUFFER(&(c)->grid.inv_h),                                                                 \
     MCOR_BUFFER((c)->grid.has_solids ? &(c)->grid.fluid_weight : &(c)->grid.trim_weight),          \
     MCOR_BUFFER(&(c)->grid.trim_weight), MCOR_BUFFER(&(c)->grid.value)
+
+/* Kernel arguments of MCOR_SEED_PARAMS. */
+#define MCOR_SEED_ARGS(c, iso)                                                                     \
+  MCOR_BUFFER(&(c)->grid.sides), MCOR_REAL(mcor_side_margin(c)), MCOR_REAL(iso),                   \
+    MCOR_REAL((c)->options->node_threshold)
 
 #define MCOR_BLOCK_ARGS(c)                                                                         \
   MCOR_INT((c)->bricks.block_count), MCOR_INT((c)->bricks.block_shift),                            \

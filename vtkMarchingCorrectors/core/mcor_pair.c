@@ -10,7 +10,7 @@
 mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int particles = context->cl.lanes * MCOR_PAIR_GROUPS; /* of an item */
+  const int particles = context->cl.lanes * MCOR_PAIR_GROUPS_OF(context->cl.lanes); /* of an item */
   const int items = (context->grid.count + particles - 1) / particles;
   const size_t marks = (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
   mcor_buffer* marked = &context->scratch[3];

@@ -42,13 +42,21 @@ typedef struct mcor_level
  * little of what single ones wait for. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
 
+/* Particles with one key, of a cell or in one place, that one work-item sorts alone, at most; and
+ * particles of a cell of which nobody takes note. */
+#define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 128)
+#define MCOR_USUAL_IN_CELL 32
+
+/* Buckets that one work-item fills. */
+#define MCOR_ITEM_BUCKETS_OF(lanes) ((lanes) == 1 ? 1 : 1024)
+
 /* Bits that one round of the radix sort treats, at most. */
 #define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 11)
 
 /* Seeds: successive particles with one flag for the sides they are on; vectors of particles whose
- * pairs one work-item finds. */
+ * pairs one work-item finds, which may be many lines for each. */
 #define MCOR_SIDE_PARTICLES 16
-#define MCOR_PAIR_GROUPS 8
+#define MCOR_PAIR_GROUPS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 
 /* Masks per brick: of lattice edges with a vertex, see mcor_march_count, and of decisions about the
  * topology: ambiguous faces with their lowest node in the brick, by axis of their normal, of which

@@ -20,19 +20,8 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int x, int y, int z)
     return -1;
   }
   const ulong key = ((ulong)z * blocks_y + y) * blocks_x + x;
-  int low = block_buckets[key >> block_shift], high = block_buckets[(key >> block_shift) + 1];
-  while (low < high)
-  {
-    const int middle = low + (high - low) / 2;
-    if (block_keys[middle] < key)
-    {
-      low = middle + 1;
-    }
-    else
-    {
-      high = middle;
-    }
-  }
+  const ulong bucket = key >> block_shift;
+  const int low = mcor_find_key(block_keys, block_buckets[bucket], block_buckets[bucket + 1], key);
   return low < block_count && block_keys[low] == key ? low : -1;
 }
 

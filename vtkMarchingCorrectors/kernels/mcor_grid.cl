@@ -40,54 +40,16 @@ bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
   return volume[i] != volume[j] ? volume[i] < volume[j] : solid[i] < solid[j];
 }
 
-/* Heap sort's sift: the child `root` sinks in order[0..count). */
-void mcor_grid_sift(__global const fix* xyz, __global const real* inv_h,
-  __global const real* volume, __global const uchar* solid, __global int* order, int root,
-  int count)
-{
-  const int item = order[root];
-  for (int child = 2 * root + 1; child < count; child = 2 * root + 1)
-  {
-    if (child + 1 < count &&
-      mcor_grid_before(xyz, inv_h, volume, solid, order[child], order[child + 1]))
-    {
-      ++child;
-    }
-    if (!mcor_grid_before(xyz, inv_h, volume, solid, item, order[child]))
-    {
-      break;
-    }
-    order[root] = order[child];
-    root = child;
-  }
-  order[root] = item;
-}
-
-void mcor_grid_heap_sort(__global const fix* xyz, __global const real* inv_h,
-  __global const real* volume, __global const uchar* solid, __global int* order, int count)
-{
-  for (int i = count / 2 - 1; i >= 0; --i)
-  {
-    mcor_grid_sift(xyz, inv_h, volume, solid, order, i, count);
-  }
-  for (int last = count - 1; last > 0; --last)
-  {
-    const int item = order[last];
-    order[last] = order[0];
-    order[0] = item;
-    mcor_grid_sift(xyz, inv_h, volume, solid, order, 0, last);
-  }
-}
-
 /* Insertion sort in each of some cells; its limit. Particles lie far apart in the input arrays: all
- * are asked for before the first is needed. */
-#define MCOR_INSERTION_LIMIT (MCOR_LANES == 1 ? 64 : 128)
-void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
+ * are asked for before the first is needed. Returns the most particles of a cell. */
+#define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
+int mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
   __global const real* inv_h, __global const real* volume, __global const uchar* solid,
   __global int* order, int count)
 {
   fix x[MCOR_INSERTION_LIMIT];
   int sorted[MCOR_INSERTION_LIMIT];
+  int most = 0;
   for (int i = 0; i < count; ++i)
   {
     sorted[i] = order[i];
@@ -100,6 +62,7 @@ void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
     const int item = sorted[i];
     const fix item_x = x[i];
     cell = i > 0 && keys[i] == keys[i - 1] ? cell : i;
+    most = max(most, i - cell + 1);
     int to = i;
     for (; to > cell &&
          (item_x < x[to - 1] ||
@@ -117,53 +80,178 @@ void mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
   {
     order[i] = sorted[i];
   }
+  return most;
+}
+
+/* The particles' arrays, of the input and in sorted order. `volume` is the mass, or 1, where it is
+ * still to be computed. */
+#define MCOR_GRID_INPUT                                                                            \
+  __global const fix *xyz, __global const real *inv_h_in, __global const real *volume,             \
+    __global const uchar *solid
+#define MCOR_GRID_OUTPUT                                                                           \
+  __global fix *px, __global fix *py, __global fix *pz, __global real *inv_h_out,                  \
+    __global real *weight, __global real *trim_weight
+
+/* Moves particle j of the input to place i. */
+void mcor_grid_move_particle(int i, int j, MCOR_GRID_INPUT, MCOR_GRID_OUTPUT)
+{
+  px[i] = xyz[3L * j];
+  py[i] = xyz[3L * j + 1];
+  pz[i] = xyz[3L * j + 2];
+  const real inv_h = inv_h_in[j];
+  inv_h_out[i] = inv_h;
+  const real w = volume[j] * (real)MCOR_NORM * inv_h * inv_h * inv_h;
+  trim_weight[i] = w;
+#if MCOR_SOLIDS
+  weight[i] = solid[j] ? (real)0 : w;
+#endif
+}
+
+/* End of the whole cells from `first` on that begin before `end`, as many as have room for insertion
+ * sort: `first` itself where the first of them has not. */
+int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int count)
+{
+  const int limit = min(first + MCOR_INSERTION_LIMIT, count);
+  int last = min(end, limit);
+  while (last < limit && keys[last] == keys[last - 1])
+  {
+    ++last;
+  }
+  if (last < count && keys[last] == keys[last - 1])
+  {
+    while (last > first && keys[last - 1] == keys[limit])
+    {
+      --last;
+    }
+  }
+  return last;
 }
 
 /* One work-item = the cells that begin in a batch of particles. Reads the input arrays. Writes the
  * order of the particles in these cells, so that it no longer depends on that of the input, and the
- * arrays in that order. `volume` is the mass, or 1, where it is still to be computed. */
-__kernel void mcor_grid_order(const int count, __global const ulong* keys, __global const fix* xyz,
-  __global const real* inv_h_in, __global const real* volume, __global const uchar* solid,
-  __global int* order, __global fix* px, __global fix* py, __global fix* pz,
-  __global real* inv_h_out, __global real* weight, __global real* trim_weight)
+ * arrays in that order. Raises `most` to the particles of a cell; one with more than
+ * MCOR_INSERTION_LIMIT is left to mcor_grid_sort_runs. */
+__kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_GRID_INPUT,
+  __global int* order, MCOR_GRID_OUTPUT, __global int* most)
 {
-  int begin = get_global_id(0) * MCOR_BATCH;
-  int end = min(begin + MCOR_BATCH, count);
-  while (begin > 0 && begin < end && keys[begin] == keys[begin - 1])
+  int first = get_global_id(0) * MCOR_BATCH;
+  const int end = min(first + MCOR_BATCH, count);
+  while (first > 0 && first < end && keys[first] == keys[first - 1])
   {
-    ++begin;
+    ++first;
   }
-  while (begin < end && end < count && keys[end] == keys[end - 1])
+  while (first < end)
   {
-    ++end;
-  }
-  const bool few = end - begin <= MCOR_INSERTION_LIMIT;
-  if (few)
-  {
-    mcor_grid_insert(keys + begin, xyz, inv_h_in, volume, solid, order + begin, end - begin);
-  }
-  /* A cell with many particles is among them. */
-  for (int first = begin, last = begin + 1; !few && last <= end; ++last)
-  {
-    if (last == end || keys[last] != keys[first])
+    const int last = mcor_grid_cells_end(keys, first, end, count);
+    const int size = last == first
+      ? mcor_find_key(keys, first, count, keys[first] + 1) - first
+      : mcor_grid_insert(keys + first, xyz, inv_h_in, volume, solid, order + first, last - first);
+    for (int i = first; i < last; ++i)
     {
-      mcor_grid_heap_sort(xyz, inv_h_in, volume, solid, order + first, last - first);
-      first = last;
+      mcor_grid_move_particle(
+        i, order[i], xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
+    }
+    if (size > MCOR_USUAL_IN_CELL)
+    {
+      atomic_max(most, size);
+    }
+    first = last == first ? first + size : last;
+  }
+}
+
+/* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order. */
+__kernel void mcor_grid_move(
+  const int count, __global const int* order, MCOR_GRID_INPUT, MCOR_GRID_OUTPUT)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    mcor_grid_move_particle(
+      i, order[i], xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
+  }
+}
+
+/* Groups of any number of particles with the same key are sorted by all work-items together: runs of
+ * MCOR_INSERTION_LIMIT, then pairs of runs are merged into runs twice as long. The groups are cells,
+ * or (by_value) coincident particles, which are sorted by their scalar, so that not even they make a
+ * result depend on the order of the input; then by that order, so that no earlier scalar's shows. */
+#define MCOR_SORT_PARAMS                                                                           \
+  const int count, __global const ulong *keys, MCOR_GRID_INPUT, const int by_value,                \
+    __global const real *value
+#define MCOR_SORT_ARGS count, keys, xyz, inv_h_in, volume, solid, by_value, value
+
+bool mcor_grid_value_before(real v, int source, real w, int other)
+{
+  return v != w ? v < w : source < other;
+}
+
+bool mcor_sort_before(MCOR_SORT_PARAMS, int i, int j)
+{
+  return by_value ? mcor_grid_value_before(value[i], i, value[j], j)
+                  : mcor_grid_before(xyz, inv_h_in, volume, solid, i, j);
+}
+
+/* Whether place i may be one of more than MCOR_INSERTION_LIMIT with one key. */
+bool mcor_sort_is_large(__global const ulong* keys, int i, int count)
+{
+  const int step = MCOR_INSERTION_LIMIT / 2;
+  return (i >= step && keys[i - step] == keys[i]) ||
+    (i + step < count && keys[i + step] == keys[i]);
+}
+
+/* One work-item = one batch of sorted particles. Sorts the runs that begin there. */
+__kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
+{
+  const int begin = get_global_id(0) * MCOR_BATCH;
+  for (int i = begin, group = 0; i < min(begin + MCOR_BATCH, count); ++i)
+  {
+    group = i > begin && keys[i] == keys[i - 1] ? group : mcor_find_key(keys, 0, i, keys[i]);
+    if ((i - group) % MCOR_INSERTION_LIMIT != 0 || !mcor_sort_is_large(keys, i, count))
+    {
+      continue;
+    }
+    const int end = min(i + MCOR_INSERTION_LIMIT, count);
+    for (int next = i + 1; next < end && keys[next] == keys[i]; ++next)
+    {
+      const int item = order[next];
+      int to = next;
+      for (; to > i && mcor_sort_before(MCOR_SORT_ARGS, item, order[to - 1]); --to)
+      {
+        order[to] = order[to - 1];
+      }
+      order[to] = item;
     }
   }
-  for (int i = begin; i < end; ++i)
+}
+
+/* One work-item = one batch of sorted particles. Reads an order with sorted runs of a width. Writes
+ * where each particle is in the order with runs of twice that width: as many places behind its own
+ * among both runs as the other run has before it. */
+__kernel void mcor_grid_merge(
+  MCOR_SORT_PARAMS, const int width, __global const int* order, __global int* merged)
+{
+  const int begin = get_global_id(0) * MCOR_BATCH;
+  for (int i = begin, group = 0, end = 0; i < min(begin + MCOR_BATCH, count); ++i)
   {
-    const int j = order[i];
-    px[i] = xyz[3L * j];
-    py[i] = xyz[3L * j + 1];
-    pz[i] = xyz[3L * j + 2];
-    const real inv_h = inv_h_in[j];
-    inv_h_out[i] = inv_h;
-    const real w = volume[j] * (real)MCOR_NORM * inv_h * inv_h * inv_h;
-    trim_weight[i] = w;
-#if MCOR_SOLIDS
-    weight[i] = solid[j] ? (real)0 : w;
-#endif
+    if (i == begin || keys[i] != keys[i - 1])
+    {
+      group = mcor_find_key(keys, 0, i, keys[i]);
+      end = mcor_find_key(keys, i, count, keys[i] + 1);
+    }
+    const int own = (i - group) / width, run = group + own * width;
+    const bool is_first = own % 2 == 0;
+    const int other = is_first ? (int)min((long)run + width, (long)end) : run - width;
+    int low = other, high = is_first ? (int)min((long)other + width, (long)end) : run;
+    while (low < high)
+    {
+      const int middle = low + (high - low) / 2;
+      /* Of equal ones, the first run's come first. */
+      const bool before = is_first ? mcor_sort_before(MCOR_SORT_ARGS, order[middle], order[i])
+                                   : !mcor_sort_before(MCOR_SORT_ARGS, order[i], order[middle]);
+      low = before ? middle + 1 : low;
+      high = before ? high : middle;
+    }
+    merged[(is_first ? i : i - width) + (low - other)] = order[i];
   }
 }
 
@@ -179,70 +267,69 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   }
 }
 
-/* Order of coincident particles: by scalar, so that not even they make a result depend on the order
- * of the input; then by that order, so that no earlier scalar's shows. */
-bool mcor_grid_value_before(real v, int source, real w, int other)
+/* Whether sorted particles i and j differ in their scalar only. */
+#define MCOR_COINCIDENT_PARAMS                                                                     \
+  __global const fix *px, __global const fix *py, __global const fix *pz,                          \
+    __global const real *inv_h, __global const real *weight, __global const real *trim_weight
+bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 {
-  return v != w ? v < w : source < other;
+  return px[i] == px[j] && py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] &&
+    weight[i] == weight[j] && trim_weight[i] == trim_weight[j];
 }
+#define MCOR_SAME(i, j) mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j)
 
-/* The child `root` of a heap sinks in value[0..count). */
-void mcor_grid_value_sift(__global real* value, __global int* order, int root, int count)
-{
-  const real v = value[root];
-  const int source = order[root];
-  for (int child = 2 * root + 1; child < count; child = 2 * root + 1)
-  {
-    child += child + 1 < count &&
-      mcor_grid_value_before(value[child], order[child], value[child + 1], order[child + 1]);
-    if (!mcor_grid_value_before(v, source, value[child], order[child]))
-    {
-      break;
-    }
-    value[root] = value[child];
-    order[root] = order[child];
-    root = child;
-  }
-  value[root] = v;
-  order[root] = source;
-}
-
-/* One work-item = one sorted particle, the first of a run that differs in the scalar only. Sorts
- * the run, by a heap, as there may be any number of them. */
-__kernel void mcor_grid_order_value(const int count, __global const fix* px, __global const fix* py,
-  __global const fix* pz, __global const real* inv_h, __global const real* weight,
-  __global const real* trim_weight, __global real* value, __global int* order)
+/* One work-item = one sorted particle, the first of coincident ones. Sorts these; where they are more
+ * than MCOR_INSERTION_LIMIT, says so. */
+__kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __global real* value,
+  __global int* order, __global int* many)
 {
   const int begin = get_global_id(0);
-#define MCOR_SAME(i, j)                                                                            \
-  (px[i] == px[j] && py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] &&                   \
-    weight[i] == weight[j] && trim_weight[i] == trim_weight[j])
   if (begin + 1 >= count || !MCOR_SAME(begin, begin + 1) ||
     (begin > 0 && MCOR_SAME(begin, begin - 1)))
   {
     return;
   }
-  int run = 2;
-  while (begin + run < count && MCOR_SAME(begin, begin + run))
+  const int limit = min(begin + MCOR_INSERTION_LIMIT, count - 1);
+  for (int i = begin + 1; i <= limit && MCOR_SAME(begin, i); ++i)
   {
-    ++run;
+    if (i == begin + MCOR_INSERTION_LIMIT)
+    {
+      atomic_or(many, 1);
+      break;
+    }
+    const real v = value[i];
+    const int source = order[i];
+    int to = i;
+    for (; to > begin && mcor_grid_value_before(v, source, value[to - 1], order[to - 1]); --to)
+    {
+      value[to] = value[to - 1];
+      order[to] = order[to - 1];
+    }
+    value[to] = v;
+    order[to] = source;
   }
-#undef MCOR_SAME
-  value += begin;
-  order += begin;
-  for (int i = run / 2 - 1; i >= 0; --i)
+}
+
+/* One work-item = one sorted particle. Writes 1 where it differs from the one before it in more than
+ * the scalar. */
+__kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __global int* flags)
+{
+  const int i = get_global_id(0);
+  if (i < count)
   {
-    mcor_grid_value_sift(value, order, i, run);
+    flags[i] = i == 0 || !MCOR_SAME(i, i - 1);
   }
-  for (int last = run - 1; last > 0; --last)
+}
+
+/* One work-item = one sorted particle. Reads the scanned flags. Writes a key that it shares with those
+ * coincident with it. */
+__kernel void mcor_grid_fill_places(
+  const int count, __global const int* scanned, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  if (i < count)
   {
-    const real v = value[last];
-    const int source = order[last];
-    value[last] = value[0];
-    order[last] = order[0];
-    value[0] = v;
-    order[0] = source;
-    mcor_grid_value_sift(value, order, 0, last);
+    keys[i] = (ulong)scanned[i + 1];
   }
 }
 

@@ -125,6 +125,24 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   }
 }
 
+/* Index of the first of the sorted keys [low, high) that is not below `key`, or `high`. */
+int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
+{
+  while (low < high)
+  {
+    const int middle = low + (high - low) / 2;
+    if (keys[middle] < key)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}
+
 /* One work-item = one sorted key. Writes 1 where a key differs from the one before it. */
 __kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
 {
@@ -154,20 +172,22 @@ __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* v
   index_of[values[i]] = index;
 }
 
-/* One work-item = one sorted key. Writes, for each bucket, the index of the first key that is not
- * below it: bucket b begins at key b << shift. */
+#define MCOR_ITEM_BUCKETS MCOR_ITEM_BUCKETS_OF(MCOR_LANES)
+
+/* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Writes, for each bucket, the index of
+ * the first key that is not below it: bucket b begins at key b << shift. */
 __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, const int shift,
   const int bucket_count, __global int* buckets)
 {
-  const int i = get_global_id(0);
-  if (i > count)
+  const long begin = (long)get_global_id(0) * MCOR_ITEM_BUCKETS;
+  const long end = min(begin + MCOR_ITEM_BUCKETS, (long)bucket_count);
+  int first = begin < end ? mcor_find_key(keys, 0, count, (ulong)begin << shift) : 0;
+  for (long b = begin; b < end; ++b)
   {
-    return;
-  }
-  const int first = i == 0 ? 0 : (int)(keys[i - 1] >> shift) + 1;
-  const int last = i == count ? bucket_count - 1 : (int)(keys[i] >> shift);
-  for (int b = first; b <= last; ++b)
-  {
-    buckets[b] = i;
+    while (first < count && keys[first] >> shift < (ulong)b)
+    {
+      ++first;
+    }
+    buckets[b] = first;
   }
 }

@@ -40,8 +40,8 @@ static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor
   MCOR_TRY(mcor_reserve(context, &bricks->quiet, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
     MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_INT(MCOR_BLOCK_CUBES << cubes->level), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->block_states)));
+    MCOR_INT(MCOR_BLOCK_CUBES << cubes->level), MCOR_SEED_ARGS(context, iso),
+    MCOR_BUFFER(&bricks->block_states)));
   return MCOR_LAUNCH(context, "mcor_block_quiet", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
     MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),

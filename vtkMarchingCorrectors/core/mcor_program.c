@@ -41,6 +41,7 @@ int mcor_program_sources(
     { mcor_source_mcor_brick_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_node_cl, FIELD | OPTIONS },
     { vectors ? mcor_source_mcor_node_lanes_cl : mcor_source_mcor_node_point_cl, FIELD | OPTIONS },
+    { mcor_source_mcor_bound_cl, FIELD | OPTIONS },
     { mcor_source_mcor_seed_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_block_cl, LATTICE | FIELD },
     { mcor_source_mcor_march_cl, LATTICE | FIELD | OPTIONS }, { mcor_source_mcor_pair_cl, OPTIONS },

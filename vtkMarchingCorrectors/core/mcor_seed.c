@@ -5,6 +5,9 @@
 
 #include "mcor_internal.h"
 
+#include <float.h>
+#include <math.h>
+
 /* Asks for bricks beside those with `fresh` nodes, which these show to be needed. */
 static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
 {
@@ -40,8 +43,7 @@ static mcor_status mcor_test_regions(
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),
-    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->states),
+    MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
   cl_int count;
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
@@ -53,7 +55,6 @@ static mcor_status mcor_test_regions(
 static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  const double node_threshold = context->options->node_threshold;
   mcor_buffer* list = &context->scratch[3];
   int listed;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
@@ -61,8 +62,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   /* One item per region where one gathers for many lanes, else one per brick. */
   const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list),
-    MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso), MCOR_REAL(node_threshold),
+    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list), MCOR_SEED_ARGS(context, iso),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
@@ -72,6 +72,18 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_ask_beside(context, &bricks->now.known));
   return mcor_place_bricks(context);
+}
+
+/* How far rounding may move a Shepard mean of values that are all on one side: of n particles that
+ * reach a point, the two sums are off by (n + 3) and (n + 1) unit roundoffs of their absolute terms
+ * at most, the quotient by another one. A point is reached from 27 cells of each level. */
+double mcor_side_margin(const mcor_context* context)
+{
+  const mcor_grid* grid = &context->grid;
+  const double reaching = fmin(27.0 * grid->level_count * grid->most_in_cell, grid->count);
+  const double share =
+    (2 * reaching + 16) * (context->cl.real_size == sizeof(float) ? FLT_EPSILON : DBL_EPSILON) / 2;
+  return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
 /* The sides of the iso value on which particles are, where the field has values at particles. */
@@ -84,7 +96,8 @@ static mcor_status mcor_find_sides(mcor_context* context, double iso)
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_seed_sides", MCOR_LIGHT, chunks, MCOR_INT(grid->count),
         MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-        MCOR_BUFFER(&grid->value), MCOR_REAL(iso), MCOR_BUFFER(&grid->sides));
+        MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)), MCOR_REAL(iso),
+        MCOR_BUFFER(&grid->sides));
 }
 
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */

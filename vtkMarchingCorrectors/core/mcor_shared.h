@@ -58,6 +58,12 @@ typedef struct mcor_level
 #define MCOR_SIDE_PARTICLES 16
 #define MCOR_PAIR_GROUPS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 
+/* What is known of the nodes of a brick, a region or a larger cube. */
+#define MCOR_VOID 0 /* below the node threshold: no cell there is valid */
+#define MCOR_ABOVE 1
+#define MCOR_BELOW 2
+#define MCOR_EXAMINE 3 /* not enough; evaluate */
+
 /* Masks per brick: of lattice edges with a vertex, see mcor_march_count, and of decisions about the
  * topology: ambiguous faces with their lowest node in the brick, by axis of their normal, of which
  * those stay whose nodes above are joined; cells whose samples are all below, all above. */

@@ -24,8 +24,8 @@ __kernel void mcor_block_all(const int count, __global ulong* keys)
 /* One work-item = one cube, `size` nodes long. Reads the particles that reach it. Writes its
  * state. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cubes_x,
-  const int cubes_y, __global const ulong* keys, const int size, __global const uchar* sides,
-  const real iso, const real node_threshold, __global uchar* states)
+  const int cubes_y, __global const ulong* keys, const int size, MCOR_SEED_PARAMS,
+  __global uchar* states)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -33,11 +33,12 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
     return;
   }
   const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 brick = mcor_block_of_key(keys[i], cubes_x, cubes_y) * (size / MCOR_BRICK);
   mcor_query query = mcor_seed_query(&grid, brick, size - 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
-  states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, sides, iso, node_threshold);
+  states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, &limits);
 }
 #endif
 

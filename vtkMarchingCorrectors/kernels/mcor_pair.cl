@@ -143,7 +143,7 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
   {
-    const int seen = mcor_tile_sides(&tile, iso);
+    const int seen = mcor_tile_sides(&tile, 0, iso);
     const real finest = mcor_pair_finest(&tile);
     for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
@@ -157,15 +157,14 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
   }
 }
 
-/* One work-item = MCOR_PAIR_GROUPS groups of MCOR_LANES sorted particles, looked at together first,
- * as most particles are far from the surface. Reads the particles
- * within the smoothing length of each. Marks the cells between pairs that straddle the iso
- * value. */
+/* One work-item = MCOR_PAIR_GROUPS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
+ * together first, as most particles are far from the surface. Reads the particles within the
+ * smoothing length of each. Marks the cells between pairs that straddle the iso value. */
 __kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* sides,
   const real iso, const real h_scale, __global uint* cells)
 {
   const mcor_grid grid = MCOR_GRID;
-  const int most = MCOR_PAIR_GROUPS * MCOR_LANES;
+  const int most = MCOR_PAIR_GROUPS_OF(MCOR_LANES) * MCOR_LANES;
   const int begin = get_global_id(0) * most, end = min(begin + most, particle_count);
   mcor_query query;
   for (int row = begin, row_end; row < end; row = row_end)

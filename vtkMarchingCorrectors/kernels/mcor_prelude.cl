@@ -136,3 +136,21 @@ int mcor_ctz(ulong m)
 {
   return 63 - (int)clz(m & -m);
 }
+
+/* Index of the first of the sorted keys [low, high) that is not below `key`, or `high`. */
+int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
+{
+  while (low < high)
+  {
+    const int middle = low + (high - low) / 2;
+    if (keys[middle] < key)
+    {
+      low = middle + 1;
+    }
+    else
+    {
+      high = middle;
+    }
+  }
+  return low;
+}

@@ -52,25 +52,12 @@ int mcor_cell_of_particle(mcor_level level, int axis, fix x)
 int mcor_first_particle(const mcor_grid* grid, ulong key)
 {
   const ulong bucket = key >> grid->bucket_shift;
-  int low = grid->buckets[bucket];
+  const int low = grid->buckets[bucket];
   if (grid->bucket_shift == 0)
   {
     return low;
   }
-  int high = grid->buckets[bucket + 1];
-  while (low < high)
-  {
-    const int middle = low + (high - low) / 2;
-    if (grid->cell_keys[middle] < key)
-    {
-      low = middle + 1;
-    }
-    else
-    {
-      high = middle;
-    }
-  }
-  return low;
+  return mcor_find_key(grid->cell_keys, low, grid->buckets[bucket + 1], key);
 }
 
 /* All particles that may reach the box [low, high], row by row of search cells. */

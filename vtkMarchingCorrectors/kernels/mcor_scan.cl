@@ -125,24 +125,6 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   }
 }
 
-/* Index of the first of the sorted keys [low, high) that is not below `key`, or `high`. */
-int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
-{
-  while (low < high)
-  {
-    const int middle = low + (high - low) / 2;
-    if (keys[middle] < key)
-    {
-      low = middle + 1;
-    }
-    else
-    {
-      high = middle;
-    }
-  }
-  return low;
-}
-
 /* One work-item = one sorted key. Writes 1 where a key differs from the one before it. */
 __kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
 {

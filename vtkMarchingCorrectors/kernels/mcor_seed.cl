@@ -11,61 +11,35 @@
  * have slots while they are tested, so that the particles gathered for the bound serve the nodes'
  * values, too (mcor_seed_bricks). */
 
-/* What is known of a region's nodes. */
-#define MCOR_VOID 0 /* below the node threshold: no cell there is valid */
-#define MCOR_ABOVE 1
-#define MCOR_BELOW 2
-#define MCOR_EXAMINE 3 /* not enough; evaluate */
-
 #if !MCOR_OF_LATTICE
-#if MCOR_TENSOR
-/* Interval of the one-dimensional w over distances [near, far]. */
-void mcor_seed_interval(realv near, realv far, realv* low, realv* high)
-{
-  const realv a = MCOR_W(near), b = MCOR_W(far);
-  *high = fmax(a, b);
-  *low = (near < mcor_turning_mprime4 && far > mcor_turning_mprime4) ? (realv)mcor_lowest_mprime4
-                                                                     : fmin(a, b);
-}
-
-/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz). */
-realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
-{
-  realv xl, xh, yl, yh, zl, zh;
-  mcor_seed_interval(fmax(fabs(dx) - e, (realv)0) * inv_h, (fabs(dx) + e) * inv_h, &xl, &xh);
-  mcor_seed_interval(fmax(fabs(dy) - e, (realv)0) * inv_h, (fabs(dy) + e) * inv_h, &yl, &yh);
-  mcor_seed_interval(fmax(fabs(dz) - e, (realv)0) * inv_h, (fabs(dz) + e) * inv_h, &zl, &zh);
-  const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
-  const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
-  return side > 0 ? fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh))
-                  : fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
-}
-#else
-/* Greatest (side -1) or least (side 1) w over cubes of half size e around (dx, dy, dz): w falls
- * with the distance, so that of the nearest or farthest point. */
-realv mcor_seed_weight(realv dx, realv dy, realv dz, real e, realv side, realv inv_h)
-{
-  const realv x = fmax(fabs(dx) + side * e, (realv)0);
-  const realv y = fmax(fabs(dy) + side * e, (realv)0);
-  const realv z = fmax(fabs(dz) + side * e, (realv)0);
-  return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * inv_h);
-}
-#endif
-
 /* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the least
  * and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
+
+/* What a node's side depends on. side_margin: how far rounding may move a mean of values that are
+ * all on one side, as a share of each; see mcor_side_margin in mcor_seed.c. */
+typedef struct
+{
+  __global const uchar* sides; /* see mcor_seed_sides */
+  real side_margin, iso, node_threshold;
+} mcor_seed_limits;
+
+#define MCOR_SEED_PARAMS                                                                           \
+  __global const uchar *sides, const real side_margin, const real iso, const real node_threshold
+#define MCOR_SEED_LIMITS                                                                           \
+  {                                                                                                \
+    sides, side_margin, iso, node_threshold                                                        \
+  }
 
 /* Sides of the iso value on which particles are: bit 0 above, bit 1 below; both where it is so close
  * that a mean of such values may round to the other side. Kept for every MCOR_CHUNK successive
  * sorted particles, so that most queries need not look at particles. */
 #define MCOR_CHUNK MCOR_SIDE_PARTICLES
-#define MCOR_SIDE_MARGIN ((real)1e-5f)
 
 #if MCOR_OF_FIELD
 /* One work-item = one chunk. Writes its fluid particles' sides. */
 __kernel void mcor_seed_sides(const int particle_count, __global const real* weight,
-  __global const real* value, const real iso, __global uchar* sides)
+  __global const real* value, const real side_margin, const real iso, __global uchar* sides)
 {
   const int begin = get_global_id(0) * MCOR_CHUNK;
   if (begin >= particle_count)
@@ -75,8 +49,8 @@ __kernel void mcor_seed_sides(const int particle_count, __global const real* wei
   int seen = 0;
   for (int j = begin; j < min(begin + MCOR_CHUNK, particle_count); ++j)
   {
-    const real margin = MCOR_SIDE_MARGIN * fabs(value[j]);
-    const int side = (value[j] >= iso - margin ? 1 : 0) | (value[j] < iso + margin ? 2 : 0);
+    const real margin = side_margin * fabs(value[j]);
+    const int side = (value[j] - margin >= iso ? 0 : 2) | (value[j] + margin < iso ? 0 : 1);
     seen |= (MCOR_SOLIDS && weight[j] == 0) ? 0 : side;
   }
   sides[get_global_id(0)] = (uchar)seen;
@@ -115,104 +89,18 @@ mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
   return query;
 }
 
-/* The bound. With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum),
- * the field's sign against iso in a box is that of F = sum c_j w_j - level, level = 0 (Shepard) or
- * iso, and
- *
- *   F >= sum of c_j * (least w_j in the box where c_j > 0, greatest where c_j < 0) - level,
- *
- * as each w_j lies in its interval wherever in the box the point is, whatever the sign of w_j;
- * likewise from above. Only one of the two is computed: from below where F is positive in the
- * middle, else from above. The margin is 1e-5 of the sum of the absolute terms, for a Shepard mean
- * with A_j in place of A_j - iso, above the rounding of this sum and of the node values. */
-
-/* c_j of MCOR_LANES particles of the tile. */
-realv mcor_seed_coefficients(const mcor_tile* tile, int i, real iso)
-{
-  const realv weight = MCOR_TILE(tile, weight, i);
-#if MCOR_FIELD == 0
-  return weight * (MCOR_TILE(tile, value, i) - iso);
-#elif MCOR_FIELD == 1
-  return weight * MCOR_TILE(tile, value, i);
-#else
-  return weight;
-#endif
-}
-
-/* Roughly F + level in the middle of a box, with (1 - (r / support)^2)^3 for every kernel: it only
- * chooses the bound's side. */
-real mcor_seed_middle(const mcor_query* query, const mcor_tile* tile, real iso)
-{
-  realv sum = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    const realv scale = MCOR_TILE(tile, inv_h, i) * (1 / MCOR_SUPPORT);
-    const realv x = (MCOR_TILE(tile, x, i) - query->center[0]) * scale;
-    const realv y = (MCOR_TILE(tile, y, i) - query->center[1]) * scale;
-    const realv z = (MCOR_TILE(tile, z, i) - query->center[2]) * scale;
-    const realv near = fmax((real)1 - mcor_square(x, y, z), (realv)0);
-    sum = MCOR_FMA(mcor_seed_coefficients(tile, i, iso) * near, near * near, sum);
-  }
-  return mcor_lane_sum(sum) /
-    ((real)0.6383 * MCOR_NORM * MCOR_SUPPORT * MCOR_SUPPORT * MCOR_SUPPORT);
-}
-
 /* Sides of the tile's particles. */
-int mcor_tile_sides(const mcor_tile* tile, real iso)
+int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 {
   fixv above = 0, below = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const realv value = MCOR_TILE(tile, value, i), margin = MCOR_SIDE_MARGIN * fabs(value);
+    const realv value = MCOR_TILE(tile, value, i), margin = side_margin * fabs(value);
     const fixv counts = MCOR_TILE(tile, weight, i) != 0;
-    above = above || (counts && value >= iso - margin);
-    below = below || (counts && value < iso + margin);
+    above = above || (counts && !(value + margin < iso));
+    below = below || (counts && !(value - margin >= iso));
   }
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
-}
-
-/* Sums of the bound over the particles of a box. */
-typedef struct
-{
-  realv sum, size; /* the bound + level, and the absolute terms */
-  realv weight;    /* of the greatest weights */
-} mcor_bound;
-
-void mcor_seed_bound(
-  const mcor_query* query, const mcor_tile* tile, real iso, bool from_below, mcor_bound* bound)
-{
-  const real e = query->half_size[0];
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    const realv x = MCOR_TILE(tile, x, i) - query->center[0];
-    const realv y = MCOR_TILE(tile, y, i) - query->center[1];
-    const realv z = MCOR_TILE(tile, z, i) - query->center[2];
-    const realv inv_h = MCOR_TILE(tile, inv_h, i), c = mcor_seed_coefficients(tile, i, iso);
-    const realv side = (c > 0) == (fixv)(from_below ? MCOR_TRUE : 0) ? (realv)1 : (realv)-1;
-    const realv w = mcor_seed_weight(x, y, z, e, side, inv_h);
-    bound->sum = MCOR_FMA(c, w, bound->sum);
-    bound->size = MCOR_FMA(fabs(c), fabs(w), bound->size);
-#if MCOR_FIELD != 2
-    bound->weight = MCOR_FMA(MCOR_TILE(tile, MCOR_TRIM_WEIGHT, i),
-      mcor_seed_weight(x, y, z, e, (realv)-1, inv_h), bound->weight);
-#endif
-  }
-}
-
-/* What the sums say. */
-int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, real node_threshold)
-{
-  const real level = MCOR_FIELD == 0 ? (real)0 : iso;
-  const real sum = mcor_lane_sum(bound->sum);
-  const real weight = MCOR_FIELD == 2 ? (real)0 : mcor_lane_sum(bound->weight);
-  const real shift = MCOR_FIELD == 0 ? weight * fabs(iso) : fabs(level);
-  const real margin = (real)1e-5f * (mcor_lane_sum(bound->size) + shift);
-  if (MCOR_FIELD != 2 && weight < node_threshold * (real)0.9999)
-  {
-    return MCOR_VOID;
-  }
-  const bool certain = from_below ? sum > level + margin : sum < level - margin;
-  return !certain ? MCOR_EXAMINE : from_below ? MCOR_ABOVE : MCOR_BELOW;
 }
 
 /* A coarse cube that more particles reach is divided without a bound. */
@@ -222,48 +110,42 @@ int mcor_seed_bound_state(const mcor_bound* bound, bool from_below, real iso, re
  * before. Of a coarse one, less is asked: it may be taken for certain where a part is void, and for
  * undecided. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
-  __global const uchar* sides, real iso, real node_threshold)
+  const mcor_seed_limits* limits)
 {
   const int of_sides[3] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW };
   if (MCOR_RANGE_DECIDES && coarse)
   {
-    const int seen = mcor_query_sides(grid, query, sides);
+    const int seen = mcor_query_sides(grid, query, limits->sides);
     if (seen != 3)
     {
       return of_sides[seen];
     }
   }
-  mcor_bound bound = { 0, 0, 0 };
-  bool from_below = false;
-  int seen = 0, found = 0;
+  mcor_bound bound = mcor_bound_start();
+  int seen = 0;
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
-    found += tile->count;
-    seen |= MCOR_RANGE_DECIDES ? mcor_tile_sides(tile, iso) : 3;
-    if (coarse && found > MCOR_COARSE_PARTICLES)
+    seen |= MCOR_RANGE_DECIDES ? mcor_tile_sides(tile, limits->side_margin, limits->iso) : 3;
+    if (coarse && bound.count + tile->count > MCOR_COARSE_PARTICLES)
     {
       return MCOR_EXAMINE;
     }
-    if (tile->complete && MCOR_RANGE_DECIDES && seen != 3)
+    if (tile->complete && seen != 3)
     {
       break;
     }
-    if (first)
-    {
-      from_below = mcor_seed_middle(query, tile, iso) > (MCOR_FIELD == 0 ? (real)0 : iso);
-    }
-    mcor_seed_bound(query, tile, iso, from_below, &bound);
-  }
-  if (found == 0)
-  {
-    const bool is_void = MCOR_FIELD == 0 || (MCOR_FIELD == 1 && node_threshold > 0);
-    return is_void ? MCOR_VOID : iso <= 0 ? MCOR_ABOVE : MCOR_BELOW;
+    mcor_bound_add(query, tile, limits->iso, &bound);
   }
   if (MCOR_RANGE_DECIDES && seen != 3)
   {
     return of_sides[seen];
   }
-  return mcor_seed_bound_state(&bound, from_below, iso, node_threshold);
+  if (bound.count == 0)
+  {
+    const bool is_void = MCOR_FIELD == 0 || (MCOR_FIELD == 1 && limits->node_threshold > 0);
+    return is_void ? MCOR_VOID : limits->iso <= 0 ? MCOR_ABOVE : MCOR_BELOW;
+  }
+  return mcor_bound_state(&bound, limits->iso, limits->node_threshold);
 }
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
@@ -303,8 +185,9 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 
 /* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
  * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
- * the rest can only add. The margin is above rounding. Far inside the fluid, no more is ever
- * evaluated. wide: those of the brick's region, if it is complete. */
+ * the rest can only add, in rounded sums, too, as rounding is monotone and the order is the same.
+ * The margin is for a compiler that rounds the same term in another way in another place. Far inside
+ * the fluid, no more is ever evaluated. wide: those of the brick's region, if it is complete. */
 bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wide, real iso)
 {
   bool inside = true;
@@ -346,8 +229,8 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wid
  * lists the regions that have such, in any order. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
-  __global const uchar* sides, const real iso, const real node_threshold, __global uchar* states,
-  __global uint* brick_bits, __global int* list, __global int* list_count)
+  MCOR_SEED_PARAMS, __global uchar* states, __global uint* brick_bits, __global int* list,
+  __global int* list_count)
 {
   const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
   if (block >= block_count)
@@ -357,6 +240,7 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   const int mark = mcor_region_mark(region);
   int state = block_states[block];
   const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
   mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1);
   mcor_tile tile;
@@ -376,7 +260,7 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   }
   if (state == MCOR_EXAMINE && inside == 0)
   {
-    state = mcor_seed_state(&grid, &query, &tile, false, sides, iso, node_threshold);
+    state = mcor_seed_state(&grid, &query, &tile, false, &limits);
   }
   for (int b = 0; b < 8; ++b)
   {
@@ -397,11 +281,12 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
  * complete. As the brick's are at hand, its nodes are evaluated if they are to be, where a
  * work-item evaluates whole bricks; returns the known ones. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
-  __global const uchar* sides, real iso, real node_threshold, __global uchar* state,
-  __global real* value, __global real* weight)
+  const mcor_seed_limits* limits, __global uchar* state, __global real* value,
+  __global real* weight)
 {
   mcor_tile tile;
-  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64 && mcor_seed_is_inside(grid, brick, wide, iso))
+  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64 &&
+    mcor_seed_is_inside(grid, brick, wide, limits->iso))
   {
     *state = MCOR_ABOVE;
     return 0;
@@ -412,7 +297,7 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
   {
     mcor_tile_narrow(wide, &query, &tile);
   }
-  *state = (uchar)mcor_seed_state(grid, &query, &tile, false, sides, iso, node_threshold);
+  *state = (uchar)mcor_seed_state(grid, &query, &tile, false, limits);
   if (*state != MCOR_EXAMINE || MCOR_ITEM_NODES != 64)
   {
     return 0;
@@ -430,9 +315,9 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
  * it. Of bricks of which nothing is known, writes the states, and the nodes known by now with their
  * values and signs. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int list_count,
-  __global const int* list, __global const uchar* sides, const real iso, const real node_threshold,
-  __global uchar* states, __global ulong* known, __global real* node_value,
-  __global real* node_weight, __global ulong* above, __global ulong* valid)
+  __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
+  __global real* node_value, __global real* node_weight, __global ulong* above,
+  __global ulong* valid)
 {
   const int i = get_global_id(0) / (8 / MCOR_ITEM_BRICKS);
   if (i >= list_count)
@@ -440,6 +325,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
     return;
   }
   const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int mark = mcor_region_mark(list[i]);
   const int4 region = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
   mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1);
@@ -458,8 +344,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
     {
       const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
       __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
-      known[slot] =
-        mcor_seed_brick(&grid, brick, &wide, sides, iso, node_threshold, states + m, value, weight);
+      known[slot] = mcor_seed_brick(&grid, brick, &wide, &limits, states + m, value, weight);
       if (known[slot])
       {
         mcor_node_signs(value, weight, iso, node_threshold, above + slot, valid + slot);

@@ -1,0 +1,155 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The bound of complete seeds [III-C]: what is certain of the nodes in a box from the particles that
+ * reach it.
+ *
+ * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the field's
+ * sign against iso is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso. Wherever in the
+ * box the point is, each w_j lies between its least and its greatest value there, so that
+ *
+ *   F >= sum of c_j * (least w_j where c_j > 0, greatest where c_j < 0) - level,
+ *
+ * and likewise from above; this holds for kernels with negative lobes, too. */
+
+/* Rounding. u is the unit roundoff, n the number of particles that reach the box. A distance that a
+ * node's evaluation computes is off by 8 u of itself at most, or of the support where the particle
+ * is that far away; the bound looks as much nearer and farther. A particle's position counts from
+ * the first node of the box, as which a larger box takes care of. Given the distance, w is off by
+ * less than 96 u of itself, as no kernel subtracts large terms where it is small. A sum of n terms,
+ * in whatever order, each a product of a few factors, is off by at most (n + 16) u of the sum of the
+ * absolute terms, to first order. Hence what the bound and a node's value are off together is at
+ * most
+ *
+ *   k / (1 - k) * sum |c_j| * greatest |w_j|,  k = (2 n + 256) u,
+ *
+ * for a Shepard mean, the quotient of the sums of A_j and of 1, with |A_j| + |iso|
+ * <= |A_j - iso| + 2 |iso| in place of |A_j - iso|. */
+#define MCOR_UNIT_ROUNDOFF (MCOR_DOUBLE ? (real)1.1102230246251565e-16 : (real)5.9604645e-8f)
+#define MCOR_BOUND_ROUNDINGS ((real)256)
+#define MCOR_BOUND_LARGER ((real)1 + 16 * MCOR_UNIT_ROUNDOFF)
+#define MCOR_BOUND_NEARER ((real)1 - 8 * MCOR_UNIT_ROUNDOFF)
+#define MCOR_BOUND_FARTHER ((real)1 + 8 * MCOR_UNIT_ROUNDOFF)
+
+#if MCOR_TENSOR
+/* Interval of the one-dimensional w around d, e to both sides: w falls, then rises to 0. */
+void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
+{
+  const realv near = fmax(fabs(d) - e, (realv)0) * (inv_h * MCOR_BOUND_NEARER);
+  const realv far = (fabs(d) + e) * (inv_h * MCOR_BOUND_FARTHER);
+  const realv a = MCOR_W(near), b = MCOR_W(far);
+  *high = fmax(a, b);
+  *low = (near < mcor_turning_mprime4 && far > mcor_turning_mprime4) ? (realv)mcor_lowest_mprime4
+                                                                     : fmin(a, b);
+}
+
+/* Least and greatest w over cubes of half size e around (dx, dy, dz). */
+void mcor_bound_weights(
+  realv dx, realv dy, realv dz, real e, realv inv_h, realv* least, realv* greatest)
+{
+  realv xl, xh, yl, yh, zl, zh;
+  mcor_bound_interval(dx, e, inv_h, &xl, &xh);
+  mcor_bound_interval(dy, e, inv_h, &yl, &yh);
+  mcor_bound_interval(dz, e, inv_h, &zl, &zh);
+  const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
+  const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
+  *least = fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh));
+  *greatest = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
+}
+#else
+/* w at the point of a cube of half size e around (dx, dy, dz) that is nearest (side -1) or farthest
+ * (side 1). */
+realv mcor_bound_weight(realv dx, realv dy, realv dz, real e, real side, realv inv_h)
+{
+  const realv x = fmax(fabs(dx) + side * e, (realv)0);
+  const realv y = fmax(fabs(dy) + side * e, (realv)0);
+  const realv z = fmax(fabs(dz) + side * e, (realv)0);
+  const real off = side > 0 ? MCOR_BOUND_FARTHER : MCOR_BOUND_NEARER;
+  return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * (inv_h * off));
+}
+
+/* Least and greatest w there: w falls with the distance. */
+void mcor_bound_weights(
+  realv dx, realv dy, realv dz, real e, realv inv_h, realv* least, realv* greatest)
+{
+  *least = mcor_bound_weight(dx, dy, dz, e, (real)1, inv_h);
+  *greatest = mcor_bound_weight(dx, dy, dz, e, (real)-1, inv_h);
+}
+#endif
+
+/* Sums over the particles of a box. */
+typedef struct
+{
+  int count;
+  realv low, high;   /* of F + level */
+  realv size;        /* of the absolute terms */
+  realv weight;      /* of the trimming weights times the greatest w */
+  realv weight_size; /* of the absolute terms of that, where they may be negative */
+} mcor_bound;
+
+mcor_bound mcor_bound_start(void)
+{
+  const mcor_bound bound = { 0, 0, 0, 0, 0, 0 };
+  return bound;
+}
+
+/* Adds the tile's particles. The box is the query's, a cube. */
+void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mcor_bound* bound)
+{
+  const real e = query->half_size[0] * MCOR_BOUND_LARGER;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const realv x = MCOR_TILE(tile, x, i) - query->center[0];
+    const realv y = MCOR_TILE(tile, y, i) - query->center[1];
+    const realv z = MCOR_TILE(tile, z, i) - query->center[2];
+    const realv weight = MCOR_TILE(tile, weight, i);
+#if MCOR_FIELD == 0
+    const realv c = weight * (MCOR_TILE(tile, value, i) - iso);
+#elif MCOR_FIELD == 1
+    const realv c = weight * MCOR_TILE(tile, value, i);
+#else
+    const realv c = weight;
+#endif
+    realv least, greatest;
+    mcor_bound_weights(x, y, z, e, MCOR_TILE(tile, inv_h, i), &least, &greatest);
+    const realv most = MCOR_TENSOR ? fmax(fabs(least), fabs(greatest)) : greatest;
+    const realv above = fmax(c, (realv)0), below = fmin(c, (realv)0);
+    bound->low = MCOR_FMA(above, least, MCOR_FMA(below, greatest, bound->low));
+    bound->high = MCOR_FMA(above, greatest, MCOR_FMA(below, least, bound->high));
+    bound->size = MCOR_FMA(fabs(c), most, bound->size);
+#if MCOR_FIELD == 0
+    bound->size = MCOR_FMA(weight * (2 * fabs(iso)), most, bound->size);
+#endif
+#if MCOR_FIELD != 2
+    const realv trim_weight = MCOR_TILE(tile, MCOR_TRIM_WEIGHT, i);
+    bound->weight = MCOR_FMA(trim_weight, greatest, bound->weight);
+#if MCOR_TENSOR
+    bound->weight_size = MCOR_FMA(trim_weight, most, bound->weight_size);
+#endif
+#endif
+  }
+  bound->count += tile->count;
+}
+
+/* What the sums say. */
+int mcor_bound_state(const mcor_bound* bound, real iso, real node_threshold)
+{
+  const real k = (2 * (real)bound->count + MCOR_BOUND_ROUNDINGS) * MCOR_UNIT_ROUNDOFF;
+  if (k >= (real)0.5)
+  {
+    return MCOR_EXAMINE;
+  }
+  const real share = k / (1 - k), level = MCOR_FIELD == 0 ? (real)0 : iso;
+  const real margin = share * (mcor_lane_sum(bound->size) + fabs(level));
+#if MCOR_FIELD != 2
+  const real weight = mcor_lane_sum(bound->weight);
+  const real weight_size = MCOR_TENSOR ? mcor_lane_sum(bound->weight_size) : weight;
+  if (weight + share * (weight_size + fabs(node_threshold)) < node_threshold)
+  {
+    return MCOR_VOID;
+  }
+#endif
+  return mcor_lane_sum(bound->low) > level + margin ? MCOR_ABOVE
+    : mcor_lane_sum(bound->high) < level - margin   ? MCOR_BELOW
+                                                    : MCOR_EXAMINE;
+}

@@ -61,10 +61,10 @@ mcor_sdk_packages() { # vtk | paraview
   fi
 }
 
-# What apt says of the sizes; its version 3 (Debian 13) has other words.
+# What apt says of the sizes.
 mcor_sizes() { # PACKAGE...
   LC_ALL=C apt-get install --assume-no --no-install-recommends "$@" 2>/dev/null |
-    sed -n -E 's/^ *(Need to get.*|After this operation.*|Download size.*|Space needed.*)$/  \1/p'
+    sed -n -E 's/^ *(Need to get.*|After this operation.*)$/  \1/p'
 }
 
 # Runs as root.

@@ -464,6 +464,15 @@ class Options(CommandLineTest):
         result = self.extract(*ISO, "--attributes", "Kind")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
 
+    def test_output_is_a_function_of_the_input(self):
+        """Two runs write one file, byte for byte; so does one that ran more than once."""
+        written = []
+        for options in ((), (), ("--repeat", "2")):
+            self.succeed(*ISO, "--weight-sum", *options)
+            written.append(self.output.read_bytes())
+        self.assertEqual(written[0], written[1])
+        self.assertEqual(written[0], written[2])
+
     def test_repeat(self):
         found = self.succeed(*ISO, "--repeat", "3")
         self.assertEqual(len(found["runs"]), 3)

@@ -118,10 +118,10 @@ std::string DescribeCorrection(vtkFieldData* run)
   {
     return "none (preview)";
   }
-  return "length: mean " + Format(run, "CorrectionMean") + ", max " + Format(run, "CorrectionMax") +
-    ", deviation " + Format(run, "CorrectionStandardDeviation") + "; iterations: mean " +
-    Format(run, "IterationsMean") + ", max " + Format(run, "IterationsMax") +
-    "; largest residual " + Format(run, "ResidualMax");
+  return "vertices moved by: mean " + Format(run, "CorrectionMean") + ", max " +
+    Format(run, "CorrectionMax") + ", deviation " + Format(run, "CorrectionStandardDeviation") +
+    "; iterations: mean " + Format(run, "IterationsMean") + ", max " +
+    Format(run, "IterationsMax") + "; largest remaining error " + Format(run, "ResidualMax");
 }
 
 /// "SeedCellsNotIntersected" -> "seed_cells_not_intersected", "search grid" -> "search_grid"
@@ -216,9 +216,9 @@ std::string DescribeRun(vtkFieldData* run)
   text << "particles   " << DescribeParticles(run) << "\n"
        << "contour     " << DescribeField(run) << "\n"
        << "device      " << Text(run, "Device") << " (" << Text(run, "Platform") << ")\n"
-       << "cells       " << Format(run, "VirtualCells") << " virtual, " << Format(run, "SeedCells")
-       << " seeds (" << Format(run, "SeedCellsNotIntersected") << " not intersected), "
-       << Format(run, "CellsUsed") << " used\n"
+       << "cells       " << Format(run, "VirtualCells") << " of the virtual grid, "
+       << Format(run, "SeedCells") << " seeds (" << Format(run, "SeedCellsNotIntersected")
+       << " without surface), " << Format(run, "CellsUsed") << " with surface\n"
        << "correction  " << DescribeCorrection(run) << "\n"
        << "surface     " << Format(run, "Points") << " points, " << Format(run, "Triangles")
        << " triangles (" << Format(run, "TrianglesBeforeTrimming") << " before trimming)\n";

@@ -273,6 +273,7 @@ class Options(CommandLineTest):
         result = self.extract(*ISO)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles")
+        self.assertRegex(result.stdout, r"(?m)^cells       \d+ of the virtual grid, .* with surface$")
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 
     def test_quiet(self):

@@ -127,7 +127,7 @@ static void mcor_check_reuse(
     input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
     mcor_same_array(&input->density, &last->density) &&
     mcor_same_array(&input->volume, &last->volume) &&
-    (input->solid == NULL) == (last->solid == NULL) && input->ignore_solids == last->ignore_solids;
+    (input->solid == NULL) == (last->solid == NULL);
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision;

@@ -80,6 +80,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
     MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component, 0,
       c->scale, &attributes->sorted, i));
   }
+  mcor_release(context, &context->stage.values);
   return MCOR_OK;
 }
 

@@ -54,8 +54,8 @@ static mcor_status mcor_divide_cubes(
   mcor_context* context, const mcor_cubes* cubes, const mcor_buffer* kept, int kept_count)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_buffer *counts = &context->scratch[0], *keys = &context->scratch[1],
-              *index_of = &context->scratch[2];
+  mcor_buffer *counts = &bricks->child_counts, *keys = &bricks->child_keys,
+              *index_of = &bricks->child_index;
   const mcor_cubes finer = mcor_cubes_of(context, cubes->level - 1);
   const int count = bricks->block_count, added = finer.level == 0 ? kept_count : 0;
   int children;

@@ -59,23 +59,14 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
   }
 }
 
-/* What is needed within a phase only, and is as large as the particles after the search grid. */
-void mcor_release_scratch(mcor_context* context)
-{
-  for (size_t i = 0; i < sizeof context->scratch / sizeof context->scratch[0]; ++i)
-  {
-    mcor_release(context, &context->scratch[i]);
-  }
-  mcor_release_sort(context);
-}
-
 void mcor_release_memory(mcor_context* context)
 {
   if (!context)
   {
     return;
   }
-  mcor_release_scratch(context);
+  mcor_release_stage(context);
+  mcor_release_sort(context);
   mcor_release_grid(context);
   mcor_release_bricks(context);
   mcor_release_points(context);
@@ -83,7 +74,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_topology(context);
   mcor_release_trim(context);
   mcor_release_attributes(context);
-  mcor_release(context, &context->scan_sums);
+  mcor_release(context, &context->sort.sums);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);
@@ -164,7 +155,8 @@ mcor_status mcor_prepare(
   {
     MCOR_TRY(mcor_set_scalar(context, input));
   }
-  mcor_release_scratch(context);
+  mcor_release_stage(context);
+  mcor_release_sort(context);
   if (!context->nodes_valid)
   {
     mcor_release_brick_data(context, &context->bricks.now);

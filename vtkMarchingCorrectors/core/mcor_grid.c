@@ -109,16 +109,16 @@ static mcor_status mcor_sort_groups(mcor_context* context, const mcor_group_sort
 {
   mcor_grid* grid = &context->grid;
   const int batches = mcor_batches(context, grid->count);
-  MCOR_TRY(mcor_reserve(context, &context->sort_values, (size_t)grid->count * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &context->sort.values, (size_t)grid->count * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_LIGHT, batches,
     MCOR_SORT_ARGS(context, sort), MCOR_BUFFER(&grid->order)));
   for (int64_t width = MCOR_INSERTION_OF(context->cl.lanes); width < sort->most; width *= 2)
   {
     MCOR_TRY(
       MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_LIGHT, batches, MCOR_SORT_ARGS(context, sort),
-        MCOR_INT((int)width), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&context->sort_values)));
-    const mcor_buffer merged = context->sort_values;
-    context->sort_values = grid->order;
+        MCOR_INT((int)width), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&context->sort.values)));
+    const mcor_buffer merged = context->sort.values;
+    context->sort.values = grid->order;
     grid->order = merged;
   }
   mcor_release_sort(context);
@@ -137,11 +137,9 @@ static mcor_status mcor_order_cells(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
-  const mcor_buffer *xyz = &context->scratch[MCOR_STAGE_XYZ],
-                    *inv_h = &context->scratch[MCOR_STAGE_INV_H],
-                    *size = &context->scratch[MCOR_STAGE_SIZE],
-                    *solid = &context->scratch[MCOR_STAGE_SOLID];
-  mcor_buffer* most = &context->scratch[MCOR_STAGE_COUNT];
+  const mcor_buffer *xyz = &context->stage.xyz, *inv_h = &context->stage.inv_h,
+                    *size = &context->stage.size, *solid = &context->stage.solid;
+  mcor_buffer* most = &context->stage.found;
   cl_int most_in_cell = MCOR_USUAL_IN_CELL;
   MCOR_TRY(mcor_write(context, most, &most_in_cell, sizeof most_in_cell));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
@@ -170,8 +168,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)staging->count;
-  const mcor_buffer *xyz = &context->scratch[MCOR_STAGE_XYZ],
-                    *level = &context->scratch[MCOR_STAGE_LEVEL];
+  const mcor_buffer *xyz = &context->stage.xyz, *level = &context->stage.level;
   const uint64_t cells = mcor_make_levels(context, staging);
   const int count = grid->count = staging->count;
   MCOR_TRY(mcor_unmap_staging(context, staging));
@@ -206,8 +203,7 @@ static mcor_status mcor_refuse_density(
     : 1;
   MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
     "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too "
-    "little "
-    "for %s precision. Give volumes, or masses and densities, or remove such particles.",
+    "little for %s precision. Give volumes, or masses and densities, or remove such particles.",
     (long long)particle, mass, single ? "single" : "double");
   return mcor_fail(context, MCOR_INVALID_DATA,
     "The volume of particle %lld cannot be computed: with kernel %s, which has negative parts, the "
@@ -221,21 +217,20 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
   const size_t bytes = ((size_t)count + MCOR_PADDING) * context->cl.real_size;
-  mcor_buffer *size = &context->scratch[MCOR_STAGE_SIZE],
-              *solid = &context->scratch[MCOR_STAGE_SOLID],
-              *mass = &context->scratch[MCOR_STAGE_LEVEL], *density = &context->scratch[5],
-              *without = &context->scratch[MCOR_STAGE_XYZ];
+  mcor_stage_data* stage = &context->stage;
+  mcor_buffer *mass = &stage->mass, *density = &stage->density, *without = &stage->found;
+  MCOR_RELEASE(context, &stage->xyz, &stage->inv_h, &stage->level);
   MCOR_TRY(mcor_reserve(context, mass, bytes));
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(size), MCOR_BUFFER(mass), MCOR_INT(0)));
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(&stage->size), MCOR_BUFFER(mass), MCOR_INT(0)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(mass), MCOR_BUFFER(density)));
   cl_int first = INT32_MAX;
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(solid),
+    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&stage->solid),
     MCOR_BUFFER(mass), MCOR_BUFFER(density),
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
@@ -258,7 +253,12 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   const mcor_status unmapped = mcor_unmap_staging(context, &staging);
   MCOR_TRY(status);
   MCOR_TRY(unmapped);
-  return mcor_needs_density(input) ? mcor_compute_volumes(context, input) : MCOR_OK;
+  if (mcor_needs_density(input))
+  {
+    MCOR_TRY(mcor_compute_volumes(context, input));
+  }
+  mcor_release_stage(context);
+  return MCOR_OK;
 }
 
 #define MCOR_COINCIDENT_ARGS(g)                                                                    \
@@ -271,9 +271,9 @@ static mcor_status mcor_order_coincident(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
-  const mcor_buffer* raw = &context->scratch[0]; /* the scalar in the order of the input */
-  mcor_buffer *many = &context->scratch[1], *flags = &context->scratch[2],
-              *keys = &context->scratch[3];
+  const mcor_buffer* raw = &context->stage.values; /* the scalar in the order of the input */
+  mcor_buffer *many = &context->stage.found, *flags = &context->stage.flags,
+              *keys = &context->stage.keys;
   cl_int some = 0;
   int places;
   MCOR_TRY(mcor_fill(context, many, 0, sizeof some));

@@ -54,6 +54,16 @@ typedef struct mcor_lattice
   int blocks[3];
 } mcor_lattice;
 
+/* On the way to the search grid. */
+typedef struct mcor_stage_data
+{
+  mcor_buffer xyz, inv_h, size, solid, level; /* of the particles in the order of the input */
+  mcor_buffer values;                         /* real, of one component, in that order */
+  mcor_buffer mass, density;                  /* where volumes are computed */
+  mcor_buffer flags, keys;                    /* of coincident particles */
+  mcor_buffer found;                          /* int: what a kernel found in any of them */
+} mcor_stage_data;
+
 /* [III-A] */
 typedef struct mcor_grid
 {
@@ -91,9 +101,13 @@ typedef struct mcor_bricks
   mcor_brick_data now;
   mcor_buffer neighbours; /* see mcor_brick_neighbours */
   bool neighbours_valid;
-  mcor_buffer placed, slot_of; /* of mcor_append_bricks, see mcor_brick.cl */
-  mcor_buffer need, fresh;     /* fresh: see mcor_march_need */
-  mcor_buffer bit_counts;      /* of mcor_count_bits */
+  mcor_buffer placed, slot_of;                       /* of mcor_append_bricks, see mcor_brick.cl */
+  mcor_buffer need, fresh;                           /* fresh: see mcor_march_need */
+  mcor_buffer bit_counts;                            /* of mcor_count_bits */
+  mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
+  mcor_buffer regions;                               /* int: those to examine */
+  mcor_buffer pair_cells; /* ulong [block_count][512]: cells between pairs */
+  mcor_buffer found;      /* int: what a kernel found in any brick, or how many regions */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */
@@ -132,6 +146,12 @@ typedef struct mcor_trim_data
   mcor_buffer triangles;
 } mcor_trim_data;
 
+/* mcor_scan.c. flags and order: of mcor_unique. */
+typedef struct mcor_sort_data
+{
+  mcor_buffer sums, keys, values, histogram, order, flags;
+} mcor_sort_data;
+
 /* One component of an attribute. */
 typedef struct mcor_component
 {
@@ -153,6 +173,8 @@ struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
   mcor_cl cl;
+  mcor_sort_data sort;
+  mcor_stage_data stage;
   mcor_grid grid;
   mcor_bricks bricks;
   mcor_mesh mesh;
@@ -162,8 +184,6 @@ struct mcor_context
   mcor_lattice lattice;
   mcor_measure measure;
   mcor_buffer case_table;
-  mcor_buffer scratch[6]; /* within one function */
-  mcor_buffer scan_sums, sort_keys, sort_values, sort_histogram;
   mcor_attributes attributes;
   int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift;    /* A0 */
@@ -232,8 +252,6 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
 
-void mcor_release_scratch(mcor_context* context);
-
 /* Gives back buffers; those that are empty stay so. */
 #define MCOR_RELEASE(context, ...)                                                                 \
   mcor_release_all(context, (mcor_buffer* const[]){ __VA_ARGS__ },                                 \
@@ -265,6 +283,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row);
+void mcor_release_stage(mcor_context* context);
 void mcor_release_grid(mcor_context* context);
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);
 void mcor_release_bricks(mcor_context* context);

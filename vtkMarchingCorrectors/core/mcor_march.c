@@ -21,7 +21,7 @@ static mcor_status mcor_classify_cells(mcor_context* context)
 static mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* flags = &context->scratch[1];
+  mcor_buffer* flags = &bricks->found;
   cl_int flag;
   MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_LIGHT, bricks->now.count,

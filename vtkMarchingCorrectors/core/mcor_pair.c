@@ -13,7 +13,7 @@ mcor_status mcor_mark_pairs(mcor_context* context, double iso)
   const int particles = context->cl.lanes * MCOR_PAIR_GROUPS_OF(context->cl.lanes); /* of an item */
   const int items = (context->grid.count + particles - 1) / particles;
   const size_t marks = (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
-  mcor_buffer* marked = &context->scratch[3];
+  mcor_buffer* marked = &bricks->pair_cells;
   MCOR_TRY(mcor_fill(context, marked, 0, marks * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_mark", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&context->grid.sides), MCOR_REAL(iso),

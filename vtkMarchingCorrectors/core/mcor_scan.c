@@ -17,18 +17,18 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
 {
   const int chunks = mcor_chunks(context, count);
   cl_long sum = 0;
-  MCOR_TRY(mcor_reserve(context, &context->scan_sums, ((size_t)chunks + 1) * sizeof(cl_long)));
+  MCOR_TRY(mcor_reserve(context, &context->sort.sums, ((size_t)chunks + 1) * sizeof(cl_long)));
   if (chunks > 1)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
-      MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
+      MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->sort.sums)));
     MCOR_TRY(MCOR_LAUNCH(
-      context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
+      context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks), MCOR_BUFFER(&context->sort.sums)));
   }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
-    MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->scan_sums)));
+    MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->sort.sums)));
   MCOR_TRY(
-    mcor_read(context, &context->scan_sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
+    mcor_read(context, &context->sort.sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
   MCOR_RETURN_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The surface is too large: a table would need %lld entries, %d is the limit. Use a larger cube "
     "size.",
@@ -71,22 +71,22 @@ mcor_status mcor_sort(
   const size_t n = (size_t)count;
   int total;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &context->sort_keys, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &context->sort_values, n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &context->sort.keys, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &context->sort.values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(
-    context, &context->sort_histogram, (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
+    context, &context->sort.histogram, (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
   for (int shift = 0; shift == 0 || (shift < 64 && (key_limit - 1) >> shift); shift += bits)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
       MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),
-      MCOR_BUFFER(&context->sort_histogram)));
-    MCOR_TRY(mcor_scan(context, &context->sort_histogram, chunks << bits, &total));
+      MCOR_BUFFER(&context->sort.histogram)));
+    MCOR_TRY(mcor_scan(context, &context->sort.histogram, chunks << bits, &total));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
       MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),
-      MCOR_BUFFER(&context->sort_histogram), MCOR_BUFFER(&context->sort_keys),
-      MCOR_BUFFER(&context->sort_values)));
-    mcor_swap(keys, &context->sort_keys);
-    mcor_swap(values, &context->sort_values);
+      MCOR_BUFFER(&context->sort.histogram), MCOR_BUFFER(&context->sort.keys),
+      MCOR_BUFFER(&context->sort.values)));
+    mcor_swap(keys, &context->sort.keys);
+    mcor_swap(values, &context->sort.values);
   }
   return MCOR_OK;
 }
@@ -94,17 +94,16 @@ mcor_status mcor_sort(
 /* What sorting needs is as large as the particles. */
 void mcor_release_sort(mcor_context* context)
 {
-  mcor_release(context, &context->sort_keys);
-  mcor_release(context, &context->sort_values);
-  mcor_release(context, &context->sort_histogram);
+  mcor_sort_data* s = &context->sort;
+  MCOR_RELEASE(context, &s->keys, &s->values, &s->histogram, &s->order, &s->flags);
 }
 
 /* Distinct keys in order; index_of[i] is the index of key i among them. Sorts `keys`. */
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)
 {
-  mcor_buffer* values = &context->scratch[4];
-  mcor_buffer* flags = &context->scratch[5];
+  mcor_buffer* values = &context->sort.order;
+  mcor_buffer* flags = &context->sort.flags;
   *distinct_count = 0;
   if (count == 0)
   {

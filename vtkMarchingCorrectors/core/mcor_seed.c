@@ -12,7 +12,7 @@
 static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* grown = &context->scratch[1];
+  mcor_buffer* grown = &bricks->found;
   MCOR_TRY(mcor_fill(context, grown, 0, sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
@@ -25,7 +25,7 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
 {
   cl_int flag;
   MCOR_TRY(mcor_ask_beside(context, &context->bricks.need));
-  MCOR_TRY(mcor_read(context, &context->scratch[1], 0, &flag, sizeof flag));
+  MCOR_TRY(mcor_read(context, &context->bricks.found, 0, &flag, sizeof flag));
   *grown = flag != 0;
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
@@ -36,7 +36,7 @@ static mcor_status mcor_test_regions(
 {
   mcor_bricks* bricks = &context->bricks;
   const int regions = bricks->block_count * MCOR_BLOCK_REGIONS;
-  mcor_buffer* list_count = &context->scratch[1];
+  mcor_buffer* list_count = &bricks->found;
   MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
   MCOR_TRY(mcor_reserve(context, list, (size_t)regions * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, list_count, 0, sizeof(cl_int)));
@@ -55,7 +55,7 @@ static mcor_status mcor_test_regions(
 static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* list = &context->scratch[3];
+  mcor_buffer* list = &bricks->regions;
   int listed;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));

@@ -28,8 +28,8 @@ typedef struct mcor_level
  * (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
 #define MCOR_BRICK 4
 #define MCOR_BRICK_NODES 64
-#define MCOR_NEIGHBOURS                                                                            \
-  14 /* bricks beside one that share cells with it, see mcor_brick_neighbours */
+/* Bricks beside one that share cells with it, see mcor_brick_neighbours. */
+#define MCOR_NEIGHBOURS 14
 
 /* A region is 2 x 2 x 2 bricks, a block 4 x 4 x 4 regions. */
 #define MCOR_REGION_BRICKS 2
@@ -71,14 +71,13 @@ typedef struct mcor_level
 #define MCOR_DECISION_MASKS 5
 
 /* One way to triangulate a cell. An edge is axis << 3 | lower corner; corner and axis bits 1 x, 2 y,
- * 4 z. */
+ * 4 z. tunnel: the row of the same case, counted from its first, where a tunnel joins two regions
+ * below, above; 0: there is none. */
 typedef struct mcor_cell_row
 {
   MCOR_TYPE(uchar) edges[36]; /* 3 a triangle */
   MCOR_TYPE(uchar) triangles;
-  MCOR_TYPE(uchar)
-  tunnel[2]; /* the row of the same case, counted from its first, where a tunnel
-                               * joins two regions below, above; 0: there is none */
+  MCOR_TYPE(uchar) tunnel[2];
   MCOR_TYPE(uchar) unused;
 } mcor_cell_row;
 

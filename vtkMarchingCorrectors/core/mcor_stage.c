@@ -11,28 +11,49 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MCOR_VIEWS 5
+
+/* A buffer of the stage, and the host's view of it. */
+typedef struct mcor_view
+{
+  mcor_buffer* buffer;
+  void** data;
+  size_t element; /* bytes per particle */
+} mcor_view;
+
+static void mcor_list_views(
+  mcor_context* context, mcor_staging* staging, mcor_view views[MCOR_VIEWS])
+{
+  mcor_stage_data* s = &context->stage;
+  const size_t fix = context->cl.fix_size, real = context->cl.real_size;
+  views[0] = (mcor_view){ &s->xyz, &staging->xyz, 3 * fix };
+  views[1] = (mcor_view){ &s->inv_h, &staging->inv_h, real };
+  views[2] = (mcor_view){ &s->size, &staging->size, real };
+  views[3] = (mcor_view){ &s->solid, &staging->solid, 1 };
+  views[4] = (mcor_view){ &s->level, &staging->level, 1 };
+}
+
 static mcor_status mcor_map_staging(mcor_context* context, int64_t count, mcor_staging* staging)
 {
-  const size_t n = (size_t)count, real = context->cl.real_size;
-  const size_t bytes[MCOR_STAGE_COUNT] = { n * 3 * context->cl.fix_size, n * real, n * real, n, n };
-  void** const views[MCOR_STAGE_COUNT] = { &staging->xyz, &staging->inv_h, &staging->size,
-    &staging->solid, &staging->level };
-  for (int i = 0; i < MCOR_STAGE_COUNT; ++i)
+  mcor_view views[MCOR_VIEWS];
+  mcor_list_views(context, staging, views);
+  for (int i = 0; i < MCOR_VIEWS; ++i)
   {
-    MCOR_TRY(mcor_reserve(context, &context->scratch[i], bytes[i]));
-    MCOR_TRY(mcor_map(context, &context->scratch[i], bytes[i], true, views[i]));
+    const size_t bytes = (size_t)count * views[i].element;
+    MCOR_TRY(mcor_reserve(context, views[i].buffer, bytes));
+    MCOR_TRY(mcor_map(context, views[i].buffer, bytes, true, views[i].data));
   }
   return MCOR_OK;
 }
 
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
 {
-  void** const views[MCOR_STAGE_COUNT] = { &staging->xyz, &staging->inv_h, &staging->size,
-    &staging->solid, &staging->level };
+  mcor_view views[MCOR_VIEWS];
   mcor_status status = MCOR_OK;
-  for (int i = 0; i < MCOR_STAGE_COUNT; ++i)
+  mcor_list_views(context, staging, views);
+  for (int i = 0; i < MCOR_VIEWS; ++i)
   {
-    const mcor_status unmapped = mcor_unmap(context, &context->scratch[i], views[i]);
+    const mcor_status unmapped = mcor_unmap(context, views[i].buffer, views[i].data);
     status = status == MCOR_OK ? unmapped : status;
   }
   return status;
@@ -367,7 +388,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
 {
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;
-  mcor_buffer* raw = &context->scratch[0];
+  mcor_buffer* raw = &context->stage.values;
   mcor_value_job job = { context, input, array, component, shift, scale, NULL };
   MCOR_TRY(mcor_reserve(context, raw, bytes));
   MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
@@ -376,4 +397,11 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
     MCOR_INT(to_row));
+}
+
+void mcor_release_stage(mcor_context* context)
+{
+  mcor_stage_data* s = &context->stage;
+  MCOR_RELEASE(context, &s->xyz, &s->inv_h, &s->size, &s->solid, &s->level, &s->mass, &s->density,
+    &s->values, &s->flags, &s->keys, &s->found);
 }

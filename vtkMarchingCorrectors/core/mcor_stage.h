@@ -6,7 +6,7 @@
 #include "mcor_internal.h"
 
 /* The input in the device's form, in input order; solids that are not used left out. Arrays are
- * views of the scratch buffers named like them. */
+ * views of the buffers named like them. */
 typedef struct mcor_staging
 {
   int count;
@@ -14,16 +14,6 @@ typedef struct mcor_staging
   double size_scale;        /* see mcor_size_scale */
   void *solid, *level;      /* uint8_t */
 } mcor_staging;
-
-enum
-{
-  MCOR_STAGE_XYZ, /* scratch buffers */
-  MCOR_STAGE_INV_H,
-  MCOR_STAGE_SIZE,
-  MCOR_STAGE_SOLID,
-  MCOR_STAGE_LEVEL,
-  MCOR_STAGE_COUNT
-};
 
 /* Whether volumes are computed from the particles' density on the device. */
 static inline bool mcor_needs_density(const mcor_input* input)

@@ -41,7 +41,7 @@ static void trim(mcor_context* context, flat_mesh* m)
   options.preview = 1;
   static mcor_statistics statistics;
   mcor_surface surface = core_extract(context, &input, &options); /* for the search grid */
-  context->options = &options; /* as if the call went on */
+  context->options = &options;                                    /* as if the call went on */
   context->statistics = &statistics;
   mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)m->vertices;

@@ -96,13 +96,13 @@ typedef struct mcor_means
   double* to;
 } mcor_means;
 
-static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
+static void mcor_store_means(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_means* m = data;
   const int count = m->context->attributes.count;
   for (int64_t v = first; v < last; ++v)
   {
-    if (mcor_is_put(m->scanned, v))
+    if (mcor_is_output(m->scanned, v))
     {
       m->to[m->scanned[v] * (int64_t)m->width] =
         mcor_get_real(m->context, m->values, v * count + m->c) / m->scale;
@@ -112,7 +112,7 @@ static void mcor_put_means(void* data, int slice, int64_t first, int64_t last)
 }
 
 /* Hands over the means of the components on the device. */
-static mcor_status mcor_put_attributes(
+static mcor_status mcor_store_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_attributes* attributes = &context->attributes;
@@ -128,14 +128,14 @@ static mcor_status mcor_put_attributes(
     double* to = surface->attributes[component->attribute] + surface->point_count * width +
       component->component;
     mcor_means job = { context, scanned, view, c, width, component->scale, to };
-    mcor_parallel_for(vertices, MCOR_LIGHT_GRAIN, mcor_put_means, &job);
+    mcor_parallel_for(vertices, MCOR_LIGHT_GRAIN, mcor_store_means, &job);
   }
   return mcor_unmap(context, means, &view);
 }
 
 /* Hands over the components that do not vary: all that are not in the list, which has them in the
  * order of the arrays. */
-static void mcor_put_constants(
+static void mcor_store_constants(
   const mcor_context* context, const mcor_input* input, int64_t points, mcor_surface* surface)
 {
   const mcor_attributes* attributes = &context->attributes;
@@ -180,12 +180,12 @@ typedef struct mcor_nearest
   int64_t* to;
 } mcor_nearest;
 
-static void mcor_put_nearest(void* data, int slice, int64_t first, int64_t last)
+static void mcor_store_nearest(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_nearest* job = data;
   for (int64_t v = first; v < last; ++v)
   {
-    if (mcor_is_put(job->scanned, v))
+    if (mcor_is_output(job->scanned, v))
     {
       job->to[job->scanned[v]] = job->index[v] < 0 ? -1 : job->source[job->index[v]];
     }
@@ -209,21 +209,21 @@ static mcor_status mcor_add_nearest(
   MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
   mcor_nearest job = { scanned, view, context->source,
     surface->nearest_particle + surface->point_count };
-  mcor_parallel_for(mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_put_nearest, &job);
+  mcor_parallel_for(mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_store_nearest, &job);
   return mcor_unmap(context, indices, &view);
 }
 
-/* Of the vertices that are put out, see mcor_is_put. */
+/* Of the vertices that are put out, see mcor_is_output. */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_mesh* mesh = &context->mesh;
   const int varying = context->attributes.varying_count;
   int groups;
-  mcor_put_constants(context, input, scanned[mesh->vertex_count], surface);
+  mcor_store_constants(context, input, scanned[mesh->vertex_count], surface);
   if (varying > 0)
   {
-    MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));
+    MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
   }
   if (mcor_attributes_remain(context))
   {
@@ -237,7 +237,7 @@ mcor_status mcor_add_attributes(
   {
     MCOR_TRY(mcor_load_attributes(context, input, first));
     MCOR_TRY(mcor_evaluate_attributes(context, groups));
-    MCOR_TRY(mcor_put_attributes(context, input, scanned, surface));
+    MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
   }
   return MCOR_OK;
 }

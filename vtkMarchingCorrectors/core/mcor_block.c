@@ -5,21 +5,21 @@
 
 #include "mcor_internal.h"
 
-/* The first level has the smallest cubes of which no more than this many cover the lattice. */
+/* The first size has the smallest cubes of which no more than this many cover the lattice. */
 #define MCOR_FIRST_CUBES 32768
 
-/* One size of cubes: 32 << level nodes long. */
+/* One size of cubes: 32 << doublings nodes long. */
 typedef struct mcor_cubes
 {
-  int level, n[3];
+  int doublings, n[3];
 } mcor_cubes;
 
-static mcor_cubes mcor_cubes_of(const mcor_context* context, int level)
+static mcor_cubes mcor_cubes_of(const mcor_context* context, int doublings)
 {
-  mcor_cubes cubes = { .level = level };
+  mcor_cubes cubes = { .doublings = doublings };
   for (int a = 0; a < 3; ++a)
   {
-    cubes.n[a] = ((context->lattice.blocks[a] - 1) >> level) + 1;
+    cubes.n[a] = ((context->lattice.blocks[a] - 1) >> doublings) + 1;
   }
   return cubes;
 }
@@ -29,7 +29,7 @@ static uint64_t mcor_cube_total(const mcor_cubes* cubes)
   return (uint64_t)cubes->n[0] * (uint64_t)cubes->n[1] * (uint64_t)cubes->n[2];
 }
 
-/* States of the cubes whose keys are the block keys now, and which of them are quiet. */
+/* States of the cubes whose keys are the block keys now, and which of them are inactive. */
 static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor_cubes* cubes)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -37,18 +37,18 @@ static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor
   MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, mcor_cube_total(cubes),
     &bricks->block_buckets, &bricks->block_shift));
   MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
-  MCOR_TRY(mcor_reserve(context, &bricks->quiet, (size_t)count));
+  MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
     MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_INT(MCOR_BLOCK_CUBES << cubes->level), MCOR_SEED_ARGS(context, iso),
+    MCOR_INT(MCOR_BLOCK_CUBES << cubes->doublings), MCOR_SEED_ARGS(context, iso),
     MCOR_BUFFER(&bricks->block_states)));
-  return MCOR_LAUNCH(context, "mcor_block_quiet", MCOR_LIGHT, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
     MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),
-    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->quiet));
+    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Replaces the cubes by the parts of those that are not quiet, and by the blocks `kept` where these
+/* Replaces the cubes by the parts of those that are active, and by the blocks `kept` where these
  * are blocks already. */
 static mcor_status mcor_divide_cubes(
   mcor_context* context, const mcor_cubes* cubes, const mcor_buffer* kept, int kept_count)
@@ -56,20 +56,21 @@ static mcor_status mcor_divide_cubes(
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer *counts = &bricks->child_counts, *keys = &bricks->child_keys,
               *index_of = &bricks->child_index;
-  const mcor_cubes finer = mcor_cubes_of(context, cubes->level - 1);
-  const int count = bricks->block_count, added = finer.level == 0 ? kept_count : 0;
+  const mcor_cubes finer = mcor_cubes_of(context, cubes->doublings - 1);
+  const int count = bricks->block_count, added = finer.doublings == 0 ? kept_count : 0;
   int children;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->quiet), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]),
-    MCOR_BUFFER(counts)));
+    MCOR_BUFFER(&bricks->inactive), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]),
+    MCOR_INT(finer.n[2]), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &children));
   MCOR_RETURN_IF((int64_t)children + added > INT32_MAX / MCOR_BLOCK_BRICKS, context,
     MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: there may be surface in %lld cubes of %d cells along each "
     "axis, and %d is the limit. Use a larger cube size.",
-    (long long)children + added, MCOR_BLOCK_CUBES << finer.level, INT32_MAX / MCOR_BLOCK_BRICKS);
+    (long long)children + added, MCOR_BLOCK_CUBES << finer.doublings,
+    INT32_MAX / MCOR_BLOCK_BRICKS);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)children + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
@@ -82,24 +83,24 @@ static mcor_status mcor_divide_cubes(
 }
 
 /* Bits of bricks for the blocks: those are kept of which nodes are known. */
-mcor_status mcor_keep_bricks(mcor_context* context)
+mcor_status mcor_request_known(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
-  return MCOR_LAUNCH(context, "mcor_block_keep", MCOR_LIGHT, bricks->now.count,
+  return MCOR_LAUNCH(context, "mcor_block_request_known", MCOR_LIGHT, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
 
-/* The blocks that are not quiet, and those of bricks that exist. iso: relative to A0. */
+/* The active blocks, and those of bricks that exist. iso: relative to A0. */
 mcor_status mcor_make_blocks(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_cubes cubes = mcor_cubes_of(context, 0);
   while (mcor_cube_total(&cubes) > MCOR_FIRST_CUBES)
   {
-    cubes = mcor_cubes_of(context, cubes.level + 1);
+    cubes = mcor_cubes_of(context, cubes.doublings + 1);
   }
   mcor_buffer kept = { 0 };
   const int kept_count = bricks->now.count > 0 ? bricks->block_count : 0;
@@ -116,7 +117,8 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
     status = MCOR_LAUNCH(context, "mcor_block_all", MCOR_LIGHT, bricks->block_count,
       MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->block_keys));
   }
-  for (; cubes.level > 0 && status == MCOR_OK; cubes = mcor_cubes_of(context, cubes.level - 1))
+  for (; cubes.doublings > 0 && status == MCOR_OK;
+       cubes = mcor_cubes_of(context, cubes.doublings - 1))
   {
     status = mcor_test_cubes(context, iso, &cubes);
     if (status == MCOR_OK)
@@ -127,5 +129,5 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
   mcor_release(context, &kept);
   MCOR_TRY(status);
   MCOR_TRY(mcor_test_cubes(context, iso, &cubes));
-  return mcor_keep_bricks(context);
+  return mcor_request_known(context);
 }

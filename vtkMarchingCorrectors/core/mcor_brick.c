@@ -31,8 +31,8 @@ void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
 void mcor_release_bricks(mcor_context* context)
 {
   mcor_bricks* b = &context->bricks;
-  MCOR_RELEASE(context, &b->block_keys, &b->block_buckets, &b->block_states, &b->quiet, &b->states,
-    &b->bits, &b->base, &b->neighbours, &b->placed, &b->slot_of, &b->need, &b->fresh,
+  MCOR_RELEASE(context, &b->block_keys, &b->block_buckets, &b->block_states, &b->inactive,
+    &b->states, &b->bits, &b->base, &b->neighbours, &b->placed, &b->slot_of, &b->need, &b->fresh,
     &b->bit_counts, &b->child_counts, &b->child_keys, &b->child_index, &b->regions, &b->pair_cells,
     &b->found);
   mcor_release_brick_data(context, &b->now);

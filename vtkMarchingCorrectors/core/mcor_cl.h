@@ -60,7 +60,7 @@ typedef struct mcor_cl
   bool is_cpu;                    /* the kernels' form for CPUs is used */
   bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
   int lanes;                      /* of the programs */
-  int chunks;                     /* runs into which scans and sorts cut their arrays */
+  int segments;                   /* runs into which scans and sorts cut their arrays */
   int register_lanes;  /* that the device's compiler has registers for; 0: not asked yet */
   bool keeps_binaries; /* programs are kept in files, see mcor_cache.h */
   size_t real_size, fix_size;

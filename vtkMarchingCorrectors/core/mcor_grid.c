@@ -93,11 +93,11 @@ static mcor_status mcor_reserve_particles(mcor_context* context, int count)
 }
 
 /* What sorts groups of particles with the same key, see mcor_sort_before. */
-typedef struct mcor_group_sort
+typedef struct mcor_key_sort
 {
   const mcor_buffer *keys, *xyz, *inv_h, *size, *solid, *value;
   int by_value, most; /* particles of a group */
-} mcor_group_sort;
+} mcor_key_sort;
 
 #define MCOR_SORT_ARGS(c, s)                                                                       \
   MCOR_INT((c)->grid.count), MCOR_BUFFER((s)->keys), MCOR_BUFFER((s)->xyz),                        \
@@ -105,7 +105,7 @@ typedef struct mcor_group_sort
     MCOR_INT((s)->by_value), MCOR_BUFFER((s)->value)
 
 /* Sorts groups that are too large for one work-item. */
-static mcor_status mcor_sort_groups(mcor_context* context, const mcor_group_sort* sort)
+static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sort* sort)
 {
   mcor_grid* grid = &context->grid;
   const int batches = mcor_batches(context, grid->count);
@@ -151,14 +151,14 @@ static mcor_status mcor_order_cells(mcor_context* context)
   {
     return MCOR_OK;
   }
-  const mcor_group_sort sort = { .keys = &grid->cell_keys,
+  const mcor_key_sort sort = { .keys = &grid->cell_keys,
     .xyz = xyz,
     .inv_h = inv_h,
     .size = size,
     .solid = solid,
     .value = inv_h,
     .most = most_in_cell };
-  MCOR_TRY(mcor_sort_groups(context, &sort));
+  MCOR_TRY(mcor_sort_same_keys(context, &sort));
   return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->order), MCOR_GRID_INPUT(xyz, inv_h, size, solid), MCOR_GRID_OUTPUT(grid));
 }
@@ -292,7 +292,7 @@ static mcor_status mcor_order_coincident(mcor_context* context)
   MCOR_TRY(mcor_scan(context, flags, count, &places));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(flags), MCOR_BUFFER(keys)));
-  const mcor_group_sort sort = { .keys = keys,
+  const mcor_key_sort sort = { .keys = keys,
     .xyz = &grid->px,
     .inv_h = raw,
     .size = raw,
@@ -300,7 +300,7 @@ static mcor_status mcor_order_coincident(mcor_context* context)
     .value = raw,
     .by_value = 1,
     .most = count };
-  MCOR_TRY(mcor_sort_groups(context, &sort));
+  MCOR_TRY(mcor_sort_same_keys(context, &sort));
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(&grid->value), MCOR_INT(0));
 }
@@ -323,7 +323,7 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   const bool single = context->cl.real_size == sizeof(float);
   const double low = context->measure.scalar_min, high = context->measure.scalar_max;
   const double most = fmax(high - context->value_shift, context->value_shift - low);
-  MCOR_RETURN_IF(!(most * fmax(context->heaviest, 1) < (single ? 1e33 : 1e290)), context,
+  MCOR_RETURN_IF(!(most * fmax(context->largest_weight, 1) < (single ? 1e33 : 1e290)), context,
     MCOR_INVALID_DATA,
     "The scalar's values, from %g to %g, reach too far for %s precision. %s remove the particles "
     "with the outermost values.",
@@ -337,6 +337,6 @@ void mcor_release_grid(mcor_context* context)
 {
   mcor_grid* g = &context->grid;
   MCOR_RELEASE(context, &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py,
-    &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->sides);
+    &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->side_flags);
   context->grid_valid = context->value_valid = context->nodes_valid = false;
 }

@@ -73,8 +73,8 @@ typedef struct mcor_grid
   mcor_buffer level_buffer, buckets, cell_keys, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
   mcor_buffer value;
-  int most_in_cell;  /* particles, at least MCOR_USUAL_IN_CELL */
-  mcor_buffer sides; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
+  int most_in_cell;       /* particles, at least MCOR_USUAL_IN_CELL */
+  mcor_buffer side_flags; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
   bool has_solids;
 } mcor_grid;
 
@@ -95,9 +95,9 @@ typedef struct mcor_bricks
 {
   int block_count, block_shift;
   mcor_buffer block_keys, block_buckets;
-  mcor_buffer block_states, quiet; /* uchar; see mcor_block.cl */
-  mcor_buffer states;              /* uchar [block_count][512], see mcor_seed.cl */
-  mcor_buffer bits, base;          /* [block_count][16] */
+  mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
+  mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
+  mcor_buffer bits, base;             /* [block_count][16] */
   mcor_brick_data now;
   mcor_buffer neighbours; /* see mcor_brick_neighbours */
   bool neighbours_valid;
@@ -120,7 +120,7 @@ typedef struct mcor_mesh
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer means; /* real [vertex_count][attributes.count] */
   mcor_buffer triangles;
-  mcor_buffer scanned; /* of the output, see mcor_is_put */
+  mcor_buffer scanned; /* of the output, see mcor_is_output */
 } mcor_mesh;
 
 /* Of MCOR_TOPOLOGY_FIELD. */
@@ -187,7 +187,7 @@ struct mcor_context
   mcor_attributes attributes;
   int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift;    /* A0 */
-  double heaviest;       /* no particle has a greater V / (scaled h)^3 */
+  double largest_weight; /* no particle has a greater V / (scaled h)^3 */
   bool nodes_valid;      /* bricks hold node values of the current scalar */
   mcor_input last_input; /* what grid and value were made from */
   mcor_options last_options;
@@ -225,7 +225,7 @@ static inline double mcor_get_real(const mcor_context* context, const void* arra
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
 
 /* Whether vertex v is put out, being used by a triangle: as point scanned[v] of its mesh. */
-static inline bool mcor_is_put(const cl_int* scanned, int64_t v)
+static inline bool mcor_is_output(const cl_int* scanned, int64_t v)
 {
   return scanned[v] != scanned[v + 1];
 }
@@ -294,11 +294,11 @@ void mcor_release_topology(mcor_context* context);
 void mcor_release_trim(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context, double iso);
-mcor_status mcor_keep_bricks(mcor_context* context);
+mcor_status mcor_request_known(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
-mcor_status mcor_mark_pairs(mcor_context* context, double iso);
+mcor_status mcor_seed_pairs(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
 mcor_status mcor_append_bricks(mcor_context* context);
@@ -387,7 +387,7 @@ extern const char mcor_source_mcor_attribute_cl[];
 
 /* Kernel arguments of MCOR_SEED_PARAMS. */
 #define MCOR_SEED_ARGS(c, iso)                                                                     \
-  MCOR_BUFFER(&(c)->grid.sides), MCOR_REAL(mcor_side_margin(c)), MCOR_REAL(iso),                   \
+  MCOR_BUFFER(&(c)->grid.side_flags), MCOR_REAL(mcor_side_margin(c)), MCOR_REAL(iso),              \
     MCOR_REAL((c)->options->node_threshold)
 
 #define MCOR_BLOCK_ARGS(c)                                                                         \

@@ -51,7 +51,7 @@ static void mcor_triangle_normal(
   }
 }
 
-static void mcor_put_sums(void* data, int slice, int64_t first, int64_t last)
+static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_normals* job = data;
   for (int64_t i = first; i < last; ++i)
@@ -100,7 +100,7 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
       job.sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
     }
   }
-  mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_put_sums, &job);
+  mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_store_sums, &job);
   free(job.sums);
   return MCOR_OK;
 }

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Views of the mesh's vertices; see mcor_is_put. */
+/* Views of the mesh's vertices; see mcor_is_output. */
 enum
 {
   MCOR_VIEW_SCANNED,
@@ -216,7 +216,7 @@ static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
 
 /* The normal against the gradient; zero where that vanishes. Scaled first, as the square of a small
  * gradient may vanish, and that of a large one overflow. */
-static void mcor_put_normal(const double gradient[3], float normal[3])
+static void mcor_store_normal(const double gradient[3], float normal[3])
 {
   double most = 0, square = 0;
   for (int a = 0; a < 3; ++a)
@@ -234,7 +234,7 @@ static void mcor_put_normal(const double gradient[3], float normal[3])
 }
 
 /* Vertex v becomes point `to` of the surface. */
-static void mcor_put_point(const mcor_context* context, const mcor_download* d, int64_t v,
+static void mcor_store_point(const mcor_context* context, const mcor_download* d, int64_t v,
   double iso, mcor_surface* s, int64_t to)
 {
   const double cube = context->lattice.cube;
@@ -251,7 +251,7 @@ static void mcor_put_point(const mcor_context* context, const mcor_download* d, 
   }
   if (s->normals)
   {
-    mcor_put_normal(gradient, s->normals + 3 * to);
+    mcor_store_normal(gradient, s->normals + 3 * to);
   }
   if (s->weight_sum)
   {
@@ -283,9 +283,9 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
   mcor_tally tally = { 0 };
   for (int64_t v = first; v < last; ++v)
   {
-    if (mcor_is_put(d->scanned, v))
+    if (mcor_is_output(d->scanned, v))
     {
-      mcor_put_point(
+      mcor_store_point(
         delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
       mcor_count_correction(delivery->context, d, v, &tally);
     }
@@ -362,7 +362,7 @@ static mcor_status mcor_add_boundary_eigenvalue(
   float* to = surface->boundary_eigenvalue + surface->point_count;
   for (int v = 0; v < vertices; ++v)
   {
-    if (mcor_is_put(scanned, v))
+    if (mcor_is_output(scanned, v))
     {
       to[scanned[v]] = (float)mcor_get_real(context, view, v);
     }

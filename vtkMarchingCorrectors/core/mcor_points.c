@@ -10,7 +10,7 @@ mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)
 {
   mcor_points* points = &context->points;
-  const int chunk = MCOR_GROUP_CHUNK_OF(context->cl.lanes);
+  const int chunk = MCOR_GROUPED_POINTS_OF(context->cl.lanes);
   MCOR_TRY(mcor_reserve(context, &points->flags, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_LIGHT, (count + chunk - 1) / chunk,
     MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(node), MCOR_BUFFER(&points->flags)));

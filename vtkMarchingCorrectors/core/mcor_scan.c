@@ -3,32 +3,32 @@
 
 #include "mcor_internal.h"
 
-/* Chunks into which `count` elements are cut: none is so short that walking it takes less time than
+/* Segments into which `count` elements are cut: none is so short that walking it takes less time than
  * the launches that several need. */
-static int mcor_chunks(const mcor_context* context, int count)
+static int mcor_segments(const mcor_context* context, int count)
 {
   const int most = count / (context->cl.lanes == 1 ? 64 : 16384);
-  return most < 1 ? 1 : most < context->cl.chunks ? most : context->cl.chunks;
+  return most < 1 ? 1 : most < context->cl.segments ? most : context->cl.segments;
 }
 
 /* Replaces counts[0..count) by their exclusive prefix sums; element `count` becomes the total. The
  * buffer holds count + 1 ints. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
 {
-  const int chunks = mcor_chunks(context, count);
+  const int segments = mcor_segments(context, count);
   cl_long sum = 0;
-  MCOR_TRY(mcor_reserve(context, &context->sort.sums, ((size_t)chunks + 1) * sizeof(cl_long)));
-  if (chunks > 1)
+  MCOR_TRY(mcor_reserve(context, &context->sort.sums, ((size_t)segments + 1) * sizeof(cl_long)));
+  if (segments > 1)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
-      MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->sort.sums)));
-    MCOR_TRY(MCOR_LAUNCH(
-      context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(chunks), MCOR_BUFFER(&context->sort.sums)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, segments, MCOR_BUFFER(counts),
+      MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_HEAVY, 1, MCOR_INT(segments),
+      MCOR_BUFFER(&context->sort.sums)));
   }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(counts),
-    MCOR_INT(count), MCOR_INT(chunks), MCOR_BUFFER(&context->sort.sums)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, segments, MCOR_BUFFER(counts),
+    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums)));
   MCOR_TRY(
-    mcor_read(context, &context->sort.sums, (size_t)chunks * sizeof(cl_long), &sum, sizeof sum));
+    mcor_read(context, &context->sort.sums, (size_t)segments * sizeof(cl_long), &sum, sizeof sum));
   MCOR_RETURN_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The surface is too large: a table would need %lld entries, %d is the limit. Use a larger cube "
     "size.",
@@ -46,11 +46,11 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
 
 /* Bits that one round of sorting treats: as few rounds as can be, of about the same size, with a
  * histogram no larger than what is sorted. */
-static int mcor_digit_bits(const mcor_context* context, int chunks, int count, uint64_t key_limit)
+static int mcor_digit_bits(const mcor_context* context, int segments, int count, uint64_t key_limit)
 {
   int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
   int bits = 1;
-  while (most > 8 && chunks << most > count)
+  while (most > 8 && segments << most > count)
   {
     --most;
   }
@@ -66,23 +66,23 @@ static int mcor_digit_bits(const mcor_context* context, int chunks, int count, u
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
-  const int chunks = mcor_chunks(context, count);
-  const int bits = mcor_digit_bits(context, chunks, count, key_limit);
+  const int segments = mcor_segments(context, count);
+  const int bits = mcor_digit_bits(context, segments, count, key_limit);
   const size_t n = (size_t)count;
   int total;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort.keys, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &context->sort.values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(
-    context, &context->sort.histogram, (((size_t)chunks << bits) + 1) * sizeof(cl_int)));
+    context, &context->sort.histogram, (((size_t)segments << bits) + 1) * sizeof(cl_int)));
   for (int shift = 0; shift == 0 || (shift < 64 && (key_limit - 1) >> shift); shift += bits)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
-      MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, segments, MCOR_BUFFER(keys),
+      MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram)));
-    MCOR_TRY(mcor_scan(context, &context->sort.histogram, chunks << bits, &total));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, chunks, MCOR_BUFFER(keys),
-      MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(chunks), MCOR_INT(shift), MCOR_INT(bits),
+    MCOR_TRY(mcor_scan(context, &context->sort.histogram, segments << bits, &total));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, segments, MCOR_BUFFER(keys),
+      MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram), MCOR_BUFFER(&context->sort.keys),
       MCOR_BUFFER(&context->sort.values)));
     mcor_swap(keys, &context->sort.keys);

@@ -8,8 +8,8 @@
 #include <float.h>
 #include <math.h>
 
-/* Asks for bricks beside those with `fresh` nodes, which these show to be needed. */
-static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fresh)
+/* Requests bricks beside those with `fresh` nodes, which these show to be needed. */
+static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer* grown = &bricks->found;
@@ -24,7 +24,7 @@ static mcor_status mcor_ask_beside(mcor_context* context, const mcor_buffer* fre
 mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
 {
   cl_int flag;
-  MCOR_TRY(mcor_ask_beside(context, &context->bricks.need));
+  MCOR_TRY(mcor_request_beside(context, &context->bricks.need));
   MCOR_TRY(mcor_read(context, &context->bricks.found, 0, &flag, sizeof flag));
   *grown = flag != 0;
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
@@ -66,11 +66,11 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
-  MCOR_TRY(mcor_keep_bricks(context));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT,
+  MCOR_TRY(mcor_request_known(context));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_LIGHT,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
-    MCOR_BUFFER(&bricks->quiet), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
-  MCOR_TRY(mcor_ask_beside(context, &bricks->now.known));
+    MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_request_beside(context, &bricks->now.known));
   return mcor_place_bricks(context);
 }
 
@@ -87,28 +87,28 @@ double mcor_side_margin(const mcor_context* context)
 }
 
 /* The sides of the iso value on which particles are, where the field has values at particles. */
-static mcor_status mcor_find_sides(mcor_context* context, double iso)
+static mcor_status mcor_find_side_flags(mcor_context* context, double iso)
 {
   mcor_grid* grid = &context->grid;
-  const int chunks = grid->count / MCOR_SIDE_PARTICLES + 1;
-  MCOR_TRY(mcor_reserve(context, &grid->sides, (size_t)chunks));
+  const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
+  MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
   return context->options->field == MCOR_WEIGHT_SUM
     ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_seed_sides", MCOR_LIGHT, chunks, MCOR_INT(grid->count),
+    : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_LIGHT, runs, MCOR_INT(grid->count),
         MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
         MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)), MCOR_REAL(iso),
-        MCOR_BUFFER(&grid->sides));
+        MCOR_BUFFER(&grid->side_flags));
 }
 
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */
 mcor_status mcor_select_seeds(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_find_sides(context, iso));
+  MCOR_TRY(mcor_find_side_flags(context, iso));
   MCOR_TRY(mcor_make_blocks(context, iso));
   if (mcor_uses_pairs(context))
   {
-    return mcor_mark_pairs(context, iso);
+    return mcor_seed_pairs(context, iso);
   }
   MCOR_TRY(mcor_place_complete(context, iso));
   return mcor_fill(context, &bricks->now.cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));

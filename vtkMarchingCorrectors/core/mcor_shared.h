@@ -56,7 +56,7 @@ typedef struct mcor_level
 /* Seeds: successive particles with one flag for the sides they are on; vectors of particles whose
  * pairs one work-item finds, which may be many lines for each. */
 #define MCOR_SIDE_PARTICLES 16
-#define MCOR_PAIR_GROUPS_OF(lanes) ((lanes) == 1 ? 1 : 8)
+#define MCOR_PAIR_VECTORS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 
 /* What is known of the nodes of a brick, a region or a larger cube. */
 #define MCOR_VOID 0 /* below the node threshold: no cell there is valid */
@@ -82,7 +82,7 @@ typedef struct mcor_cell_row
 } mcor_cell_row;
 
 /* Points that one work-item cuts into groups. */
-#define MCOR_GROUP_CHUNK_OF(lanes) ((lanes) == 1 ? 1 : 512)
+#define MCOR_GROUPED_POINTS_OF(lanes) ((lanes) == 1 ? 1 : 512)
 
 /* Components of attributes that are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 8

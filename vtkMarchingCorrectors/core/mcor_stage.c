@@ -59,7 +59,7 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
   return status;
 }
 
-static void mcor_put_reals(
+static void mcor_store_reals(
   const mcor_context* context, void* array, int64_t first, const double* values, int count)
 {
   if (context->cl.real_size == sizeof(float))
@@ -78,7 +78,7 @@ static void mcor_put_reals(
 
 /* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
  * truncating rounds them. */
-static void mcor_put_fixed(const mcor_context* context, void* array, int64_t first, int axis,
+static void mcor_store_fixed(const mcor_context* context, void* array, int64_t first, int axis,
   const double* values, int count)
 {
   if (context->cl.fix_size == sizeof(int32_t))
@@ -191,7 +191,7 @@ static double mcor_stage_weight(const mcor_context* context, const mcor_stage_ch
 /* Input index of the first particle of a chunk whose weight is too large; -1 if there is none. The
  * largest one is kept. */
 static int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
-  const mcor_stage_chunk* chunk, double* heaviest)
+  const mcor_stage_chunk* chunk, double* largest_weight)
 {
   const double limit = mcor_weight_limit(context);
   for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
@@ -201,7 +201,7 @@ static int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* in
     {
       return chunk->source[i];
     }
-    *heaviest = weight > *heaviest ? weight : *heaviest;
+    *largest_weight = weight > *largest_weight ? weight : *largest_weight;
   }
   return -1;
 }
@@ -228,7 +228,7 @@ static void mcor_pack_stage_chunk(
 }
 
 /* To element `to` of the staging arrays. */
-static void mcor_put_stage_chunk(const mcor_context* context, const mcor_input* input,
+static void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input,
   mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to)
 {
   const mcor_measure* m = &context->measure;
@@ -237,9 +237,9 @@ static void mcor_put_stage_chunk(const mcor_context* context, const mcor_input* 
   uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
   for (int a = 0; a < 3; ++a)
   {
-    mcor_put_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
+    mcor_store_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
   }
-  mcor_put_reals(context, staging->size, to, chunk->size, chunk->count);
+  mcor_store_reals(context, staging->size, to, chunk->size, chunk->count);
   for (int i = 0; i < chunk->count; ++i)
   {
     solid[i] = input->solid && input->solid[chunk->source[i]];
@@ -248,7 +248,7 @@ static void mcor_put_stage_chunk(const mcor_context* context, const mcor_input* 
       : 0;
     chunk->h[i] = scaled_cube / chunk->h[i];
   }
-  mcor_put_reals(context, staging->inv_h, to, chunk->h, chunk->count);
+  mcor_store_reals(context, staging->inv_h, to, chunk->h, chunk->count);
   memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
 }
 
@@ -260,7 +260,7 @@ typedef struct mcor_stage_job
   int64_t used[MCOR_SLICES];  /* particles in each slice */
   int64_t to[MCOR_SLICES];    /* where the first of them goes */
   int64_t heavy[MCOR_SLICES]; /* see mcor_find_heavy */
-  double heaviest[MCOR_SLICES];
+  double largest_weight[MCOR_SLICES];
 } mcor_stage_job;
 
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
@@ -287,10 +287,10 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
     {
       mcor_pack_stage_chunk(job->context, job->input, &chunk);
     }
-    heavy = mcor_find_heavy(job->context, job->input, &chunk, &job->heaviest[slice]);
+    heavy = mcor_find_heavy(job->context, job->input, &chunk, &job->largest_weight[slice]);
     if (heavy < 0)
     {
-      mcor_put_stage_chunk(job->context, job->input, &chunk, job->staging, to);
+      mcor_store_stage_chunk(job->context, job->input, &chunk, job->staging, to);
       to += chunk.count;
     }
   }
@@ -327,8 +327,10 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
   }
   mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, &job);
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
-  context->heaviest = mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
-  MCOR_RETURN_IF(!(context->heaviest < mcor_weight_limit(context)), context, MCOR_INVALID_ARGUMENT,
+  context->largest_weight =
+    mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
+  MCOR_RETURN_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
+    MCOR_INVALID_ARGUMENT,
     "The h scale factor is %g, too little for computed volumes. Give volumes, or choose a larger "
     "one.",
     context->options->h_scale);
@@ -338,7 +340,7 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
     {
       return mcor_refuse_heavy(context, input, staging, job.heavy[s]);
     }
-    context->heaviest = fmax(context->heaviest, job.heaviest[s]);
+    context->largest_weight = fmax(context->largest_weight, job.largest_weight[s]);
   }
   return MCOR_OK;
 }
@@ -353,7 +355,7 @@ typedef struct mcor_value_job
   void* values;
 } mcor_value_job;
 
-static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_value_job* job = data;
   const mcor_input* input = job->input;
@@ -376,7 +378,7 @@ static void mcor_put_value_slice(void* data, int slice, int64_t first, int64_t l
     {
       used[i] = input->solid[source[begin + i]] ? 0 : used[i];
     }
-    mcor_put_reals(job->context, job->values, begin, used, n);
+    mcor_store_reals(job->context, job->values, begin, used, n);
   }
   (void)slice;
 }
@@ -392,7 +394,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   mcor_value_job job = { context, input, array, component, shift, scale, NULL };
   MCOR_TRY(mcor_reserve(context, raw, bytes));
   MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
-  mcor_parallel_for(grid->count, MCOR_LIGHT_GRAIN, mcor_put_value_slice, &job);
+  mcor_parallel_for(grid->count, MCOR_LIGHT_GRAIN, mcor_store_value_slice, &job);
   MCOR_TRY(mcor_unmap(context, raw, &job.values));
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),

@@ -30,7 +30,7 @@ static mcor_status mcor_upload_topology_table(mcor_context* context)
 
 /* Makes room for the samples that sample_base counts and lets `locate` place them; evaluates
  * them. */
-static mcor_status mcor_take_samples(
+static mcor_status mcor_evaluate_samples(
   mcor_context* context, const char* locate, double iso, int* sample_count)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -64,7 +64,7 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
-  MCOR_TRY(mcor_take_samples(context, "mcor_topology_saddles", iso, &faces));
+  MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
@@ -86,7 +86,7 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
-  MCOR_TRY(mcor_take_samples(context, "mcor_topology_middles", iso, &samples));
+  MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", iso, &samples));
   context->statistics->ambiguous_cells += samples / 2;
   return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),

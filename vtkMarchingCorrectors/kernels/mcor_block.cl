@@ -2,14 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Blocks: cubes of nodes are divided, from few that cover the whole lattice down to blocks, where
- * they are not quiet. A quiet cube is certain of one side of the iso value, or void, and so are all
+ * they are active. An inactive cube is certain of one side of the iso value, or void, and so are all
  * around it: no crossed edge is in it, or leads out of it. Empty space, and space that coarse
  * particles fill with values far from the iso value, cost next to nothing.
  *
  * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube of the first level, all of which exist. Writes its key. */
+/* One work-item = one cube of the first size, all of which exist. Writes its key. */
 __kernel void mcor_block_all(const int count, __global ulong* keys)
 {
   const int i = get_global_id(0);
@@ -43,10 +43,10 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
 #endif
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube. Reads the states of cubes. Writes whether it is quiet. A neighbour that
- * does not exist was part of a quiet larger one. */
-__kernel void mcor_block_quiet(
-  MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* quiet)
+/* One work-item = one cube. Reads the states of cubes. Writes whether it is inactive. A neighbour that
+ * does not exist was part of an inactive larger one. */
+__kernel void mcor_block_find_inactive(
+  MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {
   const int i = get_global_id(0);
   if (i >= block_count)
@@ -62,7 +62,7 @@ __kernel void mcor_block_quiet(
     seen |= other < 0 ? 0 : 1 << states[other];
   }
   const int both = 1 << MCOR_ABOVE | 1 << MCOR_BELOW;
-  quiet[i] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
+  inactive[i] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
 }
 
 /* Whether child c (bits x, y, z) of a cube is within the level below, of nx * ny * nz cubes. */
@@ -71,10 +71,10 @@ bool mcor_block_has_child(int4 cube, int c, int nx, int ny, int nz)
   return 2 * cube.x + (c & 1) < nx && 2 * cube.y + (c >> 1 & 1) < ny && 2 * cube.z + (c >> 2) < nz;
 }
 
-/* One work-item = one cube. Counts the cubes into which it is divided: none if it is quiet. */
+/* One work-item = one cube. Counts the cubes into which it is divided: none if it is inactive. */
 __kernel void mcor_block_count(const int count, const int cubes_x, const int cubes_y,
-  __global const ulong* keys, __global const uchar* quiet, const int nx, const int ny, const int nz,
-  __global int* counts)
+  __global const ulong* keys, __global const uchar* inactive, const int nx, const int ny,
+  const int nz, __global int* counts)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -83,7 +83,7 @@ __kernel void mcor_block_count(const int count, const int cubes_x, const int cub
   }
   const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
   int children = 0;
-  for (int c = 0; c < 8 && !quiet[i]; ++c)
+  for (int c = 0; c < 8 && !inactive[i]; ++c)
   {
     children += mcor_block_has_child(cube, c, nx, ny, nz);
   }
@@ -112,15 +112,15 @@ __kernel void mcor_block_fill(const int count, const int cubes_x, const int cube
   }
 }
 
-/* One work-item = one brick that has a slot. Asks for it again if any node's value is known. */
-__kernel void mcor_block_keep(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
-  __global const ulong* known, __global uint* brick_bits)
+/* One work-item = one brick that has a slot. Requests it again if any node's value is known. */
+__kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
+  __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {
   const int slot = get_global_id(0);
   if (slot < brick_count && known[slot])
   {
     const int4 brick = bricks[slot];
-    mcor_ask_brick(brick_bits, mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
+    mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
   }
 }
 #endif

@@ -29,37 +29,37 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int x, int y, int z)
   block_count, block_shift, blocks_x, blocks_y, blocks_z, block_keys, block_buckets
 
 /* Position of a brick among the MCOR_BLOCK_BRICKS of each block, or -1 where it has no block. */
-int mcor_find_mark(MCOR_BLOCK_PARAMS, int x, int y, int z)
+int mcor_brick_number(MCOR_BLOCK_PARAMS, int x, int y, int z)
 {
   const int block = mcor_find_block(MCOR_BLOCK_ARGS, x >> 3, y >> 3, z >> 3);
   return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
 }
 
-/* The same for a brick beside another one, with mark `own`: mostly in the same block. x, y, z: -1
+/* The same for a brick beside another one, with number `own`: mostly in the same block. x, y, z: -1
  * to 1. */
-int mcor_mark_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
+int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
 {
   const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
   return (bx | by | bz) >> 3 == 0
     ? own + x + 8 * y + 64 * z
-    : mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + x, brick.y + y, brick.z + z);
+    : mcor_brick_number(MCOR_BLOCK_ARGS, brick.x + x, brick.y + y, brick.z + z);
 }
 
-/* Slot of the brick with a mark, or -1. */
-int mcor_slot_of_mark(__global const uint* brick_bits, __global const int* brick_base, int mark)
+/* Slot of the brick with a number, or -1. */
+int mcor_slot_of_number(__global const uint* brick_bits, __global const int* brick_base, int number)
 {
-  if (mark < 0)
+  if (number < 0)
   {
     return -1;
   }
-  const uint bits = brick_bits[mark >> 5], bit = 1u << (mark & 31);
-  return bits & bit ? brick_base[mark >> 5] + (int)popcount(bits & (bit - 1)) : -1;
+  const uint bits = brick_bits[number >> 5], bit = 1u << (number & 31);
+  return bits & bit ? brick_base[number >> 5] + (int)popcount(bits & (bit - 1)) : -1;
 }
 
 /* Slot of a brick, or -1. */
 int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
 {
-  return mcor_slot_of_mark(brick_bits, brick_base, mcor_find_mark(MCOR_BLOCK_ARGS, x, y, z));
+  return mcor_slot_of_number(brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, x, y, z));
 }
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
@@ -71,8 +71,8 @@ int4 mcor_block_of_key(ulong key, const int blocks_x, const int blocks_y)
     (int)(key / blocks_x / blocks_y), 0);
 }
 
-/* Brick coordinates of mark number m. */
-int4 mcor_brick_of_mark(
+/* Brick coordinates of number m. */
+int4 mcor_brick_of_number(
   __global const ulong* block_keys, const int blocks_x, const int blocks_y, int m)
 {
   const int local_brick = m % MCOR_BLOCK_BRICKS;
@@ -80,9 +80,9 @@ int4 mcor_brick_of_mark(
     (int4)(local_brick & 7, local_brick >> 3 & 7, local_brick >> 6, 0);
 }
 
-/* Asks for the brick with mark number m; true if nothing had asked for it before. It has no slot
+/* Requests the brick with number m; true if nothing had requested it before. It has no slot
  * until the host has placed it. */
-bool mcor_ask_brick(__global uint* brick_bits, int m)
+bool mcor_request_brick(__global uint* brick_bits, int m)
 {
   const uint bit = 1u << (m & 31);
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
@@ -113,7 +113,7 @@ __kernel void mcor_brick_fill(MCOR_BRICK_PARAMS, __global int4* bricks)
   for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
   {
     const int b = 31 - (int)clz(bits & -bits);
-    bricks[slot++] = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, word * 32 + b);
+    bricks[slot++] = mcor_brick_of_number(block_keys, blocks_x, blocks_y, word * 32 + b);
   }
 }
 
@@ -128,11 +128,11 @@ __kernel void mcor_brick_neighbours(
     return;
   }
   const int4 brick = bricks[slot];
-  const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 1; d < 8; ++d)
   {
-    const int other = mcor_slot_of_mark(brick_bits, brick_base,
-      mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2));
+    const int other = mcor_slot_of_number(brick_bits, brick_base,
+      mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2));
     if (other >= 0)
     {
       neighbours[slot * 14L + d - 1] = other;
@@ -141,10 +141,10 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* While pairs grow, bricks keep their slots, and those that are asked for get slots behind them:
- * `placed` has the bits of bricks with slots, slot_of the slot of each mark, or -1. */
+/* While pairs grow, bricks keep their slots, and those that are requested get slots behind them:
+ * `placed` has the bits of bricks with slots, slot_of the slot of each number, or -1. */
 
-/* One work-item = one brick. Writes its slot to its mark. */
+/* One work-item = one brick. Writes its slot to its number. */
 __kernel void mcor_brick_index(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global uint* placed, __global int* slot_of)
 {
@@ -152,8 +152,8 @@ __kernel void mcor_brick_index(MCOR_BLOCK_PARAMS, const int brick_count,
   if (slot < brick_count)
   {
     const int4 brick = bricks[slot];
-    const int m = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-    mcor_ask_brick(placed, m);
+    const int m = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+    mcor_request_brick(placed, m);
     slot_of[m] = slot;
   }
 }
@@ -185,7 +185,7 @@ __kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first, __global con
   for (uint bits = brick_bits[word] & ~placed[word]; bits; bits &= bits - 1, ++slot)
   {
     const int m = word * 32 + 31 - (int)clz(bits & -bits);
-    bricks[slot] = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m);
+    bricks[slot] = mcor_brick_of_number(block_keys, blocks_x, blocks_y, m);
     slot_of[m] = slot;
     known[slot] = cells[slot] = examined[slot] = above[slot] = valid[slot] = 0;
     for (int n = 0; n < 14; ++n)
@@ -207,12 +207,12 @@ __kernel void mcor_brick_join(MCOR_BLOCK_PARAMS, const int first, const int bric
     return;
   }
   const int4 brick = bricks[slot];
-  const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 1; d < 8; ++d)
   {
     const int x = d & 1, y = d >> 1 & 1, z = d >> 2;
-    const int up = mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, x, y, z);
-    const int down = mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, -x, -y, -z);
+    const int up = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, x, y, z);
+    const int down = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, -x, -y, -z);
     const int upper = up < 0 ? -1 : slot_of[up], lower = down < 0 ? -1 : slot_of[down];
     if (upper >= 0)
     {
@@ -233,9 +233,9 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
   __global const ulong* old_examined, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,
-  __global const uint* old_weight,
-  __global ulong* known, __global ulong* cells, __global ulong* examined, __global ulong* above,
-  __global ulong* valid, __global uint* node_value, __global uint* node_weight)
+  __global const uint* old_weight, __global ulong* known, __global ulong* cells,
+  __global ulong* examined, __global ulong* above, __global ulong* valid, __global uint* node_value,
+  __global uint* node_weight)
 {
   const int old = get_global_id(0);
   if (old >= old_count)

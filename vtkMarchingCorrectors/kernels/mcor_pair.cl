@@ -5,11 +5,11 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
-/* Cells are marked before their bricks have slots: `cells` has two words, 64 bits, for each brick
+/* Cells are found before their bricks have slots: `cells` has two words, 64 bits, for each brick
  * of each block. */
-void mcor_pair_mark_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* cells)
+void mcor_pair_seed_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* cells)
 {
-  const int m = mcor_find_mark(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
+  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
   if (m >= 0)
   {
     atomic_or(cells + 2L * m + (z >> 1 & 1), 1u << ((x & 3) | (y & 3) << 2 | (z & 1) << 4));
@@ -18,8 +18,8 @@ void mcor_pair_mark_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* 
 
 /* All cells on the line from p to q (cubes, relative to cell c), beginning in cell c. Where the
  * line passes an edge or a corner of a cell to within rounding, the cells on both sides are
- * marked. */
-void mcor_pair_mark_line(
+ * found. */
+void mcor_pair_seed_line(
   MCOR_BLOCK_PARAMS, const real* p, const real* q, int* c, const int* end, __global uint* cells)
 {
   real next[3], gap[3];
@@ -32,7 +32,7 @@ void mcor_pair_mark_line(
     next[a] = (d < 0 ? p[a] : 1 - p[a]) * gap[a];
     steps += abs(end[a] - c[a]);
   }
-  mcor_pair_mark_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
+  mcor_pair_seed_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
   for (; steps > 0; --steps)
   {
     int axis = next[1] < next[0] ? 1 : 0;
@@ -41,13 +41,13 @@ void mcor_pair_mark_line(
     {
       if (a != axis && next[a] - next[axis] < (real)1e-5f)
       {
-        mcor_pair_mark_cell(MCOR_BLOCK_ARGS, c[0] + (a == 0 ? step[0] : 0),
+        mcor_pair_seed_cell(MCOR_BLOCK_ARGS, c[0] + (a == 0 ? step[0] : 0),
           c[1] + (a == 1 ? step[1] : 0), c[2] + (a == 2 ? step[2] : 0), cells);
       }
     }
     c[axis] += step[axis];
     next[axis] += gap[axis];
-    mcor_pair_mark_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
+    mcor_pair_seed_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
   }
 }
 
@@ -74,7 +74,7 @@ fixv mcor_pair_chosen(const mcor_grid* grid, const mcor_query* query, const mcor
 }
 
 /* Marks the cells between particles j and k. */
-void mcor_pair_mark_pair(
+void mcor_pair_seed_pair(
   const mcor_grid* grid, MCOR_BLOCK_PARAMS, int j, int k, __global uint* cells)
 {
   const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
@@ -89,11 +89,11 @@ void mcor_pair_mark_pair(
     p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
     q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
   }
-  mcor_pair_mark_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
+  mcor_pair_seed_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
 }
 
 /* Marks the cells between particle j and the particles of the tile that pair with it. */
-void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mcor_query* query,
+void mcor_pair_seed_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mcor_query* query,
   const mcor_tile* tile, int j, real iso, real h_scale, __global uint* cells)
 {
   for (int i = 0; i < tile->count; i += MCOR_LANES)
@@ -103,7 +103,7 @@ void mcor_pair_mark_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mco
     {
       if (MCOR_GET_FIX(chosen, lane))
       {
-        mcor_pair_mark_pair(grid, MCOR_BLOCK_ARGS, j, MCOR_INDEX(tile, i + lane), cells);
+        mcor_pair_seed_pair(grid, MCOR_BLOCK_ARGS, j, MCOR_INDEX(tile, i + lane), cells);
       }
     }
   }
@@ -136,7 +136,7 @@ real mcor_pair_finest(const mcor_tile* tile)
 }
 
 /* Marks cells for particles [begin, end), which the query was fitted to. */
-void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_query* query,
+void mcor_pair_seed_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_query* query,
   int begin, int end, real iso, real h_scale, __global uint* cells)
 {
   mcor_tile tile;
@@ -151,40 +151,40 @@ void mcor_pair_mark_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
-        mcor_pair_mark_particle(grid, MCOR_BLOCK_ARGS, query, &tile, j, iso, h_scale, cells);
+        mcor_pair_seed_particle(grid, MCOR_BLOCK_ARGS, query, &tile, j, iso, h_scale, cells);
       }
     }
   }
 }
 
-/* One work-item = MCOR_PAIR_GROUPS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
+/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
  * together first, as most particles are far from the surface. Reads the particles within the
  * smoothing length of each. Marks the cells between pairs that straddle the iso value. */
-__kernel void mcor_pair_mark(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* sides,
+__kernel void mcor_pair_seed(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* side_flags,
   const real iso, const real h_scale, __global uint* cells)
 {
   const mcor_grid grid = MCOR_GRID;
-  const int most = MCOR_PAIR_GROUPS_OF(MCOR_LANES) * MCOR_LANES;
+  const int most = MCOR_PAIR_VECTORS_OF(MCOR_LANES) * MCOR_LANES;
   const int begin = get_global_id(0) * most, end = min(begin + most, particle_count);
   mcor_query query;
   for (int row = begin, row_end; row < end; row = row_end)
   {
     row_end = row + mcor_pair_query(&grid, row, end, h_scale, &query);
-    const bool far = mcor_query_sides(&grid, &query, sides) != 3;
+    const bool far = mcor_query_side_flags(&grid, &query, side_flags) != 3;
     for (int i = row, next; i < row_end && !far; i = next)
     {
       next = i + mcor_pair_query(&grid, i, min(i + MCOR_LANES, row_end), h_scale, &query);
-      if (mcor_query_sides(&grid, &query, sides) == 3)
+      if (mcor_query_side_flags(&grid, &query, side_flags) == 3)
       {
-        mcor_pair_mark_particles(&grid, MCOR_BLOCK_ARGS, &query, i, next, iso, h_scale, cells);
+        mcor_pair_seed_particles(&grid, MCOR_BLOCK_ARGS, &query, i, next, iso, h_scale, cells);
       }
     }
   }
 }
 
-/* One work-item = one brick of a block. Reads its marked cells. Asks for the bricks that have their
+/* One work-item = one brick of a block. Reads its cells. Requests the bricks that have their
  * nodes. */
-__kernel void mcor_pair_ask(
+__kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* cells, __global uint* brick_bits)
 {
   const int own = get_global_id(0);
@@ -192,28 +192,28 @@ __kernel void mcor_pair_ask(
   {
     return;
   }
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, own);
+  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, own);
   for (int d = 0; d < 8; ++d)
   {
     const int m = mcor_cells_reach(cells[own], d)
-      ? mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
+      ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
       : -1;
     if (m >= 0)
     {
-      mcor_ask_brick(brick_bits, m);
+      mcor_request_brick(brick_bits, m);
     }
   }
 }
 
-/* One work-item = one brick that has a slot. Writes its marked cells there. */
-__kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
-  __global const ulong* marked, __global ulong* cells)
+/* One work-item = one brick that has a slot. Writes its cells there. */
+__kernel void mcor_pair_fill(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* pair_cells, __global ulong* cells)
 {
   const int slot = get_global_id(0);
   if (slot < brick_count)
   {
     const int4 brick = bricks[slot];
-    cells[slot] = marked[mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
+    cells[slot] = pair_cells[mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
   }
 }
 
@@ -232,7 +232,7 @@ ulong mcor_pair_faces(const ulong* corners, int axis, int side)
 
 /* Hands cells to a brick; false where it has no slot yet. flags: 1 a cell is new, 2 a brick must be
  * placed. Where no particle reaches there is no brick, and no node is valid. */
-bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* asked,
+bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* requested,
   __global uint* cells, __global int* flags)
 {
   if (pushed == 0)
@@ -253,10 +253,11 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   for (int d = 0; d < 8; ++d)
   {
-    const int m = mcor_cells_reach(pushed, d) ? mcor_find_mark(MCOR_BLOCK_ARGS, brick.x + (d & 1),
-                                                  brick.y + (d >> 1 & 1), brick.z + (d >> 2))
-                                              : -1;
-    if (m >= 0 && mcor_ask_brick(asked, m))
+    const int m = mcor_cells_reach(pushed, d)
+      ? mcor_brick_number(
+          MCOR_BLOCK_ARGS, brick.x + (d & 1), brick.y + (d >> 1 & 1), brick.z + (d >> 2))
+      : -1;
+    if (m >= 0 && mcor_request_brick(requested, m))
     {
       atomic_or(flags, 2);
     }
@@ -269,7 +270,7 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
  * into its neighbours. */
 __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global ulong* examined, __global const ulong* fresh,
-  __global const ulong* above, __global const ulong* valid, __global uint* asked,
+  __global const ulong* above, __global const ulong* valid, __global uint* requested,
   __global uint* cells, __global int* flags)
 {
   const int slot = get_global_id(0);
@@ -299,19 +300,19 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   const ulong used = now & crossed;
   const int4 brick = bricks[slot];
   __global const int* n = neighbours + slot * 14L;
-  bool all = mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, asked, cells, flags);
+  bool all = mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, requested, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],
-    (used & faces[0] & MCOR_LOW_X) << 3, asked, cells, flags);
+    (used & faces[0] & MCOR_LOW_X) << 3, requested, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(1, 0, 0, 0), n[0],
-    (used & upper[0]) >> 3 & MCOR_LOW_X, asked, cells, flags);
+    (used & upper[0]) >> 3 & MCOR_LOW_X, requested, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, -1, 0, 0), n[8],
-    (used & faces[1] & MCOR_LOW_Y) << 12, asked, cells, flags);
+    (used & faces[1] & MCOR_LOW_Y) << 12, requested, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 1, 0, 0), n[1],
-    (used & upper[1]) >> 12 & MCOR_LOW_Y, asked, cells, flags);
+    (used & upper[1]) >> 12 & MCOR_LOW_Y, requested, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, -1, 0), n[10],
-    (used & faces[2] & MCOR_LOW_Z) << 48, asked, cells, flags);
+    (used & faces[2] & MCOR_LOW_Z) << 48, requested, cells, flags);
   all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, 1, 0), n[3], (used & upper[2]) >> 48,
-    asked, cells, flags);
+    requested, cells, flags);
   if (!all)
   {
     examined[slot] = 0; /* again in the next round, when those bricks exist */

@@ -36,48 +36,49 @@ typedef struct
 {
   int part, size; /* of the last point: its part in the group, and how many that has so far */
   int4 low, high; /* of the group's nodes */
-} mcor_group_walk;
+} mcor_grouping;
 
 /* Takes the next point, at `node`; `before` is the one before it. Returns false where it does not
  * fit the group, which the caller then starts anew. The parts of a group share one gather of
  * particles, so it is to stay small. */
-bool mcor_group_add(mcor_group_walk* walk, int4 before, int4 node)
+bool mcor_group_add(mcor_grouping* grouping, int4 before, int4 node)
 {
-  const int4 low = min(walk->low, node), high = max(walk->high, node), extent = high - low;
-  const bool new_part = walk->size == MCOR_PART || !mcor_same_brick(before, node);
-  if (walk->part + new_part >= MCOR_PARTS || extent.x + extent.y + extent.z > MCOR_GROUP_EDGES ||
+  const int4 low = min(grouping->low, node), high = max(grouping->high, node), extent = high - low;
+  const bool new_part = grouping->size == MCOR_PART || !mcor_same_brick(before, node);
+  if (grouping->part + new_part >= MCOR_PARTS ||
+    extent.x + extent.y + extent.z > MCOR_GROUP_EDGES ||
     max(extent.x, max(extent.y, extent.z)) > MCOR_GROUP_EDGE)
   {
     return false;
   }
-  walk->part += new_part;
-  walk->size = new_part ? 1 : walk->size + 1;
-  walk->low = low;
-  walk->high = high;
+  grouping->part += new_part;
+  grouping->size = new_part ? 1 : grouping->size + 1;
+  grouping->low = low;
+  grouping->high = high;
   return true;
 }
 
-mcor_group_walk mcor_group_start(int4 node)
+mcor_grouping mcor_group_start(int4 node)
 {
-  const mcor_group_walk walk = { 0, 1, node, node };
-  return walk;
+  const mcor_grouping grouping = { 0, 1, node, node };
+  return grouping;
 }
 
-/* One work-item = MCOR_GROUP_CHUNK points, of `count` from `first`. Writes 1 where a group
+/* One work-item = MCOR_GROUPED_POINTS points, of `count` from `first`. Writes 1 where a group
  * starts. */
 __kernel void mcor_group_count(
   const int first, const int count, __global const int4* all_nodes, __global int* flags)
 {
   __global const int4* node = all_nodes + first;
-  const int begin = get_global_id(0) * MCOR_GROUP_CHUNK;
-  mcor_group_walk walk;
-  for (int i = begin; i < min(begin + MCOR_GROUP_CHUNK, count); ++i)
+  const int begin = get_global_id(0) * MCOR_GROUPED_POINTS;
+  mcor_grouping grouping;
+  for (int i = begin; i < min(begin + MCOR_GROUPED_POINTS, count); ++i)
   {
-    const bool fits = i > begin && mcor_group_add(&walk, node[i - 1], node[i]);
+    const bool fits = i > begin && mcor_group_add(&grouping, node[i - 1], node[i]);
     flags[i] = !fits;
     if (!fits)
     {
-      walk = mcor_group_start(node[i]);
+      grouping = mcor_group_start(node[i]);
     }
   }
 }
@@ -106,12 +107,12 @@ void mcor_points_place(
   {
     points->index[lane] = -1;
   }
-  mcor_group_walk walk = mcor_group_start(node[begin]);
+  mcor_grouping grouping = mcor_group_start(node[begin]);
   points->index[0] = begin;
   for (int i = begin + 1; i < end; ++i)
   {
-    mcor_group_add(&walk, node[i - 1], node[i]);
-    points->index[(walk.size - 1) * MCOR_PARTS + walk.part] = i;
+    mcor_group_add(&grouping, node[i - 1], node[i]);
+    points->index[(grouping.size - 1) * MCOR_PARTS + grouping.part] = i;
   }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {

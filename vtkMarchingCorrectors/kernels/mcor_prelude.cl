@@ -96,7 +96,7 @@ real mcor_lane_sum(realv v)
 }
 
 #define MCOR_BATCH MCOR_BATCH_OF(MCOR_LANES)
-#define MCOR_GROUP_CHUNK MCOR_GROUP_CHUNK_OF(MCOR_LANES)
+#define MCOR_GROUPED_POINTS MCOR_GROUPED_POINTS_OF(MCOR_LANES)
 
 /* Masks of a brick's nodes or cells, see mcor_shared.h. */
 #define MCOR_LOW_X 0x1111111111111111UL

@@ -1,43 +1,43 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `chunks` runs of
+/* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `segments` runs of
  * equal length; one work-item walks one run. */
 
 #define MCOR_DIGIT_BITS MCOR_DIGIT_BITS_OF(MCOR_LANES)
 
-int mcor_chunk_begin(int chunk, int chunks, int count)
+int mcor_segment_begin(int segment, int segments, int count)
 {
-  return (int)((long)count * chunk / chunks);
+  return (int)((long)count * segment / segments);
 }
 
-/* One work-item = one chunk. Reads the counts of the chunk. Writes their sum. */
+/* One work-item = one segment. Reads the counts of the segment. Writes their sum. */
 __kernel void mcor_scan_sum(
-  __global const int* counts, const int count, const int chunks, __global long* sums)
+  __global const int* counts, const int count, const int segments, __global long* sums)
 {
-  const int chunk = get_global_id(0);
-  if (chunk >= chunks)
+  const int segment = get_global_id(0);
+  if (segment >= segments)
   {
     return;
   }
   long sum = 0;
-  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
-  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  const int end = mcor_segment_begin(segment + 1, segments, count);
+  for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
   {
     sum += counts[i];
   }
-  sums[chunk] = sum;
+  sums[segment] = sum;
 }
 
-/* One work-item in all. Reads the chunk sums. Writes their exclusive prefix sums. */
-__kernel void mcor_scan_top(const int chunks, __global long* sums)
+/* One work-item in all. Reads the segment sums. Writes their exclusive prefix sums. */
+__kernel void mcor_scan_top(const int segments, __global long* sums)
 {
   if (get_global_id(0) != 0)
   {
     return;
   }
   long sum = 0;
-  for (int i = 0; i < chunks; ++i)
+  for (int i = 0; i < segments; ++i)
   {
     const long s = sums[i];
     sums[i] = sum;
@@ -45,38 +45,38 @@ __kernel void mcor_scan_top(const int chunks, __global long* sums)
   }
 }
 
-/* One work-item = one chunk. Reads counts, and the scanned chunk sums if there are several. Writes
+/* One work-item = one segment. Reads counts, and the scanned segment sums if there are several. Writes
  * the exclusive prefix sums in place of the counts; element `count` becomes the total, and so does
- * that behind the chunk sums. */
+ * that behind the segment sums. */
 __kernel void mcor_scan_fill(
-  __global int* counts, const int count, const int chunks, __global long* sums)
+  __global int* counts, const int count, const int segments, __global long* sums)
 {
-  const int chunk = get_global_id(0);
-  if (chunk >= chunks)
+  const int segment = get_global_id(0);
+  if (segment >= segments)
   {
     return;
   }
-  long sum = chunks > 1 ? sums[chunk] : 0;
-  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
-  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  long sum = segments > 1 ? sums[segment] : 0;
+  const int end = mcor_segment_begin(segment + 1, segments, count);
+  for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
   {
     const int c = counts[i];
     counts[i] = (int)sum;
     sum += c;
   }
-  if (chunk == chunks - 1)
+  if (segment == segments - 1)
   {
     counts[count] = (int)sum;
-    sums[chunks] = sum;
+    sums[segments] = sum;
   }
 }
 
-/* One work-item = one chunk. Reads the keys of the chunk. Writes how often each digit occurs. */
-__kernel void mcor_sort_count(__global const ulong* keys, const int count, const int chunks,
+/* One work-item = one segment. Reads the keys of the segment. Writes how often each digit occurs. */
+__kernel void mcor_sort_count(__global const ulong* keys, const int count, const int segments,
   const int shift, const int bits, __global int* histogram)
 {
-  const int chunk = get_global_id(0);
-  if (chunk >= chunks)
+  const int segment = get_global_id(0);
+  if (segment >= segments)
   {
     return;
   }
@@ -86,26 +86,26 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
   {
     bins[b] = 0;
   }
-  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
-  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  const int end = mcor_segment_begin(segment + 1, segments, count);
+  for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
   {
     ++bins[(int)(keys[i] >> shift) & (radix - 1)];
   }
   for (int b = 0; b < radix; ++b)
   {
-    histogram[b * chunks + chunk] = bins[b];
+    histogram[b * segments + segment] = bins[b];
   }
 }
 
-/* One work-item = one chunk. Reads keys, values (in the first round that of key i is i) and the
+/* One work-item = one segment. Reads keys, values (in the first round that of key i is i) and the
  * scanned histogram. Writes both in the order of the digit, equal digits in the order in which they
  * came. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
-  const int count, const int chunks, const int shift, const int bits, __global const int* histogram,
-  __global ulong* sorted_keys, __global int* sorted_values)
+  const int count, const int segments, const int shift, const int bits,
+  __global const int* histogram, __global ulong* sorted_keys, __global int* sorted_values)
 {
-  const int chunk = get_global_id(0);
-  if (chunk >= chunks)
+  const int segment = get_global_id(0);
+  if (segment >= segments)
   {
     return;
   }
@@ -113,10 +113,10 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   const int radix = 1 << bits;
   for (int b = 0; b < radix; ++b)
   {
-    bins[b] = histogram[b * chunks + chunk];
+    bins[b] = histogram[b * segments + segment];
   }
-  const int end = mcor_chunk_begin(chunk + 1, chunks, count);
-  for (int i = mcor_chunk_begin(chunk, chunks, count); i < end; ++i)
+  const int end = mcor_segment_begin(segment + 1, segments, count);
+  for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
   {
     const ulong key = keys[i];
     const int to = bins[(int)(key >> shift) & (radix - 1)]++;

@@ -6,7 +6,7 @@
  * or where their weight is certain to be too low: whole blocks (32^3 nodes) or more of them,
  * regions (8^3) and bricks (4^3). A crossed edge has nodes on both sides. If both were left out,
  * two neighbouring bricks would be certain of different sides: those are evaluated after all
- * (mcor_seed_ask). If one was, an evaluated brick would have a node on the other side than its
+ * (mcor_seed_request). If one was, an evaluated brick would have a node on the other side than its
  * neighbour: that is evaluated then (mcor_seed_grow). All bricks of regions that are not certain
  * have slots while they are tested, so that the particles gathered for the bound serve the nodes'
  * values, too (mcor_seed_bricks). */
@@ -20,53 +20,55 @@
  * all on one side, as a share of each; see mcor_side_margin in mcor_seed.c. */
 typedef struct
 {
-  __global const uchar* sides; /* see mcor_seed_sides */
+  __global const uchar* side_flags; /* see mcor_seed_side_flags */
   real side_margin, iso, node_threshold;
 } mcor_seed_limits;
 
 #define MCOR_SEED_PARAMS                                                                           \
-  __global const uchar *sides, const real side_margin, const real iso, const real node_threshold
+  __global const uchar *side_flags, const real side_margin, const real iso,                        \
+    const real node_threshold
 #define MCOR_SEED_LIMITS                                                                           \
   {                                                                                                \
-    sides, side_margin, iso, node_threshold                                                        \
+    side_flags, side_margin, iso, node_threshold                                                   \
   }
 
 /* Sides of the iso value on which particles are: bit 0 above, bit 1 below; both where it is so close
- * that a mean of such values may round to the other side. Kept for every MCOR_CHUNK successive
+ * that a mean of such values may round to the other side. Kept for every MCOR_SIDE_PARTICLES successive
  * sorted particles, so that most queries need not look at particles. */
-#define MCOR_CHUNK MCOR_SIDE_PARTICLES
 
 #if MCOR_OF_FIELD
-/* One work-item = one chunk. Writes its fluid particles' sides. */
-__kernel void mcor_seed_sides(const int particle_count, __global const real* weight,
-  __global const real* value, const real side_margin, const real iso, __global uchar* sides)
+/* One work-item = one run. Writes its fluid particles' sides. */
+__kernel void mcor_seed_side_flags(const int particle_count, __global const real* weight,
+  __global const real* value, const real side_margin, const real iso, __global uchar* side_flags)
 {
-  const int begin = get_global_id(0) * MCOR_CHUNK;
+  const int begin = get_global_id(0) * MCOR_SIDE_PARTICLES;
   if (begin >= particle_count)
   {
     return;
   }
   int seen = 0;
-  for (int j = begin; j < min(begin + MCOR_CHUNK, particle_count); ++j)
+  for (int j = begin; j < min(begin + MCOR_SIDE_PARTICLES, particle_count); ++j)
   {
     const real margin = side_margin * fabs(value[j]);
     const int side = (value[j] - margin >= iso ? 0 : 2) | (value[j] + margin < iso ? 0 : 1);
     seen |= (MCOR_SOLIDS && weight[j] == 0) ? 0 : side;
   }
-  sides[get_global_id(0)] = (uchar)seen;
+  side_flags[get_global_id(0)] = (uchar)seen;
 }
 #endif
 
 /* Sides of all particles that may reach a query's box, and maybe some more. */
-int mcor_query_sides(const mcor_grid* grid, mcor_query* query, __global const uchar* sides)
+int mcor_query_side_flags(
+  const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
   int seen = 0;
   mcor_query_next_level(grid, query, 0);
   while (seen != 3 && (query->begin < query->end || mcor_query_next_row(grid, query)))
   {
-    for (int c = query->begin / MCOR_CHUNK; c <= (query->end - 1) / MCOR_CHUNK && seen != 3; ++c)
+    for (int c = query->begin / MCOR_SIDE_PARTICLES;
+         c <= (query->end - 1) / MCOR_SIDE_PARTICLES && seen != 3; ++c)
     {
-      seen |= sides[c];
+      seen |= side_flags[c];
     }
     query->begin = query->end;
   }
@@ -115,7 +117,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   const int of_sides[3] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW };
   if (MCOR_RANGE_DECIDES && coarse)
   {
-    const int seen = mcor_query_sides(grid, query, limits->sides);
+    const int seen = mcor_query_side_flags(grid, query, limits->side_flags);
     if (seen != 3)
     {
       return of_sides[seen];
@@ -150,8 +152,8 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 
-/* Mark of a region's first brick, and offsets of the marks of all of them. */
-int mcor_region_mark(int region)
+/* Number of a region's first brick, and offsets of the numbers of all of them. */
+int mcor_region_number(int region)
 {
   const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
   return block * MCOR_BLOCK_BRICKS + 2 * (r & 3) + 16 * (r >> 2 & 3) + 128 * (r >> 4);
@@ -225,7 +227,7 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wid
 
 #if MCOR_OF_FIELD
 /* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
- * the states of its bricks as far as the region tells; asks for those that are not certain, and
+ * the states of its bricks as far as the region tells; requests those that are not certain, and
  * lists the regions that have such, in any order. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
   const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
@@ -237,11 +239,11 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   {
     return;
   }
-  const int mark = mcor_region_mark(region);
+  const int number = mcor_region_number(region);
   int state = block_states[block];
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
+  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, number);
   mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
@@ -264,11 +266,11 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   }
   for (int b = 0; b < 8; ++b)
   {
-    const int m = mark + mcor_region_offset(b);
+    const int m = number + mcor_region_offset(b);
     states[m] = (uchar)(inside >> b & 1 ? MCOR_ABOVE : state);
     if (states[m] == MCOR_EXAMINE)
     {
-      mcor_ask_brick(brick_bits, m);
+      mcor_request_brick(brick_bits, m);
     }
   }
   if (state == MCOR_EXAMINE && inside != 0xff)
@@ -326,8 +328,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
   }
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int mark = mcor_region_mark(list[i]);
-  const int4 region = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, mark);
+  const int number = mcor_region_number(list[i]);
+  const int4 region = mcor_brick_of_number(block_keys, blocks_x, blocks_y, number);
   mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1);
   mcor_tile wide;
   mcor_tile_init(&wide);
@@ -338,8 +340,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
   const int first = get_global_id(0) % (8 / MCOR_ITEM_BRICKS) * MCOR_ITEM_BRICKS;
   for (int b = first; b < first + MCOR_ITEM_BRICKS; ++b)
   {
-    const int m = mark + mcor_region_offset(b);
-    const int slot = mcor_slot_of_mark(brick_bits, brick_base, m);
+    const int m = number + mcor_region_offset(b);
+    const int slot = mcor_slot_of_number(brick_bits, brick_base, m);
     if (slot >= 0 && !known[slot])
     {
       const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
@@ -377,13 +379,13 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
   return sides;
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads the states. Asks for each brick that is to
+/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each brick that is to
  * be examined, or certain to be on another side than one next to it. */
-__kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
+__kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)
 {
   const int m = get_global_id(0) * 8;
-  if (m >= block_count * MCOR_BLOCK_BRICKS || quiet[m / MCOR_BLOCK_BRICKS])
+  if (m >= block_count * MCOR_BLOCK_BRICKS || inactive[m / MCOR_BLOCK_BRICKS])
   {
     return;
   }
@@ -395,7 +397,7 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
   uint beside = 0;
   if (seen & (1 << MCOR_ABOVE | 1 << MCOR_BELOW))
   {
-    const int4 brick = mcor_brick_of_mark(block_keys, blocks_x, blocks_y, m), own = brick >> 3;
+    const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, m), own = brick >> 3;
     const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, own.y, own.z);
     for (int d = 0; d < 9; ++d)
     {
@@ -412,13 +414,13 @@ __kernel void mcor_seed_ask(MCOR_BLOCK_PARAMS, __global const uchar* quiet,
     if (state == MCOR_EXAMINE || (state == MCOR_ABOVE && beside >> (x + 16) & 7) ||
       (state == MCOR_BELOW && beside >> x & 7))
     {
-      mcor_ask_brick(brick_bits, m + x);
+      mcor_request_brick(brick_bits, m + x);
     }
   }
 }
 
 /* One work-item = one brick; those without `fresh` nodes have been looked at before. Reads its
- * nodes' sides, and the states of bricks around it that are not evaluated. Asks for those certain
+ * nodes' sides, and the states of bricks around it that are not evaluated. Requests those certain
  * of another side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
@@ -430,11 +432,11 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     return;
   }
   const int4 brick = bricks[slot];
-  const int own = mcor_find_mark(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 0; d < 27; ++d)
   {
     const int x = d % 3, y = d / 3 % 3, z = d / 9;
-    const int m = mcor_mark_beside(MCOR_BLOCK_ARGS, own, brick, x - 1, y - 1, z - 1);
+    const int m = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, x - 1, y - 1, z - 1);
     const int state = m < 0 ? MCOR_VOID : states[m];
     if (state != MCOR_ABOVE && state != MCOR_BELOW)
     {
@@ -444,7 +446,7 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
       (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
       (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
     if ((beside & valid[slot] & (state == MCOR_ABOVE ? ~above[slot] : above[slot])) &&
-      mcor_ask_brick(brick_bits, m))
+      mcor_request_brick(brick_bits, m))
     {
       atomic_or(grown, 1);
     }

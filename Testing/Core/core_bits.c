@@ -2,12 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Prints a hash of all bits of a few surfaces, for same_bits.cmake to compare between settings of
- * the environment. With an argument: small cases only, for tools that slow everything down. */
+ * the environment. "small": small cases only, for tools that slow everything down. "devices": some of
+ * these on all devices, each against the first. */
 
 #include "core_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct bits_case
 {
@@ -41,7 +43,7 @@ static const bits_case cases[] = {
     MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.1, MCOR_TOPOLOGY_FIELD },
 };
 
-static int run_case(mcor_context* context, const bits_case* at, int small)
+static int run_case(mcor_context* context, const bits_case* at, int small, uint64_t* hash)
 {
   const int noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
   const int eigenvalue = at->boundary == MCOR_BOUNDARY_EIGENVALUE;
@@ -87,19 +89,73 @@ static int run_case(mcor_context* context, const bits_case* at, int small)
       (long long)surface.triangle_count, (long long)statistics->trim_vertices,
       mcor_last_error(context));
   }
+  *hash = core_hash(&surface);
   printf("form %d lanes, %s\n", context->cl.lanes, context->cl.is_cpu ? "CPU" : "GPU");
   printf("%s: %lld points, %lld triangles, %lld cut, %016llx\n", at->name,
     (long long)surface.point_count, (long long)surface.triangle_count,
-    (long long)statistics->trim_vertices, (unsigned long long)core_hash(&surface));
+    (long long)statistics->trim_vertices, (unsigned long long)*hash);
   fflush(stdout);
   mcor_free_surface(&surface);
   core_free_set(&set);
   return good;
 }
 
+/* Which of the cases every device can do, in single precision, are tried on it. */
+static int in_sample(const bits_case* at)
+{
+  return at->field == MCOR_SUM || at->topology == MCOR_TOPOLOGY_FIELD || at->seeds == MCOR_PAIRS;
+}
+
+/* Runs the sample on a device and compares with `expected`, which the first device sets. */
+static int run_device(int device, uint64_t expected[])
+{
+  char number[16];
+  mcor_context* context = NULL;
+  snprintf(number, sizeof number, "%d", device);
+  int good = mcor_create_context(number, &context) == MCOR_OK;
+  if (!good)
+  {
+    fprintf(stderr, "%s\n", mcor_last_error(context));
+  }
+  for (size_t i = 0; good && i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    uint64_t hash = 0;
+    if (cases[i].precision == MCOR_FLOAT32 && in_sample(cases + i))
+    {
+      good = run_case(context, cases + i, 1, &hash) && (device == 0 || hash == expected[i]);
+      expected[i] = device == 0 ? hash : expected[i];
+    }
+  }
+  mcor_free_context(context);
+  return good;
+}
+
+/* All devices that the loader knows, each in the form that it gets. */
+static int run_devices(void)
+{
+  uint64_t expected[sizeof cases / sizeof cases[0]];
+  char* text = NULL;
+  int good = mcor_list_devices(&text) == MCOR_OK;
+  const char* line = text;
+  for (int device = 0; good && *line; ++device, line = strchr(line, '\n') + 1)
+  {
+    const int length = (int)strcspn(line, "\n");
+    printf("%.*s\n", length, line);
+    fflush(stdout);
+    const int same = run_device(device, expected);
+    printf("%.*s: %s\n", length, line, same ? "the same bits" : "FAILED, or other bits");
+    good = same && good;
+  }
+  free(text);
+  return good && line != text;
+}
+
 int main(int argc, char** argv)
 {
-  (void)argv;
+  if (argc > 1 && strcmp(argv[1], "devices") == 0)
+  {
+    return run_devices() ? 0 : 1;
+  }
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {
@@ -110,7 +166,8 @@ int main(int argc, char** argv)
   int good = 1;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
-    good = run_case(context, cases + i, argc > 1) && good;
+    uint64_t hash;
+    good = run_case(context, cases + i, argc > 1, &hash) && good;
   }
   mcor_free_context(context);
   return good ? 0 : 1;

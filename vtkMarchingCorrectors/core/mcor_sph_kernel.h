@@ -40,7 +40,7 @@ realv mcor_dw_cubic(realv q)
 
 realv mcor_ddw_cubic(realv q)
 {
-  return (real)1.5 * fmax((real)2 - q, (realv)0) - (real)6 * fmax((real)1 - q, (realv)0);
+  return MCOR_FMA((real)-6, fmax((real)1 - q, (realv)0), (real)1.5 * fmax((real)2 - q, (realv)0));
 }
 
 /* 3/16 q^2 - 3/4 q + 3/4 = 3/16 (2 - q)^2; the 3/16 is in the norm. */
@@ -75,7 +75,7 @@ realv mcor_dw_mprime4(realv q)
 
 realv mcor_ddw_mprime4(realv q)
 {
-  const realv outer = (real)5 - (real)3 * q, inner = (real)9 * q - (real)5;
+  const realv outer = MCOR_FMA((real)-3, q, (real)5), inner = MCOR_FMA((real)9, q, (real)-5);
   return q < (real)1 ? inner : q < (real)2 ? outer : (realv)0;
 }
 

@@ -25,6 +25,11 @@ typedef struct
   realv xx, yy, zz, xy, yz, zx;
 } mcor_symmetric;
 
+realv mcor_dot(const realv a[3], const realv b[3])
+{
+  return MCOR_FMA(a[2], b[2], MCOR_FMA(a[1], b[1], a[0] * b[0]));
+}
+
 /* Gradient g of W / norm * h^3, and its derivative d along the unit vector e: the Hessian times
  * e. */
 void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[3], realv d[3])
@@ -42,19 +47,19 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
   {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     g[a] = slope[a] * w[b] * w[c];
-    d[a] =
-      bend[a] * w[b] * w[c] * e[a] + slope[a] * (slope[b] * w[c] * e[b] + slope[c] * w[b] * e[c]);
+    d[a] = MCOR_FMA(bend[a] * w[b] * w[c], e[a],
+      slope[a] * MCOR_FMA(slope[b] * w[c], e[b], slope[c] * w[b] * e[c]));
   }
 #else
   const realv r2 = mcor_square(u[0], u[1], u[2]);
   const realv inv_r = mcor_rsqrt(r2), q = r2 * inv_r * inv_h;
   const realv slope = MCOR_DW(q) * inv_h, bend = MCOR_DDW(q) * inv_h * inv_h;
-  const realv along = (e[0] * u[0] + e[1] * u[1] + e[2] * u[2]) * inv_r;
+  const realv along = mcor_dot(e, u) * inv_r;
   for (int a = 0; a < 3; ++a)
   {
     const realv n = u[a] * inv_r;
     g[a] = slope * n;
-    d[a] = slope * inv_r * (e[a] - along * n) + bend * along * n;
+    d[a] = MCOR_FMA(bend * along, n, slope * inv_r * MCOR_FMA(-along, n, e[a]));
   }
 #endif
 }
@@ -157,8 +162,7 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
       mcor_points_from(
         at, points, MCOR_EACH(tile, x, i), MCOR_EACH(tile, y, i), MCOR_EACH(tile, z, i), u);
       mcor_weight_second(u, MCOR_EACH(tile, inv_h, i), e, g, d);
-      const realv along_u = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
-      const realv along_g = e[0] * g[0] + e[1] * g[1] + e[2] * g[2];
+      const realv along_u = mcor_dot(e, u), along_g = mcor_dot(e, g);
       for (int a = 0; a < 3; ++a)
       {
         sum[a] = MCOR_FMA(-MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i),

@@ -257,9 +257,45 @@ static void test_index_keys(void** state)
   for_all(*state, check_index);
 }
 
+/* Each work-item of a launch in parts runs once. */
+static void test_parts(void** state)
+{
+  enum
+  {
+    ITEMS = 1000003
+  };
+  mcor_context* gpu = NULL;
+  core_create_form(&gpu, "gpu");
+  core_build(gpu, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
+  core_extend_program(gpu,
+    "__kernel void test_visit(const int count, __global int* visits)\n"
+    "{\n"
+    "  if (get_global_id(0) < count)\n"
+    "    atomic_inc(visits + get_global_id(0));\n"
+    "}\n");
+  mcor_buffer visits = { 0 };
+  CORE_OK(gpu, mcor_fill(gpu, &visits, 0, ITEMS * sizeof(int)));
+  for (int round = 1; round <= 3; ++round)
+  {
+    CORE_OK(gpu,
+      MCOR_LAUNCH(gpu, "test_visit", MCOR_HEAVY, ITEMS, MCOR_INT(ITEMS), MCOR_BUFFER(&visits)));
+    int* count = read_back(gpu, &visits, ITEMS, sizeof(int));
+    for (int i = 0; i < ITEMS; ++i)
+    {
+      CORE_CHECK(count[i] == round, "work-item %d ran %d times in %d launches", i, count[i], round);
+    }
+    free(count);
+  }
+  mcor_release(gpu, &visits);
+  check_scan(gpu, 100003, 20000);
+  check_scan(gpu, 4097, 1);
+  mcor_free_context(gpu);
+  (void)state;
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_scan),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_parts), cmocka_unit_test(test_scan),
     cmocka_unit_test(test_scan_overflow), cmocka_unit_test(test_argument_count),
     cmocka_unit_test(test_sort), cmocka_unit_test(test_unique), cmocka_unit_test(test_index_keys) };
   return cmocka_run_group_tests_name("scan", tests, set_up, core_tear_down);

@@ -291,9 +291,122 @@ static void test_modes_agree(void** state)
   core_free_set(&set);
 }
 
+/* Bricks along an edge of a made-up lattice, of 3 x 3 x 3 blocks without the middle one and the last. */
+#define BRICKS 24
+
+static int mark_of(const int block_of[27], const int at[3])
+{
+  int block = 0, brick = 0;
+  for (int a = 2; a >= 0; --a)
+  {
+    if (at[a] < 0 || at[a] >= BRICKS)
+    {
+      return -1;
+    }
+    block = 3 * block + at[a] / 8;
+    brick = 8 * brick + at[a] % 8;
+  }
+  return block_of[block] < 0 ? -1 : 512 * block_of[block] + brick;
+}
+
+/* Whether a brick is to be evaluated: not certain, or certain of another side than one beside it. */
+static int is_asked(const int block_of[27], const uint8_t* states, const int at[3])
+{
+  const int own = states[mark_of(block_of, at)];
+  int asked = own == MCOR_EXAMINE;
+  for (int d = 0; d < 27; ++d)
+  {
+    const int beside[3] = { at[0] + d % 3 - 1, at[1] + d / 3 % 3 - 1, at[2] + d / 9 - 1 };
+    const int m = mark_of(block_of, beside), other = m < 0 ? MCOR_VOID : states[m];
+    asked = asked || (own == MCOR_ABOVE && other == MCOR_BELOW) ||
+      (own == MCOR_BELOW && other == MCOR_ABOVE);
+  }
+  return asked;
+}
+
+/* Launches mcor_seed_ask on states, and compares with the above. */
+static void check_ask(mcor_context* context, const int block_of[27], int blocks, uint8_t* states)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const size_t words = (size_t)blocks * MCOR_BLOCK_WORDS;
+  uint32_t* bits = calloc(words, sizeof *bits);
+  assert_non_null(bits);
+  CORE_OK(context, mcor_fill(context, &bricks->inactive, 0, (size_t)blocks));
+  CORE_OK(context, mcor_write(context, &bricks->states, states, (size_t)blocks * 512));
+  CORE_OK(context, mcor_fill(context, &bricks->bits, 0, words * sizeof *bits));
+  CORE_OK(context,
+    MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, blocks * 64, MCOR_BLOCK_ARGS(context),
+      MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
+  CORE_OK(context, mcor_read(context, &bricks->bits, 0, bits, words * sizeof *bits));
+  for (int b = 0; b < BRICKS * BRICKS * BRICKS; ++b)
+  {
+    const int at[3] = { b % BRICKS, b / BRICKS % BRICKS, b / BRICKS / BRICKS };
+    const int m = mark_of(block_of, at);
+    const int asked = m >= 0 && (bits[m / 32] >> m % 32 & 1);
+    CORE_CHECK(m < 0 || asked == is_asked(block_of, states, at),
+      "brick %d %d %d of state %d is %sasked for", at[0], at[1], at[2], states[m],
+      asked ? "" : "not ");
+  }
+  free(bits);
+}
+
+/* Every pair of neighbours of unlike sides, within blocks and across their faces, edges and corners;
+ * then states at random. */
+static void test_ask(void** state)
+{
+  mcor_context* context = NULL;
+  assert_int_equal(mcor_create_context(NULL, &context), MCOR_OK);
+  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
+  int block_of[27], blocks = 0;
+  cl_ulong keys[27];
+  for (int b = 0; b < 27; ++b)
+  {
+    block_of[b] = b == 13 || b == 26 ? -1 : blocks;
+    keys[blocks] = (cl_ulong)b;
+    blocks += block_of[b] >= 0;
+  }
+  mcor_bricks* bricks = &context->bricks;
+  bricks->block_count = blocks;
+  context->lattice.blocks[0] = context->lattice.blocks[1] = context->lattice.blocks[2] = 3;
+  CORE_OK(context, mcor_write(context, &bricks->block_keys, keys, (size_t)blocks * sizeof *keys));
+  CORE_OK(context,
+    mcor_index_keys(
+      context, &bricks->block_keys, blocks, 27, &bricks->block_buckets, &bricks->block_shift));
+  uint8_t* states = calloc((size_t)blocks, 512);
+  assert_non_null(states);
+  uint64_t seed = 3;
+  for (int round = 0; round < 60; ++round)
+  {
+    /* Pairs far enough from each other that none helps another; later all at random. */
+    memset(states, MCOR_VOID, (size_t)blocks * 512);
+    for (int b = 0; b < BRICKS * BRICKS * BRICKS; ++b)
+    {
+      const int at[3] = { b % BRICKS, b / BRICKS % BRICKS, b / BRICKS / BRICKS };
+      const int d = round % 27, m = mark_of(block_of, at);
+      const int beside[3] = { at[0] + d % 3 - 1, at[1] + d / 3 % 3 - 1, at[2] + d / 9 - 1 };
+      const int other = mark_of(block_of, beside);
+      if (round >= 54 && m >= 0)
+      {
+        const int kind = (int)(random_bits(&seed) % 40);
+        states[m] = (uint8_t)(kind < 4 ? kind : MCOR_VOID);
+      }
+      else if (at[0] % 4 == 3 && at[1] % 4 == 3 && at[2] % 4 == 3 && m >= 0 && other >= 0 &&
+        m != other)
+      {
+        states[m] = (uint8_t)(round < 27 ? MCOR_ABOVE : MCOR_BELOW);
+        states[other] = (uint8_t)(round < 27 ? MCOR_BELOW : MCOR_ABOVE);
+      }
+    }
+    check_ask(context, block_of, blocks, states);
+  }
+  free(states);
+  mcor_free_context(context);
+  (void)state;
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_complete), cmocka_unit_test(test_line),
-    cmocka_unit_test(test_pairs), cmocka_unit_test(test_modes_agree) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_ask), cmocka_unit_test(test_complete),
+    cmocka_unit_test(test_line), cmocka_unit_test(test_pairs), cmocka_unit_test(test_modes_agree) };
   return cmocka_run_group_tests_name("seed", tests, core_set_up, core_tear_down);
 }

@@ -747,6 +747,7 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   MCOR_RETURN_IF(cl->kernel_count == MCOR_KERNEL_LIMIT, context, MCOR_DEVICE_ERROR,
     "There is no room for kernel %s.", name);
   *kernel = &cl->kernels[cl->kernel_count];
+  (*kernel)->part = 0;
   const mcor_status status = mcor_make_kernel(context, name, *kernel);
   cl->kernel_count += status == MCOR_OK;
   return status;
@@ -806,6 +807,36 @@ static cl_int mcor_enqueue_first(
   return error;
 }
 
+/* Drivers of GPUs end a launch that takes seconds: a heavy one is cut into parts, each to take about
+ * so long, as far as single work-items allow. */
+#define MCOR_PART_SECONDS 0.1
+#define MCOR_FIRST_PART 65536
+
+/* Launches the work-items from `offset` on. */
+static cl_int mcor_enqueue_parts(
+  mcor_cl* cl, mcor_kernel* kernel, size_t offset, size_t global, size_t group)
+{
+  cl_int error = global - offset > kernel->part ? clFinish(cl->queue) : CL_SUCCESS;
+  while (offset < global && error == CL_SUCCESS)
+  {
+    const size_t rest = global - offset, part = rest < kernel->part ? rest : kernel->part;
+    const double begin = mcor_seconds();
+    error =
+      clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, &offset, &part, &group, 0, NULL, NULL);
+    offset += part;
+    if (offset < global && error == CL_SUCCESS)
+    {
+      error = clFinish(cl->queue);
+      const double seconds = mcor_seconds() - begin;
+      const size_t half = part / 2 / group * group;
+      kernel->part = seconds < MCOR_PART_SECONDS / 2  ? 2 * part
+        : seconds > 2 * MCOR_PART_SECONDS && half > 0 ? half
+                                                      : part;
+    }
+  }
+  return error;
+}
+
 /* From so many work-groups on, PoCL compiles a kernel once more. */
 #define MCOR_LARGE_LAUNCH 65535
 
@@ -834,12 +865,19 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     MCOR_TRY(mcor_report_building(context));
   }
-  MCOR_CL_TRY(context,
-    kernel->launched[large]
-      ? clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, NULL, &global, &group, 0, NULL, NULL)
-      : mcor_enqueue_first(context, kernel->kernel, &global, &group),
-    name);
-  kernel->launched[large] = true;
+  const bool in_parts = !cl->is_cpu && load == MCOR_HEAVY;
+  if (!in_parts || kernel->part == 0)
+  {
+    kernel->part = in_parts ? MCOR_FIRST_PART : global;
+  }
+  size_t launched = 0;
+  if (!kernel->launched[large])
+  {
+    launched = global < kernel->part ? global : kernel->part;
+    MCOR_CL_TRY(context, mcor_enqueue_first(context, kernel->kernel, &launched, &group), name);
+    kernel->launched[large] = true;
+  }
+  MCOR_CL_TRY(context, mcor_enqueue_parts(cl, kernel, launched, global, group), name);
   return MCOR_OK;
 }
 

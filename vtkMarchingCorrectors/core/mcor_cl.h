@@ -45,6 +45,7 @@ typedef struct mcor_kernel
   cl_kernel kernel;
   mcor_program program;
   bool launched[2]; /* with few, with many work-groups */
+  size_t part;      /* work-items launched at once, see mcor_enqueue_parts */
 } mcor_kernel;
 
 typedef struct mcor_cl

@@ -29,15 +29,28 @@ __kernel void mcor_scan_sum(
   sums[segment] = sum;
 }
 
-/* One work-item in all. Reads the segment sums. Writes their exclusive prefix sums. */
-__kernel void mcor_scan_top(const int segments, __global long* sums)
+/* One work-group of 64 in all; a work-item = a 64th of the sums. Reads the segment sums. Writes their
+ * exclusive prefix sums. */
+__attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
+  const int segments, __global long* sums)
 {
-  if (get_global_id(0) != 0)
-  {
-    return;
-  }
+  __local long part[64];
+  const int item = get_local_id(0);
+  const int begin = mcor_segment_begin(item, 64, segments),
+            end = mcor_segment_begin(item + 1, 64, segments);
   long sum = 0;
-  for (int i = 0; i < segments; ++i)
+  for (int i = begin; i < end; ++i)
+  {
+    sum += sums[i];
+  }
+  part[item] = sum;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  sum = 0;
+  for (int k = 0; k < item; ++k)
+  {
+    sum += part[k];
+  }
+  for (int i = begin; i < end; ++i)
   {
     const long s = sums[i];
     sums[i] = sum;

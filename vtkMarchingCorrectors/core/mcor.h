@@ -301,6 +301,72 @@ extern "C"
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
 
+  /* The field at points of the caller's choice. Owned; free with mcor_free_samples. */
+  typedef struct mcor_samples
+  {
+    int64_t count;           /* of points */
+    double* weight_sum;      /* [count], of fluid particles */
+    double* weight_gradient; /* [count][3], unit 1 / L; NULL unless options.gradients */
+    uint8_t* valid; /* [count], 1 where the weight sum is not below options.node_threshold */
+    /* Of each attribute of the input the field at the points, the Shepard mean or the sum as
+     * options.field says (MCOR_WEIGHT_SUM: the mean), and its gradient. 0 where not valid. */
+    double** values;               /* [attribute_count] -> [count][components] */
+    double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
+                                    * unless options.gradients */
+    int64_t* attribute_not_finite; /* [attribute_count], as in mcor_surface */
+    int attribute_count;
+    mcor_statistics statistics;
+  } mcor_samples;
+
+  /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The
+   * input's scalar is not read. Of the options sph_kernel, field, h_scale, gradients, node_threshold,
+   * precision, memory_limit and progress count; cube_size and cube_size_factor are the unit of
+   * length on the device and do not matter otherwise. A point's bits do not depend on the other
+   * points while no support radius is above 16 cubes. *samples is overwritten. */
+  mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
+  void mcor_free_samples(mcor_samples* samples);
+
+  typedef enum mcor_gradient
+  {
+    MCOR_GRADIENT_CORRECTED = 0, /* first-order corrected where its matrix can be inverted, else
+                                  * standard; exact for linear attributes up to rounding */
+    MCOR_GRADIENT_STANDARD = 1   /* sum_j V_j (A_j - A_i) grad W_ij, W_ij with h_j */
+  } mcor_gradient;
+
+  /* SPH gradients at the particles. Owned; free with mcor_free_derivatives. */
+  typedef struct mcor_derivatives
+  {
+    int64_t count;      /* of particles */
+    double** gradients; /* [attribute_count] -> [count][components][3]: d component / d axis, per L;
+                         * 0 for solid particles */
+    uint8_t* corrected; /* [count], 1 where the corrected form was taken */
+    int64_t* attribute_not_finite; /* [attribute_count], as in mcor_surface */
+    int attribute_count;
+    mcor_statistics statistics;
+  } mcor_derivatives;
+
+  /* Gradients of the input's attributes. Sums are over fluid particles. Options count as for
+   * mcor_probe, but field, gradients and node_threshold. *derivatives is overwritten. */
+  mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
+  void mcor_free_derivatives(mcor_derivatives* derivatives);
+
+  /* What is wanted of velocity gradients J = S + O, S symmetric, O antisymmetric; NULL: not
+   * wanted. The caller's arrays, unit of J or its square. */
+  typedef struct mcor_flow
+  {
+    double* divergence;  /* [count], tr J */
+    double* vorticity;   /* [count][3], curl */
+    double* q_criterion; /* [count], (tr(J)^2 - tr(J J)) / 2 */
+    double* lambda2;     /* [count], the middle eigenvalue of S S + O O */
+    double* strain_rate; /* [count][3][3], S */
+  } mcor_flow;
+
+  /* gradients: [count][3][3], d component / d axis, as in mcor_derivatives. */
+  mcor_status mcor_decompose_gradients(
+    const double* gradients, int64_t count, const mcor_flow* flow);
+
   /* Drops all that the context keeps for reuse between calls of mcor_extract. */
   void mcor_release_memory(mcor_context* context);
 

@@ -49,7 +49,7 @@ mcor_status mcor_list_attributes(
       if (!mcor_is_constant(array, input->count, c))
       {
         attributes->varying[attributes->varying_count++] =
-          (mcor_component){ a, c, mcor_component_scale(input, array, c) };
+          (mcor_component){ a, c, 0, mcor_component_scale(input, array, c) };
       }
     }
   }
@@ -77,8 +77,8 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   for (int i = 0; i < attributes->count; ++i)
   {
     const mcor_component* c = &attributes->varying[first + i];
-    MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component, 0,
-      c->scale, &attributes->sorted, i));
+    MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component,
+      c->shift, c->scale, &attributes->sorted, i));
   }
   mcor_release(context, &context->stage.values);
   return MCOR_OK;

@@ -726,6 +726,10 @@ static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mco
   for (int p = 0; p < MCOR_PROGRAM_COUNT && error == CL_INVALID_KERNEL_NAME; ++p)
   {
     kernel->program = (mcor_program)p;
+    if (!mcor_program_may_have(kernel->program, name))
+    {
+      continue;
+    }
     MCOR_TRY(mcor_need_program(context, kernel->program));
     kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
   }

@@ -156,7 +156,7 @@ typedef struct mcor_sort_data
 typedef struct mcor_component
 {
   int attribute, component;
-  double scale; /* of the values on the device */
+  double shift, scale; /* on the device: (value - shift) * scale */
 } mcor_component;
 
 /* The components that vary, and those of them that are on the device. */
@@ -318,6 +318,9 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* nod
 mcor_status mcor_trim(mcor_context* context, double iso);
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
+mcor_status mcor_list_components(
+  mcor_context* context, const mcor_input* input, int64_t* not_finite);
+bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
 bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
 mcor_status mcor_add_attributes(
@@ -369,6 +372,8 @@ extern const char mcor_source_mcor_topology_cl[];
 extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
+extern const char mcor_source_mcor_probe_cl[];
+extern const char mcor_source_mcor_derive_cl[];
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \

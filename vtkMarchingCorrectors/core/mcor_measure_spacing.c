@@ -41,23 +41,23 @@ static int mcor_compare_double(const void* a, const void* b)
 #define MCOR_SAMPLE_NEIGHBOURS 32
 
 /* Those of a slice of the particles, in order. */
-typedef struct mcor_samples
+typedef struct mcor_spacing_samples
 {
   int count;
   mcor_sample sample[MCOR_SAMPLES];
-} mcor_samples;
+} mcor_spacing_samples;
 
 typedef struct mcor_sampling
 {
   const mcor_input* input;
   mcor_array positions;
-  double scale;          /* a power of 2 that brings all coordinates below 1 */
-  mcor_samples* samples; /* [MCOR_SLICES]; in the end the first has those of all */
+  double scale;                  /* a power of 2 that brings all coordinates below 1 */
+  mcor_spacing_samples* samples; /* [MCOR_SLICES]; in the end the first has those of all */
   double spacing[MCOR_SAMPLES];
 } mcor_sampling;
 
 /* Keeps a sample if it is among the first. */
-static void mcor_add_sample(mcor_samples* samples, const mcor_sample* sample)
+static void mcor_add_sample(mcor_spacing_samples* samples, const mcor_sample* sample)
 {
   const bool full = samples->count == MCOR_SAMPLES;
   if (full && sample->hash >= samples->sample[MCOR_SAMPLES - 1].hash)
@@ -75,7 +75,7 @@ static void mcor_add_sample(mcor_samples* samples, const mcor_sample* sample)
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_sampling* job = data;
-  mcor_samples* samples = &job->samples[slice];
+  mcor_spacing_samples* samples = &job->samples[slice];
   samples->count = 0;
   for (int64_t i = first; i < last; ++i)
   {

@@ -9,6 +9,7 @@
 #include "mcor_sph_kernel.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Programs that a source is part of. Of sources of several, `#if MCOR_PROGRAM` says which kernels
  * are whose. */
@@ -16,7 +17,8 @@ enum
 {
   LATTICE = 1 << MCOR_PROGRAM_LATTICE,
   FIELD = 1 << MCOR_PROGRAM_FIELD,
-  OPTIONS = 1 << MCOR_PROGRAM_OPTIONS
+  OPTIONS = 1 << MCOR_PROGRAM_OPTIONS,
+  PROBE = 1 << MCOR_PROGRAM_PROBE
 };
 
 int mcor_program_sources(
@@ -29,14 +31,15 @@ int mcor_program_sources(
   {
     const char* text;
     int programs;
-  } all[] = { { mcor_source_mcor_shared_h, LATTICE | FIELD | OPTIONS },
-    { mcor_source_mcor_prelude_cl, LATTICE | FIELD | OPTIONS },
-    { mcor_source_mcor_intrinsic_cl, LATTICE | FIELD | OPTIONS },
-    { mcor_source_mcor_sph_kernel_h, FIELD | OPTIONS },
-    { mcor_source_mcor_field_cl, FIELD | OPTIONS }, { mcor_source_mcor_query_cl, FIELD | OPTIONS },
-    { mcor_source_mcor_points_cl, FIELD | OPTIONS },
+  } all[] = { { mcor_source_mcor_shared_h, LATTICE | FIELD | OPTIONS | PROBE },
+    { mcor_source_mcor_prelude_cl, LATTICE | FIELD | OPTIONS | PROBE },
+    { mcor_source_mcor_intrinsic_cl, LATTICE | FIELD | OPTIONS | PROBE },
+    { mcor_source_mcor_sph_kernel_h, FIELD | OPTIONS | PROBE },
+    { mcor_source_mcor_field_cl, FIELD | OPTIONS | PROBE },
+    { mcor_source_mcor_query_cl, FIELD | OPTIONS | PROBE },
+    { mcor_source_mcor_points_cl, FIELD | OPTIONS | PROBE },
     { vectors ? mcor_source_mcor_gather_lanes_cl : mcor_source_mcor_gather_point_cl,
-      FIELD | OPTIONS },
+      FIELD | OPTIONS | PROBE },
     { mcor_source_mcor_scan_cl, LATTICE }, { mcor_source_mcor_grid_cl, FIELD },
     { mcor_source_mcor_brick_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_node_cl, FIELD | OPTIONS },
@@ -45,11 +48,11 @@ int mcor_program_sources(
     { mcor_source_mcor_seed_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_block_cl, LATTICE | FIELD },
     { mcor_source_mcor_march_cl, LATTICE | FIELD | OPTIONS }, { mcor_source_mcor_pair_cl, OPTIONS },
-    { mcor_source_mcor_attribute_cl, FIELD | OPTIONS },
+    { mcor_source_mcor_attribute_cl, FIELD | OPTIONS | PROBE },
     { mcor_source_mcor_evaluate_cl, FIELD | OPTIONS },
     { mcor_source_mcor_correct_cl, FIELD | OPTIONS }, { mcor_source_mcor_topology_cl, OPTIONS },
-    { mcor_source_mcor_boundary_cl, trim | OPTIONS },
-    { mcor_source_mcor_trim_cl, LATTICE | trim } };
+    { mcor_source_mcor_boundary_cl, trim | OPTIONS }, { mcor_source_mcor_trim_cl, LATTICE | trim },
+    { mcor_source_mcor_probe_cl, PROBE }, { mcor_source_mcor_derive_cl, PROBE } };
   int count = 0;
   for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
   {
@@ -59,6 +62,13 @@ int mcor_program_sources(
     }
   }
   return count;
+}
+
+bool mcor_program_may_have(mcor_program program, const char* kernel)
+{
+  const bool is_probe =
+    strncmp(kernel, "mcor_probe_", 11) == 0 || strncmp(kernel, "mcor_derive_", 12) == 0;
+  return is_probe == (program == MCOR_PROGRAM_PROBE);
 }
 
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size)

@@ -12,6 +12,8 @@
 /* The sources of a program, in order; returns how many. */
 int mcor_program_sources(
   const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT]);
+/* False where a look into the program for this kernel, which builds it, is in vain. */
+bool mcor_program_may_have(mcor_program program, const char* kernel);
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size);
 
 #endif

@@ -53,6 +53,9 @@ typedef struct mcor_level
 /* Bits that one round of the radix sort treats, at most. */
 #define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 11)
 
+/* Arrays whose values one launch reads beside each other, see mcor_values_load. */
+#define MCOR_ARRAY_STEP 4
+
 /* Seeds: successive particles with one flag for the sides they are on; vectors of particles whose
  * pairs one work-item finds, which may be many lines for each. */
 #define MCOR_SIDE_PARTICLES 16

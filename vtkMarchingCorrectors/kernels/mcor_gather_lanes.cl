@@ -333,6 +333,23 @@ void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute
 }
 #endif
 
+/* Values of up to MCOR_ARRAY_STEP arrays at the particles of a reach. */
+typedef struct
+{
+  real of[MCOR_ARRAY_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
+} mcor_values;
+
+void mcor_values_load(const mcor_reach* reach, __global const real* const arrays[MCOR_ARRAY_STEP],
+  mcor_values* values)
+{
+  for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+  {
+    mcor_attribute_load(reach, arrays[c], values->of[c]);
+  }
+}
+
+#define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
+
 /* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes:
  * together, as a sum alone would wait for its last addition. weight: w_i in each lane. */
 #define MCOR_ATTRIBUTE_STEP 4

@@ -75,6 +75,22 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
   return mcor_tile_next(grid, query, &reach->tile, first);
 }
 
+typedef struct
+{
+  __global const real* of[MCOR_ARRAY_STEP];
+} mcor_values;
+
+void mcor_values_load(const mcor_reach* reach, __global const real* const arrays[MCOR_ARRAY_STEP],
+  mcor_values* values)
+{
+  for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+  {
+    values->of[c] = arrays[c];
+  }
+}
+
+#define MCOR_VALUE_OF(values, reach, c, i) ((values)->of[c][MCOR_INDEX(&(reach)->tile, i)])
+
 void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   real iso, mcor_reach* reach, bool evaluated, int count, const int stride,
   __global const real* attributes, real sums[MCOR_ATTRIBUTE_LIMIT], real* weight_sum)

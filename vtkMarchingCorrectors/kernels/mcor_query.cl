@@ -292,7 +292,10 @@ int mcor_query_particles(
  *       MCOR_REACH_KEEP(&reach, i, w);    the kernel's value, for mcor_attribute_sums
  *
  * mcor_attribute_sums(grid, &query, &points, iso, &reach, evaluated, ...) adds weights, and weights
- * times attributes, of the particles; evaluated: the weights that were kept last hold. */
+ * times attributes, of the particles; evaluated: the weights that were kept last hold.
+ *
+ * mcor_values_load(&reach, arrays, &values) makes sorted arrays readable at the particles of a reach:
+ * MCOR_VALUE_OF(&values, &reach, c, i) is that of arrays[c] at particle i. */
 #if MCOR_SOLIDS
 #define MCOR_TRIM_WEIGHT trim_weight
 #else

@@ -1,0 +1,246 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* SPH gradients at the particles. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Disordered particles with one h, or with h that varies by a factor of 2. */
+static core_set derive_set(bool varies)
+{
+  core_set set = core_make_block(14, 0.15, 77, core_slope);
+  uint64_t seed = 5;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] = varies ? 1.2 * (1 + random_unit(&seed)) : 1.3;
+  }
+  return set;
+}
+
+static mcor_derivatives derive(mcor_context* context, const core_set* set, const double* values,
+  int components, mcor_type precision, mcor_gradient form)
+{
+  mcor_input input = core_input(set);
+  const mcor_array attribute = core_array(values, components);
+  input.scalar = (mcor_array){ 0 };
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.precision = precision;
+  mcor_derivatives derivatives;
+  CORE_OK(context, mcor_derive(context, &input, &options, form, &derivatives));
+  return derivatives;
+}
+
+/* v = J x, J with a rotation, a shear and a strain; far from 0. */
+static const double derive_jacobian[3][3] = { { 0.3, -2, 0.5 }, { 2, -0.1, 1 }, { 0, 0.7, 0.4 } };
+
+static double* derive_linear(const core_set* set)
+{
+  double* v = malloc((size_t)set->count * 3 * sizeof(double));
+  assert_non_null(v);
+  for (int64_t i = 0; i < 3 * set->count; ++i)
+  {
+    const double *x = set->position + i / 3 * 3, *j = derive_jacobian[i % 3];
+    v[i] = 1000 + j[0] * x[0] + j[1] * x[1] + j[2] * x[2];
+  }
+  return v;
+}
+
+static void derive_check_linear(
+  mcor_context* context, bool varies, mcor_type precision, double tolerance)
+{
+  core_set set = derive_set(varies);
+  double* v = derive_linear(&set);
+  mcor_derivatives d = derive(context, &set, v, 3, precision, MCOR_GRADIENT_CORRECTED);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    assert_int_equal(d.corrected[i], 1);
+    for (int k = 0; k < 9; ++k)
+    {
+      const double expected = derive_jacobian[k / 3][k % 3], got = d.gradients[0][9 * i + k];
+      CORE_CHECK(fabs(got - expected) <= 2 * tolerance, "particle %lld, component %d: %.12g for %g",
+        (long long)i, k, got, expected);
+    }
+  }
+  mcor_free_derivatives(&d);
+  free(v);
+  core_free_set(&set);
+}
+
+static void test_linear_is_exact(void** state)
+{
+  derive_check_linear(*state, false, MCOR_FLOAT32, 1e-5);
+  derive_check_linear(*state, true, MCOR_FLOAT32, 1e-5);
+  derive_check_linear(*state, true, MCOR_FLOAT64, 1e-12);
+}
+
+/* The standard form, summed in the test. */
+static void derive_standard(const core_set* set, int64_t i, double gradient[3])
+{
+  gradient[0] = gradient[1] = gradient[2] = 0;
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    double offset[3], g[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      offset[a] = set->position[3 * i + a] - set->position[3 * j + a];
+    }
+    if (set->solid[j])
+    {
+      continue;
+    }
+    oracle_kernel_value(ORACLE_CUBIC_SPLINE, set->smoothing_length[j], offset, g);
+    for (int a = 0; a < 3; ++a)
+    {
+      gradient[a] += set->volume[j] * (set->scalar[j] - set->scalar[i]) * g[a];
+    }
+  }
+}
+
+/* Also with solids, whose values play no part. */
+static void test_standard_form(void** state)
+{
+  core_set set = core_make_random(2500, 9, 0.7, 2, 4);
+  set.has_solids = 1;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] = 0.3;
+    set.solid[i] = i % 5 == 0;
+    set.scalar[i] = set.solid[i] ? NAN : set.scalar[i];
+  }
+  mcor_derivatives d = derive(*state, &set, set.scalar, 1, MCOR_FLOAT32, MCOR_GRADIENT_STANDARD);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    double expected[3] = { 0, 0, 0 };
+    if (!set.solid[i])
+    {
+      derive_standard(&set, i, expected);
+    }
+    assert_int_equal(d.corrected[i], 0);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double got = d.gradients[0][3 * i + a];
+      CORE_CHECK(fabs(got - expected[a]) <= 2e-5, "particle %lld: %.9g, expected %.9g",
+        (long long)i, got, expected[a]);
+    }
+  }
+  mcor_free_derivatives(&d);
+  core_free_set(&set);
+}
+
+/* A particle alone, two, and three in a plane: no matrix can be inverted. */
+static void test_too_few_neighbours(void** state)
+{
+  core_set set = core_make_set(6);
+  const double x[6][3] = { { 0, 0, 0 }, { 10, 0, 0 }, { 11, 0, 0 }, { 20, 0, 0 }, { 21, 0, 0 },
+    { 20, 1, 0 } };
+  for (int i = 0; i < 6; ++i)
+  {
+    memcpy(set.position + 3 * i, x[i], sizeof x[i]);
+    set.smoothing_length[i] = 1.2;
+    set.volume[i] = 1;
+    set.scalar[i] = i;
+  }
+  mcor_derivatives d = derive(*state, &set, set.scalar, 1, MCOR_FLOAT32, MCOR_GRADIENT_CORRECTED);
+  for (int i = 0; i < 6; ++i)
+  {
+    double expected[3];
+    derive_standard(&set, i, expected);
+    assert_int_equal(d.corrected[i], 0);
+    for (int a = 0; a < 3; ++a)
+    {
+      CORE_CHECK(fabs(d.gradients[0][3 * i + a] - expected[a]) <= 1e-5, "particle %d", i);
+    }
+  }
+  mcor_free_derivatives(&d);
+  core_free_set(&set);
+}
+
+/* A Taylor-Green vortex: the errors of the vorticity fall with the spacing, by at least its first
+ * power. */
+static double derive_taylor_green(mcor_context* context, int n)
+{
+  core_set set = core_make_block(n, 0, 3, core_slope);
+  const double k = 6.283185307179586 / n;
+  double* v = malloc((size_t)set.count * 3 * sizeof(double));
+  double* vorticity = malloc((size_t)set.count * 3 * sizeof(double));
+  double* lambda2 = malloc((size_t)set.count * sizeof(double));
+  double* q = malloc((size_t)set.count * sizeof(double));
+  assert_true(v && vorticity && lambda2 && q);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double *x = set.position + 3 * i, p = k * x[0], r = k * x[1], s = k * x[2];
+    v[3 * i] = sin(p) * cos(r) * cos(s) / k;
+    v[3 * i + 1] = -cos(p) * sin(r) * cos(s) / k;
+    v[3 * i + 2] = 0;
+  }
+  mcor_derivatives d = derive(context, &set, v, 3, MCOR_FLOAT32, MCOR_GRADIENT_CORRECTED);
+  const mcor_flow flow = { .vorticity = vorticity, .lambda2 = lambda2, .q_criterion = q };
+  assert_int_equal(mcor_decompose_gradients(d.gradients[0], set.count, &flow), MCOR_OK);
+  double worst = 0;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double *x = set.position + 3 * i, p = k * x[0], r = k * x[1], s = k * x[2];
+    if (fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2]))) > 0.3 * n)
+    {
+      continue;
+    }
+    const double expected[3] = { -cos(p) * sin(r) * sin(s), -sin(p) * cos(r) * sin(s),
+      2 * sin(p) * sin(r) * cos(s) };
+    for (int a = 0; a < 3; ++a)
+    {
+      worst = fmax(worst, fabs(vorticity[3 * i + a] - expected[a]));
+    }
+  }
+  mcor_free_derivatives(&d);
+  free(v);
+  free(vorticity);
+  free(lambda2);
+  free(q);
+  core_free_set(&set);
+  return worst;
+}
+
+static void test_taylor_green(void** state)
+{
+  const double coarse = derive_taylor_green(*state, 16), fine = derive_taylor_green(*state, 32);
+  const double order = log2(coarse / fine);
+  CORE_CHECK(order > 1.8, "errors %g and %g: order %g", coarse, fine, order);
+}
+
+/* Of matrices of which the answer is known. */
+static void test_decomposition(void** state)
+{
+  const double gradients[4][9] = { { 0, -1, 0, 1, 0, 0, 0, 0, 0 }, /* rotation about z */
+    { 0, 2, 0, 0, 0, 0, 0, 0, 0 },                                 /* shear */
+    { 3, 0, 0, 0, 2, 0, 0, 0, 1 },                                 /* strain */
+    { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
+  double divergence[4], vorticity[12], q[4], lambda2[4], strain[36];
+  const mcor_flow flow = { divergence, vorticity, q, lambda2, strain };
+  assert_int_equal(mcor_decompose_gradients(gradients[0], 4, &flow), MCOR_OK);
+  const double expected_divergence[] = { 0, 0, 6, 3 }, expected_q[] = { 1, 0, 11, 3 },
+               expected_lambda2[] = { -1, 0, 4, 1 };
+  for (int i = 0; i < 4; ++i)
+  {
+    CORE_CHECK(fabs(divergence[i] - expected_divergence[i]) < 1e-12, "divergence %d", i);
+    CORE_CHECK(fabs(q[i] - expected_q[i]) < 1e-12, "Q %d: %g", i, q[i]);
+    CORE_CHECK(fabs(lambda2[i] - expected_lambda2[i]) < 1e-7, "lambda2 %d: %g", i, lambda2[i]);
+  }
+  assert_true(vorticity[2] == 2 && vorticity[5] == -2 && vorticity[8] == 0);
+  assert_true(strain[9 + 1] == 1 && strain[9 + 3] == 1 && strain[1] == 0);
+  (void)state;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_linear_is_exact),
+    cmocka_unit_test(test_standard_form), cmocka_unit_test(test_too_few_neighbours),
+    cmocka_unit_test(test_taylor_green), cmocka_unit_test(test_decomposition) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

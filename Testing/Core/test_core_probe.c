@@ -1,0 +1,211 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The field at points: against the oracle, and the same bits whatever the other points are. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* `count` points in a cube of edge `size` around the origin; free with free(). */
+static double* probe_points(int64_t count, double size, uint64_t seed)
+{
+  double* points = malloc((size_t)count * 3 * sizeof(double));
+  assert_non_null(points);
+  for (int64_t i = 0; i < 3 * count; ++i)
+  {
+    points[i] = size * (random_unit(&seed) - 0.5);
+  }
+  return points;
+}
+
+typedef struct probe_case
+{
+  mcor_sph_kernel sph_kernel;
+  mcor_field field;
+  mcor_type precision;
+  double offset; /* added to the scalar */
+  double tolerance;
+} probe_case;
+
+static oracle_kernel oracle_kernel_of(mcor_sph_kernel kernel)
+{
+  return (oracle_kernel)kernel;
+}
+
+/* Compares everything at one point. scale: of the array's values. */
+static void probe_compare(const oracle_field* field, const double point[3], double threshold,
+  double scale, double tolerance, const mcor_samples* samples, int64_t i)
+{
+  oracle_sample expected;
+  oracle_evaluate(field, NULL, point, &expected);
+  CORE_CHECK(fabs(samples->weight_sum[i] - expected.weight) <= tolerance * fmax(1, expected.weight),
+    "point %lld: weight %g, expected %g", (long long)i, samples->weight_sum[i], expected.weight);
+  if (fabs(expected.weight - threshold) < tolerance)
+  {
+    return;
+  }
+  assert_int_equal(samples->valid[i], expected.weight >= threshold);
+  if (!samples->valid[i])
+  {
+    CORE_CHECK(samples->values[0][i] == 0, "a value where none is valid");
+    return;
+  }
+  CORE_CHECK(fabs(samples->values[0][i] - expected.value) <= tolerance * scale,
+    "point %lld: value %.9g, expected %.9g", (long long)i, samples->values[0][i], expected.value);
+  for (int a = 0; a < 3; ++a)
+  {
+    const double got = samples->gradients[0][3 * i + a];
+    CORE_CHECK(fabs(got - expected.gradient[a]) <= 20 * tolerance * scale,
+      "point %lld: gradient %.9g, expected %.9g", (long long)i, got, expected.gradient[a]);
+  }
+}
+
+static void probe_case_run(mcor_context* context, const probe_case* c)
+{
+  core_set set = core_make_random(3000, 10, 0.6, 1.8, 11);
+  set.has_solids = 1;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] = 1.0 / 3;
+    set.solid[i] = i % 7 == 0;
+    set.scalar[i] += c->offset;
+  }
+  const int64_t count = 2000;
+  double* points = probe_points(count, 12, 5);
+  mcor_input input = core_input(&set);
+  const mcor_array attribute = input.scalar, at = core_array(points, 3);
+  input.scalar = (mcor_array){ 0 };
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.sph_kernel = c->sph_kernel;
+  options.field = c->field;
+  options.precision = c->precision;
+  options.gradients = 1;
+  mcor_samples samples;
+  CORE_OK(context, mcor_probe(context, &input, &options, &at, count, &samples));
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, oracle_kernel_of(c->sph_kernel),
+    c->field == MCOR_SUM ? ORACLE_SUM : ORACLE_SHEPARD, 1));
+  int valid = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const double scale = 1 + (c->field == MCOR_SUM ? fabs(c->offset) : 0);
+    probe_compare(&field, points + 3 * i, options.node_threshold, scale, c->tolerance, &samples, i);
+    valid += samples.valid[i];
+  }
+  assert_in_range(valid, count / 4, count - 1);
+  oracle_free_field(&field);
+  mcor_free_samples(&samples);
+  free(points);
+  core_free_set(&set);
+}
+
+static void test_against_oracle(void** state)
+{
+  const probe_case cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 3e-6 },
+    { MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32, 100, 3e-6 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 1e5, 3e-6 },
+    { MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, -3, 1e-11 } };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    probe_case_run(*state, cases + i);
+  }
+}
+
+/* Two arrays, three components in all, and 9 more, so that there is more than one round. */
+static void test_bits_do_not_depend_on_other_points(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_random(2000, 8, 0.5, 0.9, 3);
+  double* wide = malloc((size_t)set.count * 11 * sizeof(double));
+  assert_non_null(wide);
+  uint64_t seed = 9;
+  for (int64_t i = 0; i < set.count * 11; ++i)
+  {
+    wide[i] = random_unit(&seed);
+  }
+  mcor_input input = core_input(&set);
+  const mcor_array attributes[2] = { input.scalar, core_array(wide, 11) };
+  input.attributes = attributes;
+  input.attribute_count = 2;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.gradients = 1;
+  const int64_t count = 700;
+  double* points = probe_points(count, 9, 21);
+  int64_t* order = core_make_order(count, 8);
+  double* moved = malloc((size_t)count * 3 * sizeof(double));
+  assert_non_null(moved);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    memcpy(moved + 3 * i, points + 3 * order[i], 3 * sizeof(double));
+  }
+  mcor_array at = core_array(points, 3);
+  mcor_samples one, other;
+  CORE_OK(context, mcor_probe(context, &input, &options, &at, count, &one));
+  at.data = moved;
+  CORE_OK(context, mcor_probe(context, &input, &options, &at, count / 2, &other));
+  for (int64_t i = 0; i < count / 2; ++i)
+  {
+    const int64_t j = order[i];
+    assert_memory_equal(other.weight_sum + i, one.weight_sum + j, sizeof(double));
+    assert_memory_equal(other.values[0] + i, one.values[0] + j, sizeof(double));
+    assert_memory_equal(other.values[1] + 11 * i, one.values[1] + 11 * j, 11 * sizeof(double));
+    assert_memory_equal(
+      other.gradients[1] + 33 * i, one.gradients[1] + 33 * j, 33 * sizeof(double));
+  }
+  mcor_free_samples(&one);
+  mcor_free_samples(&other);
+  free(moved);
+  free(order);
+  free(points);
+  free(wide);
+  core_free_set(&set);
+}
+
+static void test_odd_points(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(6, 0, 1, core_slope);
+  mcor_input input = core_input(&set);
+  const mcor_array attribute = input.scalar;
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  const double points[] = { 0, 0, 0, NAN, 0, 0, 1e300, 0, 0, INFINITY, 0, 0, -40, 0, 0 };
+  double* copy = core_copy(points, sizeof points);
+  const mcor_array at = core_array(copy, 3);
+  mcor_samples samples;
+  CORE_OK(context, mcor_probe(context, &input, &options, &at, 5, &samples));
+  assert_int_equal(samples.valid[0], 1);
+  for (int i = 1; i < 5; ++i)
+  {
+    assert_int_equal(samples.valid[i], 0);
+    assert_true(samples.weight_sum[i] == 0);
+  }
+  mcor_free_samples(&samples);
+  CORE_OK(context, mcor_probe(context, &input, &options, NULL, 0, &samples));
+  mcor_free_samples(&samples);
+  assert_int_equal(mcor_probe(context, &input, &options, NULL, 1, &samples), MCOR_INVALID_ARGUMENT);
+  set.scalar[3] = NAN;
+  CORE_OK(context, mcor_probe(context, &input, &options, &at, 5, &samples));
+  assert_int_equal(samples.attribute_not_finite[0], 3);
+  assert_null(samples.values[0]);
+  mcor_free_samples(&samples);
+  free(copy);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_against_oracle),
+    cmocka_unit_test(test_bits_do_not_depend_on_other_points), cmocka_unit_test(test_odd_points) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,383 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* SPH gradients of particle arrays at the particles themselves: the standard form
+ *
+ *   G_i = sum_j V_j (A_j - A_i) grad W_ij,
+ *
+ * and the first-order corrected one M_i^-1 G_i with M_i = sum_j V_j grad W_ij (x_j - x_i)^T, which is
+ * exact for linear A. */
+
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Particles that are treated at a time; between two batches a run may be cancelled. */
+#define MCOR_DERIVE_BATCH (1 << 20)
+
+/* M is inverted where that magnifies rounding by less than this, which it does by its condition: in
+ * the Frobenius norm, 3 for the identity. */
+#define MCOR_WORST_CONDITION 300
+
+typedef struct mcor_derive_run
+{
+  mcor_context* context;
+  const mcor_input* input;
+  bool standard;
+  mcor_derivatives* derivatives;
+  mcor_buffer arrays; /* fix [varying_count][grid.count], sorted */
+  mcor_buffer keys, order, in_node, in_offset, node, offset; /* of a batch's particles */
+  mcor_buffer moments, slopes;
+  int first, count;  /* sorted particles of the batch */
+  cl_int* particles; /* [grid.count] index on the device, in input order, of sorted particles */
+} mcor_derive_run;
+
+static void mcor_release_derive(mcor_derive_run* run)
+{
+  MCOR_RELEASE(run->context, &run->arrays, &run->keys, &run->order, &run->in_node, &run->in_offset,
+    &run->node, &run->offset, &run->moments, &run->slopes);
+  free(run->particles);
+}
+
+/* ---- arrays ------------------------------------------------------------------------------- */
+
+typedef struct mcor_fix_job
+{
+  const mcor_context* context;
+  const mcor_array* array;
+  const uint8_t* solid; /* whose values play no part */
+  int component;
+  double shift, scale;
+  void* values;
+} mcor_fix_job;
+
+static void mcor_put_fix_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_fix_job* job = data;
+  const int32_t* source = job->context->source;
+  const bool single = job->context->cl.fix_size == sizeof(int32_t);
+  for (int64_t i = first; i < last; ++i)
+  {
+    const double v = job->solid && job->solid[source[i]]
+      ? 0
+      : (mcor_array_at(job->array, source[i], job->component) - job->shift) * job->scale;
+    if (single)
+    {
+      ((int32_t*)job->values)[i] = (int32_t)lrint(v);
+    }
+    else
+    {
+      ((int64_t*)job->values)[i] = (int64_t)llrint(v);
+    }
+  }
+  (void)slice;
+}
+
+/* Component number c of those that vary, as fixed-point numbers, to its row of the arrays. Its scale
+ * is that of the fixed-point numbers from then on. */
+static mcor_status mcor_load_fix(mcor_derive_run* run, mcor_buffer* raw, int c)
+{
+  mcor_context* context = run->context;
+  const int count = context->grid.count;
+  mcor_component* component = &context->attributes.varying[c];
+  /* One bit for the sign, one for differences. */
+  component->scale = ldexp(component->scale, context->cl.fix_size == sizeof(int32_t) ? 29 : 61);
+  mcor_fix_job job = { context, &run->input->attributes[component->attribute], run->input->solid,
+    component->component, component->shift, component->scale, NULL };
+  const size_t bytes = (size_t)count * context->cl.fix_size;
+  MCOR_TRY(mcor_reserve(context, raw, bytes));
+  MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
+  mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_put_fix_slice, &job);
+  MCOR_TRY(mcor_unmap(context, raw, &job.values));
+  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(raw), MCOR_BUFFER(&run->arrays), MCOR_INT(c));
+}
+
+static mcor_status mcor_load_arrays(mcor_derive_run* run)
+{
+  mcor_context* context = run->context;
+  mcor_buffer raw = { 0 };
+  const size_t count = (size_t)context->grid.count;
+  mcor_status status = mcor_reserve(context, &run->arrays,
+    (size_t)context->attributes.varying_count * count * context->cl.fix_size);
+  for (int c = 0; c < context->attributes.varying_count && status == MCOR_OK; ++c)
+  {
+    status = mcor_load_fix(run, &raw, c);
+  }
+  mcor_release(context, &raw);
+  MCOR_TRY(status);
+  run->particles = malloc(count * sizeof(cl_int) + 1);
+  MCOR_RETURN_IF(!run->particles, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  return mcor_read(context, &context->grid.order, 0, run->particles, count * sizeof(cl_int));
+}
+
+/* ---- evaluation --------------------------------------------------------------------------- */
+
+/* Sorts the batch's particles by place and cuts them into groups that are evaluated together. */
+static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
+{
+  mcor_context* context = run->context;
+  const mcor_grid* grid = &context->grid;
+  const int* blocks = context->lattice.blocks;
+  const size_t n = (size_t)run->count, real = context->cl.real_size;
+  const uint64_t bricks = (uint64_t)blocks[0] * (uint64_t)blocks[1] * (uint64_t)blocks[2] * 512;
+  MCOR_TRY(mcor_reserve(context, &run->keys, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &run->in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->in_offset, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &run->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->offset, n * 4 * real));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, run->count, MCOR_INT(run->first),
+    MCOR_INT(run->count), MCOR_INT(context->lattice.fix_bits), MCOR_INT(blocks[0] * 8),
+    MCOR_INT(blocks[1] * 8), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
+    MCOR_BUFFER(&run->keys), MCOR_BUFFER(&run->in_node), MCOR_BUFFER(&run->in_offset)));
+  MCOR_TRY(mcor_sort(context, &run->keys, &run->order, run->count, bricks << 6));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_order", MCOR_LIGHT, run->count, MCOR_INT(run->count),
+    MCOR_BUFFER(&run->order), MCOR_BUFFER(&run->in_node), MCOR_BUFFER(&run->in_offset),
+    MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset)));
+  return mcor_make_groups(context, &run->node, 0, run->count, groups);
+}
+
+/* The inverse of m; false where it would magnify rounding too much. */
+static bool mcor_invert(const double m[3][3], double inverse[3][3])
+{
+  double det = 0, norm = 0, inverse_norm = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int b = 0; b < 3; ++b)
+    {
+      const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+      inverse[b][a] = m[a1][b1] * m[a2][b2] - m[a1][b2] * m[a2][b1];
+      norm += m[a][b] * m[a][b];
+      inverse_norm += inverse[b][a] * inverse[b][a];
+    }
+  }
+  for (int b = 0; b < 3; ++b)
+  {
+    det += m[0][b] * inverse[b][0];
+  }
+  if (!(sqrt(norm) * sqrt(inverse_norm) < MCOR_WORST_CONDITION * fabs(det)))
+  {
+    return false;
+  }
+  for (int i = 0; i < 9; ++i)
+  {
+    inverse[i / 3][i % 3] /= det;
+  }
+  return true;
+}
+
+typedef struct mcor_derive_job
+{
+  const mcor_derive_run* run;
+  const cl_int* order;
+  const void *moments, *slopes;
+} mcor_derive_job;
+
+static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_derive_job* job = data;
+  const mcor_derive_run* run = job->run;
+  const mcor_context* context = run->context;
+  const mcor_attributes* attributes = &context->attributes;
+  const mcor_derivatives* derivatives = run->derivatives;
+  for (int64_t i = first; i < last; ++i)
+  {
+    const int64_t to = context->source[run->particles[run->first + job->order[i]]];
+    double m[3][3], inverse[3][3];
+    for (int k = 0; k < 9; ++k)
+    {
+      m[k / 3][k % 3] = mcor_get_real(context, job->moments, 9 * i + k);
+    }
+    const bool corrected = !run->standard && mcor_invert(m, inverse);
+    if (run->input->solid && run->input->solid[to])
+    {
+      continue;
+    }
+    derivatives->corrected[to] = corrected;
+    for (int c = 0; c < attributes->varying_count; ++c)
+    {
+      const mcor_component* component = &attributes->varying[c];
+      const int width = mcor_components(&run->input->attributes[component->attribute]);
+      double* gradient =
+        derivatives->gradients[component->attribute] + 3 * (to * width + component->component);
+      double slope[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        slope[a] = mcor_get_real(context, job->slopes, 3 * (i * attributes->varying_count + c) + a);
+      }
+      for (int a = 0; a < 3; ++a)
+      {
+        const double g = corrected
+          ? inverse[a][0] * slope[0] + inverse[a][1] * slope[1] + inverse[a][2] * slope[2]
+          : slope[a];
+        gradient[a] = g / component->scale / context->lattice.cube;
+      }
+    }
+  }
+  (void)slice;
+}
+
+static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
+{
+  mcor_context* context = run->context;
+  const size_t n = (size_t)run->count, real = context->cl.real_size;
+  void *order = NULL, *moments = NULL, *slopes = NULL;
+  mcor_status status = mcor_map(context, &run->order, n * sizeof(cl_int), false, &order);
+  if (status == MCOR_OK)
+  {
+    status = mcor_map(context, &run->moments, n * 9 * real, false, &moments);
+  }
+  if (status == MCOR_OK)
+  {
+    status = mcor_map(context, &run->slopes,
+      n * 3 * (size_t)context->attributes.varying_count * real, false, &slopes);
+  }
+  if (status == MCOR_OK)
+  {
+    mcor_derive_job job = { run, order, moments, slopes };
+    mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job);
+  }
+  const mcor_status unmapped[] = { mcor_unmap(context, &run->order, &order),
+    mcor_unmap(context, &run->moments, &moments), mcor_unmap(context, &run->slopes, &slopes) };
+  for (int i = 0; i < 3; ++i)
+  {
+    status = status == MCOR_OK ? unmapped[i] : status;
+  }
+  return status;
+}
+
+static mcor_status mcor_derive_batch(mcor_derive_run* run)
+{
+  mcor_context* context = run->context;
+  const int arrays = context->attributes.varying_count;
+  const size_t n = (size_t)run->count, real = context->cl.real_size;
+  int groups;
+  MCOR_TRY(mcor_place_particles(run, &groups));
+  MCOR_TRY(mcor_reserve(context, &run->moments, n * 9 * real));
+  MCOR_TRY(mcor_reserve(context, &run->slopes, n * 3 * (size_t)arrays * real));
+  for (int array = 0; array < arrays; array += MCOR_ARRAY_STEP)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_gradients", MCOR_HEAVY, groups,
+      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
+      MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset), MCOR_INT(run->first),
+      MCOR_BUFFER(&run->order), MCOR_INT(array), MCOR_INT(arrays), MCOR_INT(context->grid.count),
+      MCOR_BUFFER(&run->arrays), MCOR_BUFFER(&run->moments), MCOR_BUFFER(&run->slopes)));
+  }
+  return mcor_deliver_derivatives(run);
+}
+
+static mcor_status mcor_derive_all(mcor_derive_run* run)
+{
+  mcor_context* context = run->context;
+  const mcor_options* options = context->options;
+  const int particles = context->grid.count;
+  MCOR_TRY(mcor_load_arrays(run));
+  for (run->first = 0; run->first < particles; run->first += run->count)
+  {
+    const int rest = particles - run->first;
+    run->count = rest < MCOR_DERIVE_BATCH ? rest : MCOR_DERIVE_BATCH;
+    MCOR_TRY(mcor_derive_batch(run));
+    const double done = (double)(run->first + run->count) / particles;
+    MCOR_RETURN_IF(options->progress &&
+        options->progress(options->progress_user, 0.2 + 0.8 * done, "derivatives") != 0,
+      context, MCOR_CANCELLED, "The derivatives were cancelled.");
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_make_derivatives(
+  mcor_context* context, const mcor_input* input, mcor_derivatives* d)
+{
+  const size_t n = (size_t)input->count, arrays = (size_t)input->attribute_count;
+  d->count = input->count;
+  d->attribute_count = input->attribute_count;
+  d->gradients = calloc(arrays + 1, sizeof(double*));
+  d->corrected = calloc(n + 1, 1);
+  d->attribute_not_finite = calloc(arrays + 1, sizeof(int64_t));
+  bool complete = d->gradients && d->corrected && d->attribute_not_finite;
+  if (complete)
+  {
+    MCOR_TRY(mcor_list_components(context, input, d->attribute_not_finite));
+  }
+  for (int a = 0; a < input->attribute_count && complete; ++a)
+  {
+    const size_t width = (size_t)mcor_components(&input->attributes[a]);
+    if (d->attribute_not_finite[a] < 0)
+    {
+      d->gradients[a] = calloc(n + 1, 3 * width * sizeof(double));
+      complete = d->gradients[a] != NULL;
+    }
+  }
+  MCOR_RETURN_IF(!complete, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for gradients at %lld particles could not be allocated.", (long long)d->count);
+  return MCOR_OK;
+}
+
+typedef struct mcor_derive_call
+{
+  bool standard, uses_solids;
+  mcor_derivatives* derivatives;
+} mcor_derive_call;
+
+static mcor_status mcor_run_derive(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  const mcor_derive_call* call = data;
+  mcor_free_derivatives(call->derivatives); /* of an attempt before */
+  MCOR_TRY(mcor_check_input(context, input, options));
+  MCOR_TRY(mcor_make_derivatives(context, input, call->derivatives));
+  if (context->attributes.varying_count == 0 || input->count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2));
+  mcor_derive_run run = {
+    .context = context, .input = input, .standard = call->standard, .derivatives = call->derivatives
+  };
+  const mcor_status status = mcor_derive_all(&run);
+  mcor_release_derive(&run);
+  return status;
+}
+
+mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mcor_options* options,
+  mcor_gradient form, mcor_derivatives* derivatives)
+{
+  if (!context || !derivatives)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *derivatives = (mcor_derivatives){ 0 };
+  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
+  MCOR_RETURN_IF((unsigned)form > MCOR_GRADIENT_STANDARD, context, MCOR_INVALID_ARGUMENT,
+    "There is no form number %d of the gradient.", (int)form);
+  mcor_options own = *options;
+  mcor_derive_call call = { form == MCOR_GRADIENT_STANDARD,
+    mcor_evaluate_without_scalar(input, &own), derivatives };
+  const mcor_status status =
+    mcor_run_call(context, input, &own, &derivatives->statistics, mcor_run_derive, &call);
+  if (status != MCOR_OK)
+  {
+    mcor_free_derivatives(derivatives);
+  }
+  return status;
+}
+
+void mcor_free_derivatives(mcor_derivatives* derivatives)
+{
+  if (!derivatives)
+  {
+    return;
+  }
+  for (int a = 0; derivatives->gradients && a < derivatives->attribute_count; ++a)
+  {
+    free(derivatives->gradients[a]);
+  }
+  free(derivatives->gradients);
+  free(derivatives->corrected);
+  free(derivatives->attribute_not_finite);
+  *derivatives = (mcor_derivatives){ 0 };
+}

@@ -1,0 +1,535 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The field at points of the caller's choice: Shepard means or sums of particle arrays, and their
+ * gradients. On the device an array is A' = (A - A0) s, with A0 in the middle of its range, so that
+ * single precision keeps the digits of one with a large offset. */
+
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_stage.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Points that are on the device at a time; between two batches a run may be cancelled. */
+#define MCOR_PROBE_BATCH (1 << 20)
+
+/* Fluid weight below which a mean has no digits, MCOR_LEAST_SUM of mcor_attribute.cl. */
+#define MCOR_LEAST_WEIGHT 1e-30
+
+typedef struct mcor_probe_run
+{
+  mcor_context* context;
+  const mcor_input* input;
+  const mcor_array* points;
+  mcor_samples* samples;
+  bool is_sum;
+  mcor_buffer keys, order, in_node, in_offset, node, offset; /* of a batch's points */
+  mcor_buffer weight, sums, weight_gradient, gradients;
+  int64_t first; /* point of the batch */
+  int count;
+  int group_count;
+  int32_t* index; /* [MCOR_PROBE_BATCH] of the batch's points on the device, from `first` */
+} mcor_probe_run;
+
+static void mcor_release_probe(mcor_probe_run* run)
+{
+  MCOR_RELEASE(run->context, &run->keys, &run->order, &run->in_node, &run->in_offset, &run->node,
+    &run->offset, &run->weight, &run->sums, &run->weight_gradient, &run->gradients);
+  free(run->index);
+}
+
+/* ---- points ------------------------------------------------------------------------------- */
+
+/* Whether point i of the caller's is where particles may reach it; then its node and offset. */
+static bool mcor_locate_point(
+  const mcor_probe_run* run, int64_t i, int64_t node[3], double offset[3])
+{
+  const mcor_lattice* lattice = &run->context->lattice;
+  mcor_array points = *run->points;
+  points.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double x = mcor_array_at(&points, i, a) / lattice->cube - (double)lattice->origin[a];
+    if (!(x >= (double)lattice->first[a] && x <= (double)lattice->last[a]))
+    {
+      return false;
+    }
+    node[a] = (int64_t)x;
+    offset[a] = x - (double)node[a];
+  }
+  return true;
+}
+
+/* Points of one brick follow each other, and in a brick those of one cell. */
+static uint64_t mcor_point_key(const mcor_lattice* lattice, const int64_t node[3])
+{
+  const uint64_t nx = (uint64_t)lattice->blocks[0] * 8, ny = (uint64_t)lattice->blocks[1] * 8;
+  const uint64_t brick =
+    ((uint64_t)(node[2] >> 2) * ny + (uint64_t)(node[1] >> 2)) * nx + (uint64_t)(node[0] >> 2);
+  return brick << 6 | (uint64_t)((node[2] & 3) << 4 | (node[1] & 3) << 2 | (node[0] & 3));
+}
+
+/* The views of a batch's points on their way to the device. */
+typedef struct mcor_point_views
+{
+  void *keys, *node, *offset;
+} mcor_point_views;
+
+static void mcor_put_points(mcor_probe_run* run, int64_t first, int64_t last, mcor_point_views* v)
+{
+  const mcor_lattice* lattice = &run->context->lattice;
+  const bool single = run->context->cl.real_size == sizeof(float);
+  int n = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    int64_t node[3];
+    double offset[3];
+    if (!mcor_locate_point(run, i, node, offset))
+    {
+      continue;
+    }
+    ((cl_ulong*)v->keys)[n] = mcor_point_key(lattice, node);
+    for (int a = 0; a < 3; ++a)
+    {
+      ((cl_int*)v->node)[4 * n + a] = (cl_int)node[a];
+      if (single)
+      {
+        ((float*)v->offset)[4 * n + a] = (float)offset[a];
+      }
+      else
+      {
+        ((double*)v->offset)[4 * n + a] = offset[a];
+      }
+    }
+    run->index[n++] = (int32_t)(i - first);
+  }
+  run->count = n;
+}
+
+/* Takes the caller's points [first, last) that particles may reach to the device. */
+static mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
+{
+  mcor_context* context = run->context;
+  const size_t n = (size_t)(last - first), real = context->cl.real_size;
+  mcor_point_views views = { 0 };
+  MCOR_TRY(mcor_reserve(context, &run->keys, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &run->in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->in_offset, n * 4 * real));
+  MCOR_TRY(mcor_map(context, &run->keys, n * sizeof(cl_ulong), true, &views.keys));
+  mcor_status status = mcor_map(context, &run->in_node, n * 4 * sizeof(cl_int), true, &views.node);
+  if (status == MCOR_OK)
+  {
+    status = mcor_map(context, &run->in_offset, n * 4 * real, true, &views.offset);
+  }
+  run->first = first;
+  if (status == MCOR_OK)
+  {
+    mcor_put_points(run, first, last, &views);
+  }
+  const mcor_status unmapped[] = { mcor_unmap(context, &run->keys, &views.keys),
+    mcor_unmap(context, &run->in_node, &views.node),
+    mcor_unmap(context, &run->in_offset, &views.offset) };
+  for (int i = 0; i < 3; ++i)
+  {
+    status = status == MCOR_OK ? unmapped[i] : status;
+  }
+  return status;
+}
+
+/* Sorts the batch's points and cuts them into groups that are evaluated together. */
+static mcor_status mcor_group_points(mcor_probe_run* run)
+{
+  mcor_context* context = run->context;
+  const mcor_lattice* lattice = &context->lattice;
+  const int64_t top[3] = { (int64_t)lattice->blocks[0] * 32 - 1,
+    (int64_t)lattice->blocks[1] * 32 - 1, (int64_t)lattice->blocks[2] * 32 - 1 };
+  const size_t n = (size_t)run->count;
+  MCOR_TRY(
+    mcor_sort(context, &run->keys, &run->order, run->count, mcor_point_key(lattice, top) + 1));
+  MCOR_TRY(mcor_reserve(context, &run->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->offset, n * 4 * context->cl.real_size));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_order", MCOR_LIGHT, run->count, MCOR_INT(run->count),
+    MCOR_BUFFER(&run->order), MCOR_BUFFER(&run->in_node), MCOR_BUFFER(&run->in_offset),
+    MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset)));
+  return mcor_make_groups(context, &run->node, 0, run->count, &run->group_count);
+}
+
+/* ---- arrays ------------------------------------------------------------------------------- */
+
+/* Least and greatest value of a component, of fluid particles. */
+typedef struct mcor_range_job
+{
+  const mcor_array* array;
+  const uint8_t* solid;
+  int component;
+  double low[MCOR_SLICES], high[MCOR_SLICES];
+} mcor_range_job;
+
+static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_range_job* job = data;
+  double low = DBL_MAX, high = -DBL_MAX;
+  for (int64_t i = first; i < last; ++i)
+  {
+    if (job->solid && job->solid[i])
+    {
+      continue;
+    }
+    const double v = mcor_array_at(job->array, i, job->component);
+    low = v < low ? v : low;
+    high = v > high ? v : high;
+  }
+  job->low[slice] = low;
+  job->high[slice] = high;
+}
+
+static mcor_component mcor_scale_component(const mcor_input* input, int attribute, int component)
+{
+  mcor_range_job job = {
+    .array = &input->attributes[attribute], .solid = input->solid, .component = component
+  };
+  const int slices = mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_range_slice, &job);
+  double low = job.low[0], high = job.high[0];
+  for (int s = 1; s < slices; ++s)
+  {
+    low = job.low[s] < low ? job.low[s] : low;
+    high = job.high[s] > high ? job.high[s] : high;
+  }
+  const double half = 0.5 * high - 0.5 * low;
+  int exponent = 0;
+  frexp(half, &exponent);
+  return (mcor_component){ .attribute = attribute,
+    .component = component,
+    .shift = 0.5 * high + 0.5 * low,
+    .scale = half > 0 ? ldexp(1, exponent > -1000 ? -exponent : 1000) : 1 };
+}
+
+/* Finds the attributes to leave out, and of the others all components, with the shift and scale that
+ * bring them to [-1, 1]. not_finite: [attribute_count], as in mcor_samples. */
+mcor_status mcor_list_components(
+  mcor_context* context, const mcor_input* input, int64_t* not_finite)
+{
+  mcor_attributes* attributes = &context->attributes;
+  size_t most = 1;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    most += (size_t)mcor_components(&input->attributes[a]);
+  }
+  free(attributes->varying);
+  attributes->varying_count = attributes->count = 0;
+  attributes->varying = malloc(most * sizeof *attributes->varying);
+  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const mcor_array* array = &input->attributes[a];
+    not_finite[a] = mcor_find_not_finite(array, input->solid, input->count);
+    for (int c = 0; c < mcor_components(array) && not_finite[a] < 0; ++c)
+    {
+      attributes->varying[attributes->varying_count++] = mcor_scale_component(input, a, c);
+    }
+  }
+  return MCOR_OK;
+}
+
+/* ---- evaluation --------------------------------------------------------------------------- */
+
+/* What the device made of a batch. */
+typedef struct mcor_probe_views
+{
+  void *order, *weight, *sums, *weight_gradient, *gradients;
+} mcor_probe_views;
+
+typedef struct mcor_probe_job
+{
+  const mcor_probe_run* run;
+  mcor_probe_views views;
+  double threshold;
+} mcor_probe_job;
+
+/* Component c of those on the device at point i of the batch, which is the caller's point `to`. */
+static void mcor_put_sample(const mcor_probe_job* job, int64_t i, int c, double weight, int64_t to)
+{
+  const mcor_context* context = job->run->context;
+  const mcor_attributes* attributes = &context->attributes;
+  const mcor_component* component = &attributes->varying[attributes->first + c];
+  const mcor_samples* samples = job->run->samples;
+  const int width = mcor_components(&job->run->input->attributes[component->attribute]);
+  const int64_t at = i * attributes->count + c, element = to * width + component->component;
+  const bool is_sum = job->run->is_sum;
+  const double sum = mcor_get_real(context, job->views.sums, at);
+  const double mean = sum / weight;
+  samples->values[component->attribute][element] = is_sum
+    ? sum / component->scale + component->shift * weight
+    : mean / component->scale + component->shift;
+  for (int a = 0; a < 3 && samples->gradients; ++a)
+  {
+    const double slope = mcor_get_real(context, job->views.gradients, 3 * at + a);
+    const double weight_slope = mcor_get_real(context, job->views.weight_gradient, 3 * i + a);
+    samples->gradients[component->attribute][3 * element + a] =
+      (is_sum ? slope / component->scale + component->shift * weight_slope
+              : (slope - mean * weight_slope) / weight / component->scale) /
+      context->lattice.cube;
+  }
+}
+
+static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_probe_job* job = data;
+  const mcor_probe_run* run = job->run;
+  const mcor_context* context = run->context;
+  const cl_int* order = job->views.order;
+  for (int64_t i = first; i < last; ++i)
+  {
+    const int64_t to = run->first + run->index[order[i]];
+    const double weight = mcor_get_real(context, job->views.weight, i);
+    const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
+    run->samples->weight_sum[to] = weight;
+    run->samples->valid[to] = valid;
+    for (int a = 0; a < 3 && run->samples->weight_gradient; ++a)
+    {
+      run->samples->weight_gradient[3 * to + a] =
+        mcor_get_real(context, job->views.weight_gradient, 3 * i + a) / context->lattice.cube;
+    }
+    for (int c = 0; c < context->attributes.count && valid; ++c)
+    {
+      mcor_put_sample(job, i, c, weight, to);
+    }
+  }
+  (void)slice;
+}
+
+static mcor_status mcor_deliver_samples(mcor_probe_run* run)
+{
+  mcor_context* context = run->context;
+  const size_t n = (size_t)run->count, real = context->cl.real_size,
+               arrays = (size_t)context->attributes.count;
+  mcor_probe_job job = { .run = run, .threshold = context->options->node_threshold };
+  struct
+  {
+    const mcor_buffer* buffer;
+    size_t bytes;
+    void** view;
+  } const views[] = { { &run->order, n * sizeof(cl_int), &job.views.order },
+    { &run->weight, n * real, &job.views.weight },
+    { &run->sums, n * arrays * real, &job.views.sums },
+    { &run->weight_gradient, n * 3 * real, &job.views.weight_gradient },
+    { &run->gradients, n * 3 * arrays * real, &job.views.gradients } };
+  const int count = run->samples->weight_gradient ? 5 : 3;
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < count && status == MCOR_OK; ++i)
+  {
+    status = mcor_map(context, views[i].buffer, views[i].bytes, false, views[i].view);
+  }
+  if (status == MCOR_OK)
+  {
+    mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_samples, &job);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const mcor_status unmapped = mcor_unmap(context, views[i].buffer, views[i].view);
+    status = status == MCOR_OK ? unmapped : status;
+  }
+  return status;
+}
+
+/* The arrays on the device, at the points [first, last). */
+static mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
+{
+  mcor_context* context = run->context;
+  MCOR_TRY(mcor_upload_points(run, first, last));
+  if (run->count == 0)
+  {
+    return MCOR_OK;
+  }
+  const size_t n = (size_t)run->count, real = context->cl.real_size,
+               arrays = (size_t)context->attributes.count;
+  MCOR_TRY(mcor_group_points(run));
+  MCOR_TRY(mcor_reserve(context, &run->weight, n * real));
+  MCOR_TRY(mcor_reserve(context, &run->sums, n * arrays * real));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, run->group_count,
+    MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
+    MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset), MCOR_BUFFER(&run->weight),
+    MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
+  if (run->samples->weight_gradient)
+  {
+    MCOR_TRY(mcor_reserve(context, &run->weight_gradient, n * 3 * real));
+    MCOR_TRY(mcor_reserve(context, &run->gradients, n * 3 * arrays * real));
+    for (int array = 0; array == 0 || array < context->attributes.count; array += MCOR_ARRAY_STEP)
+    {
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_gradients", MCOR_HEAVY, run->group_count,
+        MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
+        MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset), MCOR_INT(array),
+        MCOR_BUFFER(&run->weight_gradient), MCOR_ATTRIBUTE_ARGS(context, &run->gradients)));
+    }
+  }
+  return mcor_deliver_samples(run);
+}
+
+/* All arrays, some at a time, at all points, some at a time. */
+static mcor_status mcor_probe_all(mcor_probe_run* run)
+{
+  mcor_context* context = run->context;
+  const mcor_options* options = context->options;
+  const int64_t points = run->samples->count;
+  const int arrays = context->attributes.varying_count;
+  const double rounds = ceil(fmax(arrays, 1) / MCOR_ATTRIBUTE_LIMIT);
+  run->index = malloc(MCOR_PROBE_BATCH * sizeof *run->index);
+  MCOR_RETURN_IF(!run->index, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  double done = 0;
+  for (int array = 0; array == 0 || array < arrays; array += MCOR_ATTRIBUTE_LIMIT)
+  {
+    MCOR_TRY(mcor_load_attributes(context, run->input, array));
+    for (int64_t first = 0; first < points; first += MCOR_PROBE_BATCH)
+    {
+      const int64_t rest = points - first,
+                    count = rest < MCOR_PROBE_BATCH ? rest : MCOR_PROBE_BATCH;
+      MCOR_TRY(mcor_probe_batch(run, first, first + count));
+      done += (double)count / (double)points / rounds;
+      MCOR_RETURN_IF(options->progress &&
+          options->progress(options->progress_user, 0.2 + 0.8 * done, "probe") != 0,
+        context, MCOR_CANCELLED, "The probe was cancelled.");
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Zeros; not NULL where there are none. */
+static void* mcor_zeros(size_t count, size_t size)
+{
+  return calloc(count + 1, size);
+}
+
+/* Room for the results. Points that no particle reaches keep the zeros. */
+static mcor_status mcor_make_samples(
+  mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
+{
+  const size_t n = (size_t)s->count;
+  s->weight_sum = mcor_zeros(n, sizeof(double));
+  s->valid = mcor_zeros(n, 1);
+  s->weight_gradient = gradients ? mcor_zeros(n, 3 * sizeof(double)) : NULL;
+  bool complete = s->weight_sum && s->valid && (s->weight_gradient || !gradients);
+  for (int a = 0; a < input->attribute_count && complete; ++a)
+  {
+    if (s->attribute_not_finite[a] >= 0)
+    {
+      continue;
+    }
+    const size_t width = (size_t)mcor_components(&input->attributes[a]);
+    s->values[a] = mcor_zeros(n, width * sizeof(double));
+    complete = s->values[a] != NULL;
+    if (gradients && complete)
+    {
+      s->gradients[a] = mcor_zeros(n, 3 * width * sizeof(double));
+      complete = s->gradients[a] != NULL;
+    }
+  }
+  MCOR_RETURN_IF(!complete, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld points could not be allocated.", (long long)s->count);
+  return MCOR_OK;
+}
+
+/* The tables of the attributes. */
+static mcor_status mcor_make_tables(
+  mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
+{
+  const size_t arrays = (size_t)input->attribute_count;
+  s->values = mcor_zeros(arrays, sizeof(double*));
+  s->gradients = gradients ? mcor_zeros(arrays, sizeof(double*)) : NULL;
+  s->attribute_not_finite = mcor_zeros(arrays, sizeof(int64_t));
+  s->attribute_count = input->attribute_count;
+  MCOR_RETURN_IF(!s->values || (gradients && !s->gradients) || !s->attribute_not_finite, context,
+    MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  return mcor_list_components(context, input, s->attribute_not_finite);
+}
+
+typedef struct mcor_probe_call
+{
+  const mcor_array* points;
+  int64_t count;
+  bool is_sum, uses_solids;
+  mcor_samples* samples;
+} mcor_probe_call;
+
+static mcor_status mcor_run_probe(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  const mcor_probe_call* call = data;
+  mcor_samples* samples = call->samples;
+  const bool gradients = options->gradients;
+  mcor_free_samples(samples); /* of an attempt before */
+  samples->count = call->count;
+  MCOR_TRY(mcor_check_input(context, input, options));
+  MCOR_TRY(mcor_make_tables(context, input, gradients, samples));
+  MCOR_TRY(mcor_make_samples(context, input, gradients, samples));
+  if (input->count == 0 || call->count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2));
+  mcor_probe_run run = { .context = context,
+    .input = input,
+    .points = call->points,
+    .samples = samples,
+    .is_sum = call->is_sum };
+  const mcor_status status = mcor_probe_all(&run);
+  mcor_release_probe(&run);
+  mcor_release(context, &context->attributes.sorted);
+  return status;
+}
+
+/* What evaluates arrays, but no scalar, runs as for the free surface: without solids, but where these
+ * count in computed volumes. Sets the options; returns whether solids are used. */
+bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
+{
+  const bool uses_solids =
+    options->field != MCOR_WEIGHT_SUM && !input->ignore_solids && mcor_needs_density(input);
+  options->field = MCOR_WEIGHT_SUM;
+  options->iso_count = 0;
+  return uses_solids;
+}
+
+mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mcor_options* options,
+  const mcor_array* points, int64_t count, mcor_samples* samples)
+{
+  if (!context || !samples)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *samples = (mcor_samples){ 0 };
+  MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
+    context, MCOR_INVALID_ARGUMENT, "Input, options or points are missing.");
+  mcor_options own = *options;
+  mcor_probe_call call = { points, count, options->field == MCOR_SUM,
+    mcor_evaluate_without_scalar(input, &own), samples };
+  const mcor_status status =
+    mcor_run_call(context, input, &own, &samples->statistics, mcor_run_probe, &call);
+  if (status != MCOR_OK)
+  {
+    mcor_free_samples(samples);
+  }
+  return status;
+}
+
+void mcor_free_samples(mcor_samples* samples)
+{
+  if (!samples)
+  {
+    return;
+  }
+  for (int a = 0; a < samples->attribute_count; ++a)
+  {
+    free(samples->values ? samples->values[a] : NULL);
+    free(samples->gradients ? samples->gradients[a] : NULL);
+  }
+  free(samples->values);
+  free(samples->gradients);
+  free(samples->attribute_not_finite);
+  free(samples->weight_sum);
+  free(samples->weight_gradient);
+  free(samples->valid);
+  *samples = (mcor_samples){ 0 };
+}

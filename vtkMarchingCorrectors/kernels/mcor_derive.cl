@@ -1,0 +1,145 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* SPH gradients of particle arrays at the particles themselves.
+ *
+ * Arrays are fixed-point numbers, so that a difference of two values is exact as that of two
+ * positions is: a linear array then has an exact gradient up to the rounding of the sums. */
+
+/* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset,
+ * and a key by which particles of a cell, and cells of a brick, follow each other. */
+__kernel void mcor_derive_place(const int first, const int count, const int fix_bits,
+  const int bricks_x, const int bricks_y, __global const fix* px, __global const fix* py,
+  __global const fix* pz, __global ulong* keys, __global int4* node, __global real4* offset)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const fix x = px[first + i], y = py[first + i], z = pz[first + i];
+  const fix mask = ((fix)1 << fix_bits) - 1;
+  const real unit = ldexp((real)1, -fix_bits);
+  const int4 n = (int4)((int)(x >> fix_bits), (int)(y >> fix_bits), (int)(z >> fix_bits), 0);
+  const ulong brick = ((ulong)(n.z >> 2) * bricks_y + (n.y >> 2)) * bricks_x + (n.x >> 2);
+  keys[i] = brick << 6 | (ulong)((n.z & 3) << 4 | (n.y & 3) << 2 | (n.x & 3));
+  node[i] = n;
+  offset[i] =
+    (real4)((real)(x & mask) * unit, (real)(y & mask) * unit, (real)(z & mask) * unit, 0);
+}
+
+/* Sums over the neighbours of the particles i in the lanes; per cube. */
+typedef struct
+{
+  realv moments[3][3];              /* sum V_j grad_a W_ij (x_j - x_i)_b */
+  realv slopes[MCOR_ARRAY_STEP][3]; /* sum V_j (A_j - A_i) grad_a W_ij, of up to as many A */
+} mcor_derive_sums;
+
+/* Adds the particles of a reach. values: A_j, own: A_i, both fixed-point. */
+void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
+  const mcor_values* values, const fixv own[MCOR_ARRAY_STEP], mcor_derive_sums* sums)
+{
+  realv d[3], along[3], slope;
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  {
+    mcor_points_from(
+      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+    const mcor_length length = mcor_length_of(d);
+    mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+    const realv m = MCOR_REACH(reach, weight, i) * slope;
+    const realv g[3] = { m * along[0], m * along[1], m * along[2] };
+    for (int a = 0; a < 3; ++a)
+    {
+      for (int b = 0; b < 3; ++b)
+      {
+        sums->moments[a][b] = MCOR_FMA(-g[a], d[b], sums->moments[a][b]);
+      }
+    }
+    for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+    {
+      const realv value = MCOR_VALUE_OF(values, reach, c, i);
+      const realv change = MCOR_CONVERT_REALV(MCOR_AS_FIXV(value) - own[c]);
+      for (int a = 0; a < 3; ++a)
+      {
+        sums->slopes[c][a] = MCOR_FMA(g[a], change, sums->slopes[c][a]);
+      }
+    }
+  }
+}
+
+/* The particles' own values of an array. */
+fixv mcor_derive_own(
+  const mcor_points* points, __global const int* order, __global const real* array)
+{
+  fix own[MCOR_LANES];
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    own[lane] = points->index[lane] < 0
+      ? 0
+      : MCOR_CAT(as_, MCOR_FIX_NAME)(array[order[points->index[lane]]]);
+  }
+#if MCOR_LANES == 1
+  return own[0];
+#else
+  return MCOR_CAT(vload, MCOR_LANES)(0, own);
+#endif
+}
+
+/* One work-item = one group of particles, of those from `first` on in `order`. Reads arrays of
+ * fixed-point numbers, `stride` long each, from number `first_array` on. Writes the sums of up to
+ * MCOR_ARRAY_STEP of them. */
+__kernel void mcor_derive_gradients(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, __global const real4* offset,
+  const int first, __global const int* order, const int first_array, const int array_count,
+  const int stride, __global const real* arrays, __global real* moments, __global real* slopes)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int count = min(array_count - first_array, MCOR_ARRAY_STEP);
+  mcor_points points;
+  mcor_query query;
+  mcor_reach reach;
+  mcor_derive_sums sums;
+  mcor_values values;
+  realv at[3];
+  fixv own[MCOR_ARRAY_STEP];
+  __global const real* array[MCOR_ARRAY_STEP];
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
+  mcor_points_relative(&grid, &query, &points, at);
+  for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+  {
+    /* Beyond the last array, the first one again. */
+    array[c] = arrays + (first_array + (c < count ? c : 0)) * (long)stride;
+    own[c] = mcor_derive_own(&points, order, array[c] + first);
+    for (int a = 0; a < 3; ++a)
+    {
+      sums.slopes[c][a] = 0;
+      sums.moments[a][0] = sums.moments[a][1] = sums.moments[a][2] = 0;
+    }
+  }
+  mcor_tile_init(&reach.tile);
+  for (bool begin = true; mcor_reach_next(&grid, &query, &points, 0, &reach, begin); begin = false)
+  {
+    mcor_values_load(&reach, array, &values);
+    mcor_derive_add(&reach, &points, at, &values, own, &sums);
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const long v = points.index[lane];
+    for (int a = 0; a < 3 && v >= 0; ++a)
+    {
+      for (int b = 0; b < 3; ++b)
+      {
+        moments[9 * v + 3 * a + b] = MCOR_GET(sums.moments[a][b], lane);
+      }
+      for (int c = 0; c < count; ++c)
+      {
+        slopes[(v * array_count + first_array + c) * 3 + a] = MCOR_GET(sums.slopes[c][a], lane);
+      }
+    }
+  }
+}

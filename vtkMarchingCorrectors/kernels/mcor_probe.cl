@@ -1,0 +1,144 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The field at points of the caller's choice: weight sums, means or sums of particle arrays, and
+ * their gradients. Every sum goes through its particles in the order of the search grid, so that a
+ * point's bits do not depend on the other points. */
+
+/* One work-item = one point of the sorted order. Reads the points in input order. Writes them as
+ * node and offset in sorted order. */
+__kernel void mcor_probe_order(const int count, __global const int* order,
+  __global const int4* node, __global const real4* offset, __global int4* sorted_node,
+  __global real4* sorted_offset)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    sorted_node[i] = node[order[i]];
+    sorted_offset[i] = offset[order[i]];
+  }
+}
+
+/* One work-item = one group of points. Writes their weight sums, and the sums of weight times array
+ * over the particles. */
+__kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
+  __global const int4* node, __global const real4* offset, __global real* weight_sum,
+  MCOR_ATTRIBUTE_PARAMS)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  mcor_reach reach;
+  realv sums[MCOR_ATTRIBUTE_LIMIT], w;
+  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c)
+  {
+    sums[c] = 0;
+  }
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
+  mcor_tile_init(&reach.tile);
+  mcor_attribute_sums(
+    &grid, &query, &points, 0, &reach, false, attribute_count, stride, attributes, sums, &w);
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const long v = points.index[lane];
+    for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
+    {
+      if (c < attribute_count && v >= 0)
+      {
+        means[v * attribute_count + c] = MCOR_GET(sums[c], lane);
+      }
+    }
+    if (v >= 0)
+    {
+      weight_sum[v] = MCOR_GET(w, lane);
+    }
+  }
+}
+
+/* Gradients, per cube, of the weight sum and of sums of up to MCOR_ARRAY_STEP arrays. */
+typedef struct
+{
+  realv weight[3], sums[MCOR_ARRAY_STEP][3];
+} mcor_probe_slopes;
+
+/* Adds those of the particles of a reach. at: of mcor_points_relative. */
+void mcor_probe_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
+  const mcor_values* values, mcor_probe_slopes* slopes)
+{
+  realv d[3], along[3], slope;
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  {
+    mcor_points_from(
+      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+    const mcor_length length = mcor_length_of(d);
+    mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+    const realv m = MCOR_REACH(reach, weight, i) * slope;
+    for (int a = 0; a < 3; ++a)
+    {
+      const realv g = m * along[a];
+      slopes->weight[a] += g;
+      for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+      {
+        const realv value = MCOR_VALUE_OF(values, reach, c, i);
+        slopes->sums[c][a] = MCOR_FMA(g, value, slopes->sums[c][a]);
+      }
+    }
+  }
+}
+
+/* One work-item = one group of points. Reads arrays from number `first_array` on. Writes the
+ * gradients, per cube, of the weight sums and of the sums of weight times array, of up to
+ * MCOR_ARRAY_STEP arrays. */
+__kernel void mcor_probe_gradients(MCOR_GRID_PARAMS, const int group_count,
+  __global const int* groups, __global const int4* node, __global const real4* offset,
+  const int first_array, __global real* weight_gradient, const int attribute_count,
+  const int stride, __global const real* attributes, __global real* gradients)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const int count = min(attribute_count - first_array, MCOR_ARRAY_STEP);
+  __global const real* arrays[MCOR_ARRAY_STEP];
+  mcor_points points;
+  mcor_query query;
+  mcor_reach reach;
+  mcor_values values;
+  mcor_probe_slopes slopes;
+  realv at[3];
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
+  mcor_points_relative(&grid, &query, &points, at);
+  for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
+  {
+    /* Beyond the last array, the weights: any finite values do. */
+    arrays[c] = c < count ? attributes + (first_array + c) * (long)stride : p_weight;
+    slopes.sums[c][0] = slopes.sums[c][1] = slopes.sums[c][2] = 0;
+  }
+  slopes.weight[0] = slopes.weight[1] = slopes.weight[2] = 0;
+  mcor_tile_init(&reach.tile);
+  for (bool first = true; mcor_reach_next(&grid, &query, &points, 0, &reach, first); first = false)
+  {
+    mcor_values_load(&reach, arrays, &values);
+    mcor_probe_add(&reach, &points, at, &values, &slopes);
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const long v = points.index[lane];
+    for (int a = 0; a < 3 && v >= 0; ++a)
+    {
+      weight_gradient[3 * v + a] = MCOR_GET(slopes.weight[a], lane);
+      for (int c = 0; c < count; ++c)
+      {
+        gradients[(v * attribute_count + first_array + c) * 3 + a] =
+          MCOR_GET(slopes.sums[c][a], lane);
+      }
+    }
+  }
+}

@@ -310,22 +310,23 @@ static int mark_of(const int block_of[27], const int at[3])
 }
 
 /* Whether a brick is to be evaluated: not certain, or certain of another side than one beside it. */
-static int is_asked(const int block_of[27], const uint8_t* states, const int at[3])
+static int is_requested(const int block_of[27], const uint8_t* states, const int at[3])
 {
   const int own = states[mark_of(block_of, at)];
-  int asked = own == MCOR_EXAMINE;
+  int requested = own == MCOR_EXAMINE;
   for (int d = 0; d < 27; ++d)
   {
     const int beside[3] = { at[0] + d % 3 - 1, at[1] + d / 3 % 3 - 1, at[2] + d / 9 - 1 };
     const int m = mark_of(block_of, beside), other = m < 0 ? MCOR_VOID : states[m];
-    asked = asked || (own == MCOR_ABOVE && other == MCOR_BELOW) ||
+    requested = requested || (own == MCOR_ABOVE && other == MCOR_BELOW) ||
       (own == MCOR_BELOW && other == MCOR_ABOVE);
   }
-  return asked;
+  return requested;
 }
 
-/* Launches mcor_seed_ask on states, and compares with the above. */
-static void check_ask(mcor_context* context, const int block_of[27], int blocks, uint8_t* states)
+/* Launches mcor_seed_request on states, and compares with the above. */
+static void check_request(
+  mcor_context* context, const int block_of[27], int blocks, uint8_t* states)
 {
   mcor_bricks* bricks = &context->bricks;
   const size_t words = (size_t)blocks * MCOR_BLOCK_WORDS;
@@ -335,24 +336,24 @@ static void check_ask(mcor_context* context, const int block_of[27], int blocks,
   CORE_OK(context, mcor_write(context, &bricks->states, states, (size_t)blocks * 512));
   CORE_OK(context, mcor_fill(context, &bricks->bits, 0, words * sizeof *bits));
   CORE_OK(context,
-    MCOR_LAUNCH(context, "mcor_seed_ask", MCOR_LIGHT, blocks * 64, MCOR_BLOCK_ARGS(context),
+    MCOR_LAUNCH(context, "mcor_seed_request", MCOR_LIGHT, blocks * 64, MCOR_BLOCK_ARGS(context),
       MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   CORE_OK(context, mcor_read(context, &bricks->bits, 0, bits, words * sizeof *bits));
   for (int b = 0; b < BRICKS * BRICKS * BRICKS; ++b)
   {
     const int at[3] = { b % BRICKS, b / BRICKS % BRICKS, b / BRICKS / BRICKS };
     const int m = mark_of(block_of, at);
-    const int asked = m >= 0 && (bits[m / 32] >> m % 32 & 1);
-    CORE_CHECK(m < 0 || asked == is_asked(block_of, states, at),
-      "brick %d %d %d of state %d is %sasked for", at[0], at[1], at[2], states[m],
-      asked ? "" : "not ");
+    const int requested = m >= 0 && (bits[m / 32] >> m % 32 & 1);
+    CORE_CHECK(m < 0 || requested == is_requested(block_of, states, at),
+      "brick %d %d %d of state %d is %srequested", at[0], at[1], at[2], states[m],
+      requested ? "" : "not ");
   }
   free(bits);
 }
 
 /* Every pair of neighbours of unlike sides, within blocks and across their faces, edges and corners;
  * then states at random. */
-static void test_ask(void** state)
+static void test_request(void** state)
 {
   mcor_context* context = NULL;
   assert_int_equal(mcor_create_context(NULL, &context), MCOR_OK);
@@ -397,7 +398,7 @@ static void test_ask(void** state)
         states[other] = (uint8_t)(round < 27 ? MCOR_BELOW : MCOR_ABOVE);
       }
     }
-    check_ask(context, block_of, blocks, states);
+    check_request(context, block_of, blocks, states);
   }
   free(states);
   mcor_free_context(context);
@@ -406,7 +407,8 @@ static void test_ask(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_ask), cmocka_unit_test(test_complete),
-    cmocka_unit_test(test_line), cmocka_unit_test(test_pairs), cmocka_unit_test(test_modes_agree) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_request),
+    cmocka_unit_test(test_complete), cmocka_unit_test(test_line), cmocka_unit_test(test_pairs),
+    cmocka_unit_test(test_modes_agree) };
   return cmocka_run_group_tests_name("seed", tests, core_set_up, core_tear_down);
 }

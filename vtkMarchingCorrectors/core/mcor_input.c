@@ -39,14 +39,15 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
 
 /* The bits of absolute values are in the order of the values; compilers vectorise their maximum
  * where they know the stride. */
-static inline double mcor_largest_float(const float* data, int64_t count, int64_t stride)
+static inline double mcor_largest_float(
+  const float* data, const uint8_t* solid, int64_t count, int64_t stride)
 {
   int32_t most = 0;
   for (int64_t i = 0; i < count; ++i)
   {
     int32_t bits;
     memcpy(&bits, data + i * stride, sizeof bits);
-    bits &= INT32_MAX;
+    bits = solid && solid[i] ? 0 : bits & INT32_MAX;
     most = bits > most ? bits : most;
   }
   float value;
@@ -54,14 +55,15 @@ static inline double mcor_largest_float(const float* data, int64_t count, int64_
   return (double)value;
 }
 
-static inline double mcor_largest_double(const double* data, int64_t count, int64_t stride)
+static inline double mcor_largest_double(
+  const double* data, const uint8_t* solid, int64_t count, int64_t stride)
 {
   int64_t most = 0;
   for (int64_t i = 0; i < count; ++i)
   {
     int64_t bits;
     memcpy(&bits, data + i * stride, sizeof bits);
-    bits &= INT64_MAX;
+    bits = solid && solid[i] ? 0 : bits & INT64_MAX;
     most = bits > most ? bits : most;
   }
   double value;
@@ -84,25 +86,13 @@ static void mcor_find_largest(void* data, int slice, int64_t first, int64_t last
   const mcor_array* array = survey->array;
   const int64_t stride = mcor_components(array), at = first * stride + survey->component;
   const int64_t count = last - first;
-  double largest = 0;
-  if (survey->solid)
-  {
-    for (int64_t i = first; i < last; ++i)
-    {
-      const double x = survey->solid[i] ? 0 : fabs(mcor_array_at(array, i, survey->component));
-      largest = x > largest ? x : largest;
-    }
-  }
-  else if (array->type == MCOR_FLOAT64)
-  {
-    largest = mcor_largest_double((const double*)array->data + at, count, stride);
-  }
-  else
-  {
-    largest = stride == 1 ? mcor_largest_float((const float*)array->data + at, count, 1)
-                          : mcor_largest_float((const float*)array->data + at, count, stride);
-  }
-  survey->largest[slice] = largest;
+  const uint8_t* solid = survey->solid ? survey->solid + first : NULL;
+  const float* floats = array->data;
+  const double* doubles = array->data;
+  survey->largest[slice] = array->type == MCOR_FLOAT64
+    ? mcor_largest_double(doubles + at, solid, count, stride)
+    : stride == 1 && !solid ? mcor_largest_float(floats + at, NULL, count, 1)
+                            : mcor_largest_float(floats + at, solid, count, stride);
 }
 
 double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count, int component)
@@ -207,10 +197,14 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
   for (int c = 0; c < components; ++c)
   {
     mcor_read_array(a, first, count, c, x);
-    mcor_read_array(b, first, count, c, y);
+    if (b != a)
+    {
+      mcor_read_array(b, first, count, c, y);
+    }
+    const double* other = b != a ? y : x;
     for (int i = 0; i < count; ++i)
     {
-      out[i] += x[i] * y[i];
+      out[i] += x[i] * other[i];
     }
   }
   const bool magnitude = !input->scalar_dot.data;

@@ -101,8 +101,9 @@ typedef struct mcor_arg
     .kind = MCOR_ARG_REAL, .real = (r)                                                             \
   }
 
-/* How much one work-item does: a light one is a few operations, a heavy one a field evaluation, for
- * which a CPU gets a work-group each. */
+/* How much one work-item does: a light one is a few operations on one of many elements, a heavy one
+ * a field evaluation, a brick or a batch. A CPU gets a work-group for each heavy one: its compiler
+ * is done sooner where there is no loop over the group. */
 typedef enum mcor_load
 {
   MCOR_LIGHT,

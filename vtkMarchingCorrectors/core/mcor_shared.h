@@ -88,6 +88,6 @@ typedef struct mcor_cell_row
 #define MCOR_GROUPED_POINTS_OF(lanes) ((lanes) == 1 ? 1 : 512)
 
 /* Components of attributes that are evaluated together. */
-#define MCOR_ATTRIBUTE_LIMIT 8
+#define MCOR_ATTRIBUTE_LIMIT 12
 
 #endif

@@ -333,7 +333,7 @@ static void test_build_fails(void** state)
   memcpy(log, "line 7: no such thing", 21);
   log[sizeof log - 1] = '\0';
   long_log = log;
-  set_fault(1, CL_BUILD_PROGRAM_FAILURE); /* after a kernel was looked for elsewhere */
+  set_fault(0, CL_BUILD_PROGRAM_FAILURE);
   CORE_OK(context, mcor_choose_build(context, &build));
   const mcor_status status = MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, 1, MCOR_INT(0));
   fail_at = -1;

@@ -716,6 +716,27 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
   return status;
 }
 
+/* Whether a program has a kernel. Asking for one that it has not is an error, on which PoCL crashes
+ * while POCL_DEBUG is set. */
+static bool mcor_has_kernel(cl_program program, const char* name)
+{
+  size_t size = 0;
+  clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, 0, NULL, &size);
+  char* names = calloc(size + 1, 1);
+  bool has = false;
+  if (names && clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, size, names, NULL) == CL_SUCCESS)
+  {
+    for (const char* at = names; *at && !has; at += strspn(at, ";"))
+    {
+      const size_t length = strcspn(at, ";");
+      has = length == strlen(name) && memcmp(at, name, length) == 0;
+      at += length;
+    }
+  }
+  free(names);
+  return has;
+}
+
 /* Makes a kernel of the first program that has it. */
 static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mcor_kernel* kernel)
 {
@@ -723,7 +744,7 @@ static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mco
   cl_int error = CL_INVALID_KERNEL_NAME;
   *kernel = (mcor_kernel){ 0 };
   snprintf(kernel->name, sizeof kernel->name, "%s", name);
-  for (int p = 0; p < MCOR_PROGRAM_COUNT && error == CL_INVALID_KERNEL_NAME; ++p)
+  for (int p = 0; p < MCOR_PROGRAM_COUNT && !kernel->kernel; ++p)
   {
     kernel->program = (mcor_program)p;
     if (!mcor_program_may_have(kernel->program, name))
@@ -731,7 +752,11 @@ static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mco
       continue;
     }
     MCOR_TRY(mcor_need_program(context, kernel->program));
-    kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
+    if (mcor_has_kernel(cl->programs[p], name))
+    {
+      kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
+      MCOR_CL_TRY(context, error, name);
+    }
   }
   MCOR_CL_TRY(context, error, name);
   return MCOR_OK;

@@ -110,12 +110,12 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
   mcor_grid* grid = &context->grid;
   const int batches = mcor_batches(context, grid->count);
   MCOR_TRY(mcor_reserve(context, &context->sort.values, (size_t)grid->count * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_HEAVY, batches,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_LIGHT, batches,
     MCOR_SORT_ARGS(context, sort), MCOR_BUFFER(&grid->order)));
   for (int64_t width = MCOR_INSERTION_OF(context->cl.lanes); width < sort->most; width *= 2)
   {
     MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_HEAVY, batches, MCOR_SORT_ARGS(context, sort),
+      MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_LIGHT, batches, MCOR_SORT_ARGS(context, sort),
         MCOR_INT((int)width), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&context->sort.values)));
     const mcor_buffer merged = context->sort.values;
     context->sort.values = grid->order;
@@ -142,7 +142,7 @@ static mcor_status mcor_order_cells(mcor_context* context)
   mcor_buffer* most = &context->stage.found;
   cl_int most_in_cell = MCOR_USUAL_IN_CELL;
   MCOR_TRY(mcor_write(context, most, &most_in_cell, sizeof most_in_cell));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_HEAVY, mcor_batches(context, count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
     MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_GRID_INPUT(xyz, inv_h, size, solid),
     MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid), MCOR_BUFFER(most)));
   MCOR_TRY(mcor_read(context, most, 0, &most_in_cell, sizeof most_in_cell));
@@ -159,7 +159,7 @@ static mcor_status mcor_order_cells(mcor_context* context)
     .value = inv_h,
     .most = most_in_cell };
   MCOR_TRY(mcor_sort_same_keys(context, &sort));
-  return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_HEAVY, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->order), MCOR_GRID_INPUT(xyz, inv_h, size, solid), MCOR_GRID_OUTPUT(grid));
 }
 
@@ -287,10 +287,10 @@ static mcor_status mcor_order_coincident(mcor_context* context)
   }
   MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, keys, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count_places", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count_places", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_COINCIDENT_ARGS(grid), MCOR_BUFFER(flags)));
   MCOR_TRY(mcor_scan(context, flags, count, &places));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(flags), MCOR_BUFFER(keys)));
   const mcor_key_sort sort = { .keys = keys,
     .xyz = &grid->px,

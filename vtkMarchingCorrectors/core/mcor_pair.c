@@ -19,7 +19,7 @@ mcor_status mcor_seed_pairs(mcor_context* context, double iso)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(pair_cells)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request", MCOR_HEAVY, bricks_of_blocks,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request", MCOR_LIGHT, bricks_of_blocks,
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(pair_cells), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));

@@ -22,7 +22,7 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, segments, MCOR_BUFFER(counts),
       MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums)));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_HEAVY, 64, MCOR_INT(segments),
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_LIGHT, 64, MCOR_INT(segments),
       MCOR_BUFFER(&context->sort.sums)));
   }
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, segments, MCOR_BUFFER(counts),

@@ -42,7 +42,7 @@ static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor
     MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_INT(MCOR_BLOCK_CUBES << cubes->doublings), MCOR_SEED_ARGS(context, iso),
     MCOR_BUFFER(&bricks->block_states)));
-  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
     MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),
     MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
@@ -60,7 +60,7 @@ static mcor_status mcor_divide_cubes(
   const int count = bricks->block_count, added = finer.doublings == 0 ? kept_count : 0;
   int children;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_BUFFER(&bricks->inactive), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]),
     MCOR_INT(finer.n[2]), MCOR_BUFFER(counts)));
@@ -72,7 +72,7 @@ static mcor_status mcor_divide_cubes(
     (long long)children + added, MCOR_BLOCK_CUBES << finer.doublings,
     INT32_MAX / MCOR_BLOCK_BRICKS);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)children + (size_t)added) * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]), MCOR_BUFFER(counts),
     MCOR_BUFFER(keys)));
@@ -88,7 +88,7 @@ mcor_status mcor_request_known(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
-  return MCOR_LAUNCH(context, "mcor_block_request_known", MCOR_HEAVY, bricks->now.count,
+  return MCOR_LAUNCH(context, "mcor_block_request_known", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
@@ -114,7 +114,7 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
     mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
   if (status == MCOR_OK)
   {
-    status = MCOR_LAUNCH(context, "mcor_block_all", MCOR_HEAVY, bricks->block_count,
+    status = MCOR_LAUNCH(context, "mcor_block_all", MCOR_MEDIUM, bricks->block_count,
       MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->block_keys));
   }
   for (; cubes.doublings > 0 && status == MCOR_OK;

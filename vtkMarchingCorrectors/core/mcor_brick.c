@@ -44,12 +44,12 @@ static mcor_status mcor_fill_bricks(
 {
   mcor_bricks* bricks = &context->bricks;
   MCOR_TRY(mcor_reserve_bricks(context, &bricks->now, count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_HEAVY, words, MCOR_BRICK_ARGS(context),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_MEDIUM, words, MCOR_BRICK_ARGS(context),
     MCOR_BUFFER(&bricks->now.bricks)));
   if (last->count > 0)
   {
     MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_brick_move", MCOR_HEAVY, last->count, MCOR_BRICK_ARGS(context),
+      MCOR_LAUNCH(context, "mcor_brick_move", MCOR_MEDIUM, last->count, MCOR_BRICK_ARGS(context),
         MCOR_INT(last->count), MCOR_BUFFER(&last->bricks), MCOR_BUFFER(&last->known),
         MCOR_BUFFER(&last->cells), MCOR_BUFFER(&last->examined), MCOR_BUFFER(&last->above),
         MCOR_BUFFER(&last->valid), MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))),
@@ -76,7 +76,7 @@ mcor_status mcor_find_neighbours(mcor_context* context)
   bricks->neighbours_valid = true;
   MCOR_TRY(mcor_fill(
     context, &bricks->neighbours, 0xff, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
-  return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_HEAVY, count, MCOR_BRICK_ARGS(context),
+  return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_MEDIUM, count, MCOR_BRICK_ARGS(context),
     MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
 }
 
@@ -87,7 +87,7 @@ mcor_status mcor_place_bricks(mcor_context* context)
   const int words = bricks->block_count * MCOR_BLOCK_WORDS;
   int count;
   MCOR_TRY(mcor_reserve(context, &bricks->base, ((size_t)words + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_HEAVY, words, MCOR_INT(words),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_MEDIUM, words, MCOR_INT(words),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->base)));
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
   mcor_brick_data last = bricks->now;
@@ -103,7 +103,7 @@ static mcor_status mcor_index_bricks(mcor_context* context)
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->placed, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_fill(context, &bricks->slot_of, 0xff, words * 32 * sizeof(cl_int)));
-  return MCOR_LAUNCH(context, "mcor_brick_index", MCOR_HEAVY, bricks->now.count,
+  return MCOR_LAUNCH(context, "mcor_brick_index", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->placed), MCOR_BUFFER(&bricks->slot_of));
 }
@@ -145,17 +145,17 @@ mcor_status mcor_append_bricks(mcor_context* context)
   {
     MCOR_TRY(mcor_index_bricks(context));
   }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count_new", MCOR_HEAVY, words, MCOR_INT(words),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count_new", MCOR_MEDIUM, words, MCOR_INT(words),
     MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->placed), MCOR_BUFFER(&bricks->base)));
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &added));
   MCOR_TRY(mcor_extend_bricks(context, (size_t)first + (size_t)added));
   now->count += added;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_append", MCOR_HEAVY, words, MCOR_BLOCK_ARGS(context),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_append", MCOR_MEDIUM, words, MCOR_BLOCK_ARGS(context),
     MCOR_INT(first), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->base),
     MCOR_BUFFER(&bricks->placed), MCOR_BUFFER(&bricks->slot_of), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->cells),
     MCOR_BUFFER(&now->examined), MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
-  return MCOR_LAUNCH(context, "mcor_brick_join", MCOR_HEAVY, added, MCOR_BLOCK_ARGS(context),
+  return MCOR_LAUNCH(context, "mcor_brick_join", MCOR_MEDIUM, added, MCOR_BLOCK_ARGS(context),
     MCOR_INT(first), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&bricks->slot_of),
     MCOR_BUFFER(&bricks->neighbours));
 }

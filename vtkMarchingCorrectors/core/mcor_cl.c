@@ -887,7 +887,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     MCOR_CL_TRY(context, mcor_set_arg(cl, kernel->kernel, (cl_uint)i, args + i), name);
   }
-  const size_t group = cl->is_cpu && load == MCOR_HEAVY ? 1 : 64;
+  const size_t group = cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
   const size_t global = (items + group - 1) / group * group;
   const bool large = global / group >= MCOR_LARGE_LAUNCH;
   if (!kernel->launched[large] && cl->compiles)

@@ -101,12 +101,13 @@ typedef struct mcor_arg
     .kind = MCOR_ARG_REAL, .real = (r)                                                             \
   }
 
-/* How much one work-item does: a light one is a few operations on one of many elements, a heavy one
- * a field evaluation, a brick or a batch. A CPU gets a work-group for each heavy one: its compiler
- * is done sooner where there is no loop over the group. */
+/* How much one work-item does: a light one a few operations for one of many elements, a medium one a
+ * brick or a batch, a heavy one a field evaluation. A CPU gets a work-group for each medium or heavy
+ * one: its compiler is done sooner where there is no loop over the group. */
 typedef enum mcor_load
 {
   MCOR_LIGHT,
+  MCOR_MEDIUM,
   MCOR_HEAVY
 } mcor_load;
 

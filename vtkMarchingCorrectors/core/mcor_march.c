@@ -12,7 +12,7 @@ static mcor_status mcor_classify_cells(mcor_context* context)
   mcor_mesh* mesh = &context->mesh;
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_march_classify", MCOR_HEAVY, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
     MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used));
 }
@@ -24,7 +24,7 @@ static mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
   mcor_buffer* flags = &bricks->found;
   cl_int flag;
   MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_HEAVY, bricks->now.count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.examined),
     MCOR_BUFFER(&bricks->fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
@@ -81,7 +81,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->edges, n * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base)));
@@ -98,7 +98,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->edges),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
@@ -106,7 +106,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   {
     return mcor_emit_resolved(context);
   }
-  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_HEAVY, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));

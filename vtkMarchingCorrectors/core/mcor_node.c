@@ -12,7 +12,7 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &bricks->fresh, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.examined),
     MCOR_BUFFER(&bricks->fresh)));
@@ -27,7 +27,7 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated)
 {
   mcor_bricks* bricks = &context->bricks;
-  return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_HEAVY, bricks->now.count,
+  return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
     MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->now.above),
@@ -39,7 +39,7 @@ mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int
 {
   mcor_buffer* counts = &context->bricks.bit_counts;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_bits", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_bits", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(masks), MCOR_BUFFER(counts)));
   return mcor_scan(context, counts, count, total);
 }

@@ -25,7 +25,7 @@ mcor_status mcor_seed_pairs(mcor_context* context, double iso)
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
   MCOR_TRY(
     mcor_fill(context, &bricks->now.examined, 0, (size_t)bricks->now.count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_fill", MCOR_HEAVY, bricks->now.count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_fill", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(pair_cells), MCOR_BUFFER(&bricks->now.cells)));
   mcor_release(context, pair_cells);

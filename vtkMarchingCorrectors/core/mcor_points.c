@@ -12,7 +12,7 @@ mcor_status mcor_make_groups(
   mcor_points* points = &context->points;
   const int chunk = MCOR_GROUPED_POINTS_OF(context->cl.lanes);
   MCOR_TRY(mcor_reserve(context, &points->flags, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_HEAVY, (count + chunk - 1) / chunk,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_count", MCOR_MEDIUM, (count + chunk - 1) / chunk,
     MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(node), MCOR_BUFFER(&points->flags)));
   MCOR_TRY(mcor_scan(context, &points->flags, count, group_count));
   MCOR_TRY(mcor_reserve(context, &points->groups, ((size_t)*group_count + 1) * sizeof(cl_int)));

@@ -14,7 +14,7 @@ static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer*
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer* grown = &bricks->found;
   MCOR_TRY(mcor_fill(context, grown, 0, sizeof(cl_int)));
-  return MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_HEAVY, bricks->now.count,
+  return MCOR_LAUNCH(context, "mcor_seed_grow", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
@@ -67,7 +67,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
   MCOR_TRY(mcor_request_known(context));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_MEDIUM,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_request_beside(context, &bricks->now.known));
@@ -94,7 +94,7 @@ static mcor_status mcor_find_side_flags(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
   return context->options->field == MCOR_WEIGHT_SUM
     ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_HEAVY, runs, MCOR_INT(grid->count),
+    : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
         MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
         MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)), MCOR_REAL(iso),
         MCOR_BUFFER(&grid->side_flags));

@@ -42,7 +42,7 @@ static mcor_status mcor_evaluate_samples(
   MCOR_TRY(mcor_reserve(context, &topology->sample_node, n * sizeof(cl_int4)));
   MCOR_TRY(mcor_reserve(context, &topology->sample_offset, n * 4 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &topology->sample_side, n));
-  MCOR_TRY(MCOR_LAUNCH(context, locate, MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, locate, MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&topology->sample_base), MCOR_REAL(iso), MCOR_BUFFER(&topology->sample_node),
@@ -60,13 +60,13 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   const int count = context->bricks.now.count;
   mcor_buffer* counts = &topology->counts;
   int faces, joined;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &joined));
@@ -81,14 +81,14 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   int samples;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", iso, &samples));
   context->statistics->ambiguous_cells += samples / 2;
-  return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_HEAVY, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
     MCOR_BUFFER(&topology->decisions));
 }
@@ -115,7 +115,7 @@ mcor_status mcor_count_resolved(mcor_context* context)
   mcor_buffer* counts = &topology->counts;
   int tunnels;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_HEAVY, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base),
@@ -130,7 +130,7 @@ mcor_status mcor_emit_resolved(mcor_context* context)
   mcor_mesh* mesh = &context->mesh;
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
-  return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_HEAVY, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),

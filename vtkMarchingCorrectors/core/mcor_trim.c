@@ -34,7 +34,7 @@ static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* r
   mcor_trim_data* trim = &context->trim;
   MCOR_TRY(mcor_reserve(context, &trim->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &trim->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_HEAVY, batches,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
@@ -108,7 +108,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   const int batches = mcor_batches(context, mesh->triangle_count);
   MCOR_TRY(mcor_count_trimmed(context, batches, &remaining, &cuts));
   MCOR_TRY(mcor_reserve(context, &trim->keys, (size_t)cuts * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_HEAVY, batches,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
@@ -116,7 +116,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
     &trim->distinct, &trim->index, &cut_count));
   MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_HEAVY, batches,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),

@@ -62,21 +62,20 @@
  * "BoundaryEigenvalue", "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). The output field data
  * holds the statistics of the run, one array each: "Device", "Platform", "FluidParticles",
- * "SolidParticles", "VirtualCells", "LatticeOrigin", "LatticeCells", "CellsUsed", "AmbiguousFaces",
- * "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "TrianglesBeforeTrimming",
- * "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected",
- * "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax",
- * "TrimVertices", "TrimVerticesLinear", "SmoothingLengthRange", "ScalarRange" (not for the free
- * surface), and the
- * parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
+ * "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected", "LatticeOrigin",
+ * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
+ * "Points", "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+ * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
+ * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
+ * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
  * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
  * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "Kernel", "SeedMode",
  * "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
  * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
  * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar;
  * mcor_statistics in mcor.h says more of each. All of the output is a function of the input and the
- * properties; what a run cost, which depends on what is kept of the run before, is told by
- * GetRunStatistics().
+ * properties, but for the two numbers of complete seeds, which count the cells examined: also those
+ * that KeepDeviceData kept. What a run cost is told by GetRunStatistics().
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
@@ -632,8 +631,7 @@ public:
 
   /**
    * What the last update cost, one array each: "Seconds" (one component per phase, one for building
-   * the OpenCL program, and the total, by name), "DeviceBytesPeak", "SeedCells" (those examined),
-   * "SeedCellsNotIntersected", "Bricks", "NodesEvaluated" (those kept from earlier updates counted)
+   * the OpenCL program, and the total, by name), "DeviceBytesPeak", "Bricks", "NodesEvaluated" (those kept from earlier updates counted)
    * and "MarchRounds". Empty where nothing ran. The next update makes another field data and leaves
    * this one as it is.
    */

@@ -349,9 +349,6 @@ void vtkMarchingCorrectorsOutput::AddRunStatistics(vtkFieldData* run) const
     vtkDataArray* array = run->GetArray(name);
     return array ? static_cast<std::int64_t>(array->GetComponent(0, 0)) : 0;
   };
-  AddCount(run, "SeedCells", { count("SeedCells") + s.seed_cells });
-  AddCount(run, "SeedCellsNotIntersected",
-    { count("SeedCellsNotIntersected") + s.seed_cells_not_intersected });
   AddCount(run, "Bricks", { count("Bricks") + s.bricks });
   AddCount(run, "NodesEvaluated", { count("NodesEvaluated") + s.nodes_evaluated });
   AddCount(run, "MarchRounds", { count("MarchRounds") + s.march_rounds });
@@ -375,6 +372,8 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   AddCount(
     fieldData, "LatticeCells", { s.lattice_cells[0], s.lattice_cells[1], s.lattice_cells[2] });
   AddCount(fieldData, "VirtualCells", { s.virtual_cells });
+  AddCount(fieldData, "SeedCells", { s.seed_cells });
+  AddCount(fieldData, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
   AddCount(fieldData, "CellsUsed", { s.cells_used });
   AddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });
   AddCount(fieldData, "JoinedFaces", { s.joined_faces });

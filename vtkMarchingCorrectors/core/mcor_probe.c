@@ -9,7 +9,6 @@
 #include "mcor_parallel.h"
 #include "mcor_stage.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -155,83 +154,6 @@ static mcor_status mcor_group_points(mcor_probe_run* run)
     MCOR_BUFFER(&run->order), MCOR_BUFFER(&run->in_node), MCOR_BUFFER(&run->in_offset),
     MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset)));
   return mcor_make_groups(context, &run->node, 0, run->count, &run->group_count);
-}
-
-/* ---- arrays ------------------------------------------------------------------------------- */
-
-/* Least and greatest value of a component, of fluid particles. */
-typedef struct mcor_range_job
-{
-  const mcor_array* array;
-  const uint8_t* solid;
-  int component;
-  double low[MCOR_SLICES], high[MCOR_SLICES];
-} mcor_range_job;
-
-static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_range_job* job = data;
-  double low = DBL_MAX, high = -DBL_MAX;
-  for (int64_t i = first; i < last; ++i)
-  {
-    if (job->solid && job->solid[i])
-    {
-      continue;
-    }
-    const double v = mcor_array_at(job->array, i, job->component);
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-  }
-  job->low[slice] = low;
-  job->high[slice] = high;
-}
-
-static mcor_component mcor_scale_component(const mcor_input* input, int attribute, int component)
-{
-  mcor_range_job job = {
-    .array = &input->attributes[attribute], .solid = input->solid, .component = component
-  };
-  const int slices = mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_range_slice, &job);
-  double low = job.low[0], high = job.high[0];
-  for (int s = 1; s < slices; ++s)
-  {
-    low = job.low[s] < low ? job.low[s] : low;
-    high = job.high[s] > high ? job.high[s] : high;
-  }
-  const double half = 0.5 * high - 0.5 * low;
-  int exponent = 0;
-  frexp(half, &exponent);
-  return (mcor_component){ .attribute = attribute,
-    .component = component,
-    .shift = 0.5 * high + 0.5 * low,
-    .scale = half > 0 ? ldexp(1, exponent > -1000 ? -exponent : 1000) : 1 };
-}
-
-/* Finds the attributes to leave out, and of the others all components, with the shift and scale that
- * bring them to [-1, 1]. not_finite: [attribute_count], as in mcor_samples. */
-mcor_status mcor_list_components(
-  mcor_context* context, const mcor_input* input, int64_t* not_finite)
-{
-  mcor_attributes* attributes = &context->attributes;
-  size_t most = 1;
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    most += (size_t)mcor_components(&input->attributes[a]);
-  }
-  free(attributes->varying);
-  attributes->varying_count = attributes->count = 0;
-  attributes->varying = malloc(most * sizeof *attributes->varying);
-  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const mcor_array* array = &input->attributes[a];
-    not_finite[a] = mcor_find_not_finite(array, input->solid, input->count);
-    for (int c = 0; c < mcor_components(array) && not_finite[a] < 0; ++c)
-    {
-      attributes->varying[attributes->varying_count++] = mcor_scale_component(input, a, c);
-    }
-  }
-  return MCOR_OK;
 }
 
 /* ---- evaluation --------------------------------------------------------------------------- */

@@ -160,7 +160,8 @@ static mcor_status mcor_order_cells(mcor_context* context)
     .most = most_in_cell };
   MCOR_TRY(mcor_sort_same_keys(context, &sort));
   return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->order), MCOR_GRID_INPUT(xyz, inv_h, size, solid), MCOR_GRID_OUTPUT(grid));
+    MCOR_BUFFER(&grid->cell_keys), MCOR_GRID_INPUT(xyz, inv_h, size, solid),
+    MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid));
 }
 
 /* Sorts by search cell, then within a cell, and moves the particles into that order. */

@@ -159,18 +159,6 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
   }
 }
 
-/* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order. */
-__kernel void mcor_grid_move(
-  const int count, __global const int* order, MCOR_GRID_INPUT, MCOR_GRID_OUTPUT)
-{
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    mcor_grid_move_particle(
-      i, order[i], xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
-  }
-}
-
 /* Groups of any number of particles with the same key are sorted by all work-items together: runs of
  * MCOR_INSERTION_LIMIT, then pairs of runs are merged into runs twice as long. The groups are cells,
  * or (by_value) coincident particles, which are sorted by their scalar, so that not even they make a
@@ -203,10 +191,14 @@ bool mcor_sort_is_large(__global const ulong* keys, int i, int count)
 __kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
 {
   const int begin = get_global_id(0) * MCOR_BATCH;
-  for (int i = begin, group = 0; i < min(begin + MCOR_BATCH, count); ++i)
+  for (int i = begin, group = count; i < min(begin + MCOR_BATCH, count); ++i)
   {
-    group = i > begin && keys[i] == keys[i - 1] ? group : mcor_find_key(keys, 0, i, keys[i]);
-    if ((i - group) % MCOR_INSERTION_LIMIT != 0 || !mcor_sort_is_large(keys, i, count))
+    if (!mcor_sort_is_large(keys, i, count))
+    {
+      continue;
+    }
+    group = group < i && keys[group] == keys[i] ? group : mcor_find_key(keys, 0, i, keys[i]);
+    if ((i - group) % MCOR_INSERTION_LIMIT != 0)
     {
       continue;
     }
@@ -233,7 +225,12 @@ __kernel void mcor_grid_merge(
   const int begin = get_global_id(0) * MCOR_BATCH;
   for (int i = begin, group = 0, end = 0; i < min(begin + MCOR_BATCH, count); ++i)
   {
-    if (i == begin || keys[i] != keys[i - 1])
+    if (!mcor_sort_is_large(keys, i, count))
+    {
+      merged[i] = order[i];
+      continue;
+    }
+    if (i >= end)
     {
       group = mcor_find_key(keys, 0, i, keys[i]);
       end = mcor_find_key(keys, i, count, keys[i] + 1);
@@ -252,6 +249,19 @@ __kernel void mcor_grid_merge(
       high = before ? high : middle;
     }
     merged[(is_first ? i : i - width) + (low - other)] = order[i];
+  }
+}
+
+/* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order where
+ * mcor_grid_order left a cell to mcor_grid_sort_runs. */
+__kernel void mcor_grid_move(const int count, __global const ulong* keys, MCOR_GRID_INPUT,
+  __global const int* order, MCOR_GRID_OUTPUT)
+{
+  const int i = get_global_id(0);
+  if (i < count && mcor_sort_is_large(keys, i, count))
+  {
+    mcor_grid_move_particle(
+      i, order[i], xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
   }
 }
 

@@ -44,7 +44,7 @@ typedef struct mcor_level
 
 /* Particles with one key, of a cell or in one place, that one work-item sorts alone, at most; and
  * particles of a cell of which nobody takes note. */
-#define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 128)
+#define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
 
 /* Buckets that one work-item fills. */

@@ -58,6 +58,8 @@ static void derive_check_linear(
   core_set set = derive_set(varies);
   double* v = derive_linear(&set);
   mcor_derivatives d = derive(context, &set, v, 3, precision, MCOR_GRADIENT_CORRECTED);
+  assert_int_equal(d.statistics.fluid_particles, set.count);
+  assert_true(d.statistics.seconds[MCOR_PHASE_CORRECTION] > 0);
   for (int64_t i = 0; i < set.count; ++i)
   {
     assert_int_equal(d.corrected[i], 1);

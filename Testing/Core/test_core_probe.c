@@ -185,6 +185,9 @@ static void test_odd_points(void** state)
   mcor_samples samples;
   CORE_OK(context, mcor_probe(context, &input, &options, &at, 5, &samples));
   assert_int_equal(samples.valid[0], 1);
+  assert_int_equal(samples.statistics.fluid_particles, set.count);
+  assert_true(samples.statistics.seconds[MCOR_PHASE_CORRECTION] > 0);
+  assert_true(samples.statistics.device[0] != 0);
   for (int i = 1; i < 5; ++i)
   {
     assert_int_equal(samples.valid[i], 0);

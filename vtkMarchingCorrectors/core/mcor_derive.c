@@ -340,7 +340,9 @@ static mcor_status mcor_run_derive(
   };
   const mcor_status status = mcor_derive_all(&run);
   mcor_release_derive(&run);
-  return status;
+  MCOR_TRY(status);
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1));
+  return mcor_finish_statistics(context);
 }
 
 mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mcor_options* options,

@@ -400,7 +400,9 @@ static mcor_status mcor_run_probe(
   const mcor_status status = mcor_probe_all(&run);
   mcor_release_probe(&run);
   mcor_release(context, &context->attributes.sorted);
-  return status;
+  MCOR_TRY(status);
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1));
+  return mcor_finish_statistics(context);
 }
 
 /* What evaluates arrays, but no scalar, runs as for the free surface: without solids, but where these

@@ -133,7 +133,8 @@ extern "C"
     /* Particle volume, unit L^3, > 0: `volume` if has_volume; else mass / density if has_mass and
      * has_density; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
      * 1 / sum_k W(x_j - x_k, h_j). These sums leave out solids that are ignored, and all solids for
-     * MCOR_WEIGHT_SUM, so that such volumes next to walls differ between the fields. */
+     * MCOR_WEIGHT_SUM (unless that ends at them), so that such volumes next to walls differ between
+     * the fields. */
     mcor_array volume, mass, density;
     int has_volume, has_mass, has_density;
 
@@ -147,7 +148,7 @@ extern "C"
 
     /* [count], borrowed; nonzero: a solid (wall) particle. NULL: all particles are fluid. Solid
      * particles never take part in the field. They count in the weight used for trimming unless
-     * ignore_solids is set. */
+     * ignore_solids is set; the surface may end at them, see mcor_options.wall_share. */
     const uint8_t* solid;
     int ignore_solids;
 
@@ -162,6 +163,29 @@ extern "C"
     uint64_t particles_version;
     uint64_t scalar_version;
   } mcor_input;
+
+  /* Of one component of an attribute; of particles that are not solid. */
+  typedef struct mcor_global_component
+  {
+    double largest;     /* absolute value */
+    int varies;         /* 0: all values are the same, those of solids too */
+    int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
+  } mcor_global_component;
+
+  /* What must be known of all particles to extract a box's surface from some of them. */
+  typedef struct mcor_globals
+  {
+    int64_t fluid_particles, solid_particles;
+    double low[3], high[3];                            /* of positions -+ scaled support radii, L */
+    double smoothing_length_min, smoothing_length_max; /* of fluid particles, unscaled, L */
+    double support_min, support_max; /* scaled support radius of all that take part, L */
+    double smoothing_length;         /* estimated; 0: it was not asked for */
+    double mass_max;                 /* 0: there are no masses */
+    double scalar_min, scalar_max;   /* over fluid particles */
+    double scalar_shift;             /* about the median; values on the device are relative to it */
+    int component_count;
+    mcor_global_component* components; /* [component_count], of all attributes in their order */
+  } mcor_globals;
 
   typedef struct mcor_options
   {
@@ -179,12 +203,38 @@ extern "C"
     mcor_boundary_detection boundary_detection;
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
                               * is lower; default 0.5 */
-    int preview;             /* nonzero: vertices by linear interpolation, no correction */
-    double tolerance;        /* |f - iso| reached by the correction / range of A; default 1e-6 */
-    int iteration_limit;     /* of the correction, per vertex; 1 to 255, default 30 */
-    mcor_type precision;     /* of the field evaluation on the device; MCOR_FLOAT32 by default */
-    int64_t memory_limit;    /* bytes of device memory in use and kept, >= 0; 0: all there is. What
+    double wall_share;    /* above 0: the surface, the free surface too, also ends where the solids'
+                        * share of the weight, unless they are ignored, becomes greater than this;
+                        * 0.5: where they weigh more than the fluid. 0, the default: nowhere */
+    int preview;          /* nonzero: vertices by linear interpolation, no correction */
+    double tolerance;     /* |f - iso| reached by the correction / range of A; default 1e-6 */
+    int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
+    mcor_type precision;  /* of the field evaluation on the device; MCOR_FLOAT32 by default */
+    int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: all there is. What
                               * is kept for reuse is given back before a run fails for want of it. */
+
+    /* With has_box, the surface is that of the cells whose centres are in the box, box[2 a] <= x <
+     * box[2 a + 1] along axis a, to the last bit: boxes side by side make the whole surface. Sides
+     * may be infinite. What is global (lattice, ranges, smallest h) is measured over all particles;
+     * those alone that reach the box are evaluated. Not with MCOR_PAIRS, whose cells are found from
+     * cell to cell, wherever they begin: there, evaluation is that of the whole surface up to the
+     * correction. mcor_probe and mcor_derive do not read it. */
+    int has_box;
+    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
+
+    /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, particles and all they carry repeat along x
+     * with that period: each is taken to where it is between x0 and x1, and its images count. The
+     * surface is that of one period, open at its sides, where it meets itself up to rounding. All
+     * periods are whole numbers of cubes: the cube size is made to fit, smaller by less than a
+     * half. x0 = x1, the default 0: open. Not with MCOR_PAIRS; mcor_probe and mcor_derive do not
+     * read it. */
+    double periodic[6];
+
+    /* NULL: measured over the input. Else of all particles, of which the input holds some: at least
+     * those that reach the box by 3 cubes or less, with computed volumes also all within the
+     * (unscaled) support of these. The surface is, to the last bit, that from all of them. Borrowed
+     * until return; mcor_probe and mcor_derive do not read it. See mcor_measure_globals. */
+    const mcor_globals* globals;
 
     /* What the surface carries besides points and triangles. */
     int normals; /* default on */
@@ -215,9 +265,18 @@ extern "C"
     double seconds[MCOR_PHASE_COUNT];
     double build_seconds; /* compiling or loading kernels, in whichever phase; in none of seconds */
     int64_t fluid_particles, solid_particles;
+    int64_t particles_in_reach; /* on the device: with a box those that are needed there */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
-    double cube_size;                                  /* unit L */
-    double scalar_min, scalar_max;                     /* over fluid particles */
+    /* Medians over some fluid particles: smoothing length; particles, itself and solids too, within
+     * its unscaled support radius; distance to the nearest other one of these, 0: there is none;
+     * share of the support that their volumes fill, as far as they are as large as the particle's,
+     * 0 where volumes are computed. */
+    double smoothing_length_median, neighbours_median, spacing_median, filled_median;
+    double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
+    double cube_size;              /* unit L */
+    double scalar_min, scalar_max; /* over fluid particles */
+    /* Of the part of the virtual grid in the box, where there is one; so are all counts of cells and
+     * triangles. Those of bricks, nodes, faces and iterations are of what was done, around it, too. */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
     int64_t lattice_cells[3];
     int64_t virtual_cells;                          /* product of lattice_cells, below 2^63 */
@@ -255,7 +314,7 @@ extern "C"
     float* correction_length;   /* [point_count], unit L */
     float* residual;            /* [point_count], f - iso, scalar unit */
     uint8_t* boundary_flag;     /* [point_count], 0 inside; 1 on the trim boundary, weight (or
-                             * eigenvalue) = vertex threshold; 2 same, but left at the linear cut;
+                             * eigenvalue) = vertex threshold or solids' share = wall share; 2 same, but left at the linear cut;
                              * 4 on a lattice edge next to a cell that the node threshold
                              * discarded */
     double* iso_value;          /* [point_count] */
@@ -293,6 +352,27 @@ extern "C"
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
 
+  /* What a particle array may hold, by its name. */
+  typedef enum mcor_quantity
+  {
+    MCOR_SMOOTHING_LENGTH = 0,
+    MCOR_VOLUME,
+    MCOR_MASS,
+    MCOR_DENSITY,
+    MCOR_VELOCITY,
+    MCOR_PARTICLE_ID,   /* a whole number of its own, the same at all times */
+    MCOR_PARTICLE_TYPE, /* what tells fluid from solids */
+    MCOR_QUANTITY_COUNT
+  } mcor_quantity;
+
+  /* 0 for the name that is most usual for the quantity, more for less usual ones, -1 for others.
+   * Case, blanks, "_" and "-" do not matter. */
+  int mcor_name_rank(mcor_quantity quantity, const char* name);
+
+  /* The solver whose output has arrays of these names, each on a line: "DualSPHysics", "PySPH",
+   * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
+  const char* mcor_find_layout(const char* names);
+
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
 
@@ -300,6 +380,27 @@ extern "C"
   mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
+
+  /* Measures an input for options.globals of later calls, in this or other contexts, with the same
+   * options otherwise. *globals is overwritten; free with mcor_free_globals. */
+  mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, mcor_globals* globals);
+  void mcor_free_globals(mcor_globals* globals);
+
+  /* What may be wrong with the input of an extraction that succeeded. */
+  typedef enum mcor_warning
+  {
+    MCOR_WARN_NEIGHBOURS = 0, /* far too few or too many, see neighbours_median */
+    MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
+    MCOR_WARN_ISO_VALUE,      /* outside of the field's range */
+    MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
+    MCOR_WARNING_COUNT
+  } mcor_warning;
+
+  /* A sentence with figures for one of these, to be freed with free(); NULL where nothing is wrong,
+   * or memory ran out. Takes what mcor_extract was given and made. */
+  char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
+    const mcor_options* options, const mcor_surface* surface);
 
   /* The field at points of the caller's choice. Owned; free with mcor_free_samples. */
   typedef struct mcor_samples
@@ -322,7 +423,7 @@ extern "C"
    * input's scalar is not read. Of the options sph_kernel, field, h_scale, gradients, node_threshold,
    * precision, memory_limit and progress count; cube_size and cube_size_factor are the unit of
    * length on the device and do not matter otherwise. A point's bits do not depend on the other
-   * points while no support radius is above 16 cubes. *samples is overwritten. */
+   * points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);
@@ -347,7 +448,8 @@ extern "C"
   } mcor_derivatives;
 
   /* Gradients of the input's attributes. Sums are over fluid particles. Options count as for
-   * mcor_probe, but field, gradients and node_threshold. *derivatives is overwritten. */
+   * mcor_probe, but field, gradients and node_threshold. A gradient that is too large for a double is
+   * infinite. *derivatives is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
   void mcor_free_derivatives(mcor_derivatives* derivatives);

@@ -15,44 +15,91 @@
 
 /* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
  * overflows whatever the device's precision. */
-static double mcor_component_scale(const mcor_input* input, const mcor_array* array, int component)
+static double mcor_component_scale(double largest)
 {
   int exponent = 0;
-  frexp(mcor_largest(array, input->solid, input->count, component), &exponent);
+  frexp(largest, &exponent);
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
+}
+
+void mcor_measure_component(
+  const mcor_input* input, int attribute, int component, mcor_global_component* found)
+{
+  const mcor_array* array = &input->attributes[attribute];
+  found->varies = !mcor_is_constant(array, input->count, component);
+  found->largest = found->varies ? mcor_largest(array, input->solid, input->count, component) : 0;
+}
+
+/* Lists the components of an attribute that vary; *next of the globals' components is its first. */
+static void mcor_list_varying(
+  mcor_context* context, const mcor_input* input, int a, int* next, int64_t* not_finite)
+{
+  mcor_attributes* attributes = &context->attributes;
+  const mcor_globals* globals = context->options->globals;
+  const mcor_array* array = &input->attributes[a];
+  *not_finite = globals ? globals->components[*next].not_finite
+                        : mcor_find_not_finite(array, input->solid, input->count);
+  for (int c = 0; c < mcor_components(array); ++c, ++*next)
+  {
+    mcor_global_component found = { 0 };
+    if (globals)
+    {
+      found = globals->components[*next];
+    }
+    else if (*not_finite < 0)
+    {
+      mcor_measure_component(input, a, c, &found);
+    }
+    if (*not_finite < 0 && found.varies)
+    {
+      attributes->varying[attributes->varying_count++] =
+        (mcor_component){ a, c, 0, mcor_component_scale(found.largest) };
+    }
+  }
+}
+
+size_t mcor_count_components(const mcor_input* input)
+{
+  size_t count = 0;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    count += (size_t)mcor_components(&input->attributes[a]);
+  }
+  return count;
+}
+
+/* Room to list components in; none is listed. */
+static mcor_status mcor_clear_components(mcor_context* context, const mcor_input* input)
+{
+  mcor_attributes* attributes = &context->attributes;
+  const size_t most = mcor_count_components(input) + 1;
+  free(attributes->varying);
+  attributes->varying_count = attributes->count = 0;
+  attributes->varying = malloc(most * sizeof *attributes->varying);
+  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  return MCOR_OK;
 }
 
 /* Prepares the surface's attributes: finds those to leave out, and of the others the components that vary. */
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
-  mcor_attributes* attributes = &context->attributes;
   const size_t count = (size_t)input->attribute_count;
-  size_t most = 1;
   surface->attribute_count = input->attribute_count;
   surface->attributes = calloc(count + 1, sizeof(double*));
   surface->attribute_not_finite = calloc(count + 1, sizeof(int64_t));
+  MCOR_RETURN_IF(!surface->attributes || !surface->attribute_not_finite, context,
+    MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_clear_components(context, input));
+  const mcor_globals* globals = context->options->globals;
+  const int components = (int)mcor_count_components(input);
+  MCOR_RETURN_IF(globals && globals->component_count != components, context, MCOR_INVALID_ARGUMENT,
+    "The global values are of %d components of attributes; the input has %d.",
+    globals->component_count, components);
+  int next = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
-    most += (size_t)mcor_components(&input->attributes[a]);
-  }
-  free(attributes->varying);
-  attributes->varying_count = attributes->count = 0;
-  attributes->varying = malloc(most * sizeof *attributes->varying);
-  MCOR_RETURN_IF(!attributes->varying || !surface->attributes || !surface->attribute_not_finite,
-    context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const mcor_array* array = &input->attributes[a];
-    surface->attribute_not_finite[a] = mcor_find_not_finite(array, input->solid, input->count);
-    for (int c = 0; c < mcor_components(array) && surface->attribute_not_finite[a] < 0; ++c)
-    {
-      if (!mcor_is_constant(array, input->count, c))
-      {
-        attributes->varying[attributes->varying_count++] =
-          (mcor_component){ a, c, 0, mcor_component_scale(input, array, c) };
-      }
-    }
+    mcor_list_varying(context, input, a, &next, &surface->attribute_not_finite[a]);
   }
   return MCOR_OK;
 }
@@ -111,15 +158,7 @@ mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, int64_t* not_finite)
 {
   mcor_attributes* attributes = &context->attributes;
-  size_t most = 1;
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    most += (size_t)mcor_components(&input->attributes[a]);
-  }
-  free(attributes->varying);
-  attributes->varying_count = attributes->count = 0;
-  attributes->varying = malloc(most * sizeof *attributes->varying);
-  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_clear_components(context, input));
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];

@@ -3,7 +3,7 @@
 
 /* The blocks in which there may be surface [III-B], found by dividing larger cubes. */
 
-#include "mcor_internal.h"
+#include "mcor_box.h"
 
 /* The first size has the smallest cubes of which no more than this many cover the lattice. */
 #define MCOR_FIRST_CUBES 32768
@@ -42,6 +42,8 @@ static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor
     MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_INT(MCOR_BLOCK_CUBES << cubes->doublings), MCOR_SEED_ARGS(context, iso),
     MCOR_BUFFER(&bricks->block_states)));
+  MCOR_TRY(
+    mcor_void_cubes(context, cubes->n[0], cubes->n[1], MCOR_BLOCK_CUBES << cubes->doublings));
   return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
     MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),

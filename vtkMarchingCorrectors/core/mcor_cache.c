@@ -17,10 +17,12 @@
 #include <direct.h>
 #include <errno.h>
 #else
+#include <dirent.h>
 #include <errno.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
+#include <utime.h>
 #endif
 
 #define MCOR_PATH_LIMIT 1024
@@ -129,6 +131,53 @@ static bool mcor_file_name(const mcor_cache_key* key, char path[MCOR_PATH_LIMIT]
   return true;
 }
 
+#ifdef _WIN32
+
+static void mcor_mark_used(const char* path)
+{
+  (void)path;
+}
+
+static void mcor_remove_unused(const char* folder)
+{
+  (void)folder;
+}
+
+#else
+
+#define MCOR_UNUSED_DAYS 90
+
+/* The file's time is that of its last use. */
+static void mcor_mark_used(const char* path)
+{
+  utime(path, NULL);
+}
+
+/* Removes what nobody has used for a long time, and what a process left that was ended. */
+static void mcor_remove_unused(const char* folder)
+{
+  const time_t oldest = time(NULL) - (time_t)MCOR_UNUSED_DAYS * 24 * 3600;
+  char path[MCOR_PATH_LIMIT];
+  struct stat status;
+  DIR* directory = opendir(folder);
+  for (struct dirent* entry = directory ? readdir(directory) : NULL; entry;
+       entry = readdir(directory))
+  {
+    if (strstr(entry->d_name, ".program") &&
+      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) < (int)sizeof path &&
+      lstat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_mtime < oldest)
+    {
+      remove(path);
+    }
+  }
+  if (directory)
+  {
+    closedir(directory);
+  }
+}
+
+#endif
+
 void* mcor_cache_load(const mcor_cache_key* key, size_t* size)
 {
   char path[MCOR_PATH_LIMIT];
@@ -152,6 +201,7 @@ void* mcor_cache_load(const mcor_cache_key* key, size_t* size)
     free(data);
     return NULL;
   }
+  mcor_mark_used(path);
   *size = (size_t)header.size;
   return data;
 }
@@ -176,6 +226,7 @@ void mcor_cache_store(const mcor_cache_key* key, const void* data, size_t size)
   {
     return;
   }
+  mcor_remove_unused(folder);
   FILE* file = mcor_open_beside(path, temporary);
   if (!file)
   {
@@ -202,17 +253,12 @@ bool mcor_pocl_folder_fault(char* text, size_t size)
 
 #else
 
-/* Bytes that PoCL needs there for one context, and somewhat more. */
-#define MCOR_POCL_BYTES (8 << 20)
-
-bool mcor_pocl_folder_fault(char* text, size_t size)
+void mcor_pocl_folder(char* path, size_t size)
 {
   const char* own = mcor_variable("POCL_CACHE_DIR");
   const char* shared = mcor_variable("XDG_CACHE_HOME");
   const char* home = mcor_variable("HOME");
-  char path[MCOR_PATH_LIMIT];
-  struct statvfs disk;
-  snprintf(path, sizeof path, "%s%s",
+  snprintf(path, size, "%s%s",
     own ? own
       : shared ? shared
       : home ? home
@@ -221,6 +267,16 @@ bool mcor_pocl_folder_fault(char* text, size_t size)
       : shared ? "/pocl/kcache"
       : home ? "/.cache/pocl/kcache"
              : "/pocl/kcache");
+}
+
+/* Bytes that PoCL needs there for one context, and somewhat more. */
+#define MCOR_POCL_BYTES (8 << 20)
+
+bool mcor_pocl_folder_fault(char* text, size_t size)
+{
+  char path[MCOR_PATH_LIMIT];
+  struct statvfs disk;
+  mcor_pocl_folder(path, sizeof path);
   const bool usable = mcor_make_folders(path) && access(path, W_OK | X_OK) == 0;
   if (!usable)
   {

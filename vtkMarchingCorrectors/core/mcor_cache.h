@@ -6,7 +6,8 @@
 /* Compiled programs kept in files. No OpenCL calls.
  *
  * The folder is MCOR_CACHE_DIR; else marching-correctors in XDG_CACHE_HOME, in HOME/.cache or, on
- * Windows, in LOCALAPPDATA. An empty MCOR_CACHE_DIR turns the cache off. Whatever goes wrong with a
+ * Windows, in LOCALAPPDATA. An empty MCOR_CACHE_DIR turns the cache off. A program that
+ * was not used for 90 days is removed when another one is stored. Whatever goes wrong with a
  * file, the program is compiled. */
 
 #include <stdbool.h>
@@ -26,6 +27,8 @@ void* mcor_cache_load(const mcor_cache_key* key, size_t* size);
 /* Readers see the whole file or none, also where two write it at once. */
 void mcor_cache_store(const mcor_cache_key* key, const void* data, size_t size);
 
+/* The folder into which PoCL compiles. Not on Windows. */
+void mcor_pocl_folder(char* path, size_t size);
 /* What is wrong with the folder into which PoCL compiles, without which it has no device: a sentence
  * that ends in what to do. False: nothing is. */
 bool mcor_pocl_folder_fault(char* text, size_t size);

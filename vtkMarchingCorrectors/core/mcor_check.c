@@ -10,8 +10,42 @@
 #include <math.h>
 #include <string.h>
 
-/* Kernels count in int, also a little beyond the last particle. */
-#define MCOR_PARTICLE_LIMIT 2000000000
+static mcor_status mcor_check_period(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  bool some = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
+    MCOR_RETURN_IF(!isfinite(from) || !isfinite(to) || from > to, context, MCOR_INVALID_ARGUMENT,
+      "The period along %c goes from %g to %g; both must be numbers, the first not the greater "
+      "one.",
+      'x' + a, from, to);
+    some = some || from < to;
+  }
+  MCOR_RETURN_IF(some && options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM, context,
+    MCOR_INVALID_ARGUMENT,
+    "Pairs as seeds are not made across periodic sides. Use complete seeds, or no period.");
+  MCOR_RETURN_IF(some && options->sph_kernel == MCOR_M_PRIME_4 && input->count > 0 &&
+      !input->has_volume && !(input->has_mass && input->has_density),
+    context, MCOR_INVALID_ARGUMENT,
+    "Volumes are not computed with kernel %s and a period. Give volumes, or masses and densities.",
+    mcor_sph_kernel_name(options->sph_kernel));
+  return MCOR_OK;
+}
+
+static mcor_status mcor_check_box(mcor_context* context, const mcor_options* options)
+{
+  for (int a = 0; a < 3 && options->has_box; ++a)
+  {
+    const double from = options->box[2 * a], to = options->box[2 * a + 1];
+    MCOR_RETURN_IF(isnan(from) || isnan(to), context, MCOR_INVALID_ARGUMENT,
+      "The box along %c goes from %g to %g; both must be numbers.", 'x' + a, from, to);
+    MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
+      "The box along %c goes from %g to %g; the first must be the lower one.", 'x' + a, from, to);
+  }
+  return MCOR_OK;
+}
 
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
@@ -41,6 +75,9 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       isfinite(options->vertex_threshold) && options->vertex_threshold >= 0,
     "The node threshold is %g and the vertex threshold %g; neither may be negative.",
     options->node_threshold, options->vertex_threshold);
+  MCOR_NEED(options->wall_share >= 0 && options->wall_share < 1,
+    "The wall share is %g; it must be from 0 (the surface does not end at solids) to below 1.",
+    options->wall_share);
   MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
     "The tolerance is %g; it must be above 0.", options->tolerance);
   MCOR_NEED(options->iteration_limit >= 1 && options->iteration_limit <= 255,
@@ -57,8 +94,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       "The iso value of the free surface is %g; it must be above 0 (0.5 is usual).",
       options->iso_values[i]);
   }
-  return MCOR_OK;
 #undef MCOR_NEED
+  return mcor_check_box(context, options);
 }
 
 typedef struct mcor_check
@@ -213,6 +250,7 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   MCOR_TRY(mcor_check_options(context, options));
+  MCOR_TRY(mcor_check_period(context, input, options));
   MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
     context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
     input->attributes ? "" : ", but their list is NULL");

@@ -3,12 +3,13 @@
 #ifndef mcor_cl_h
 #define mcor_cl_h
 
-/* OpenCL: device, program, buffers, launches. mcor_cl.c is the only file that calls cl*. */
+/* OpenCL: device, programs, buffers, launches. Only mcor_cl_*.c call cl*. */
 
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
 #include "mcor.h"
+#include "mcor_cache.h"
 
 #include <stdbool.h>
 
@@ -33,7 +34,7 @@ typedef struct mcor_build
 /* Programs are built, and kernels compiled, when they are first needed. */
 typedef enum mcor_program
 {
-  MCOR_PROGRAM_LATTICE, /* whole numbers and masks: the same whatever is computed */
+  MCOR_PROGRAM_LATTICE, /* the same for all kernels and fields, with solids and without */
   MCOR_PROGRAM_FIELD,   /* what every surface of the build needs */
   MCOR_PROGRAM_OPTIONS, /* what options need */
   MCOR_PROGRAM_PROBE,   /* mcor_probe and mcor_derive */
@@ -59,6 +60,7 @@ typedef struct mcor_cl
   mcor_build build; /* of the programs */
   mcor_kernel kernels[MCOR_KERNEL_LIMIT];
   int kernel_count;
+  int device_number, units;       /* in the list of devices; that compute side by side */
   bool is_cpu;                    /* the kernels' form for CPUs is used */
   bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
   int lanes;                      /* of the programs */
@@ -115,6 +117,18 @@ typedef enum mcor_load
   mcor_launch(context, name, load, (size_t)(items), (const mcor_arg[]){ __VA_ARGS__ },             \
     sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
 
+/* From so many work-items on, PoCL compiles a kernel once more. */
+#define MCOR_LARGE_LAUNCH 65535
+
+/* A kernel to be compiled before it is needed, see mcor_ahead.h. */
+typedef struct mcor_ahead_kernel
+{
+  const char* name;
+  mcor_program program;
+  mcor_load load;
+  bool large; /* to be launched with many work-items */
+} mcor_ahead_kernel;
+
 mcor_status mcor_open_device(mcor_context* context, const char* device);
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
@@ -140,5 +154,15 @@ mcor_status mcor_copy(
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
+
+/* For compiling ahead. Whether it is of use: kernels of the build are not at hand, the driver
+ * compiles them one after the other, and keeps them where other processes find them. */
+bool mcor_can_compile_ahead(const mcor_cl* cl, const mcor_build* build);
+/* As mcor_choose_build, but lanes are guessed, since asking the compiler takes as long as a program. */
+void mcor_guess_build(mcor_context* context, const mcor_build* build);
+/* Has a kernel compiled, by a launch whose counts are all 0: it does nothing. */
+mcor_status mcor_compile_kernel(mcor_context* context, const mcor_ahead_kernel* kernel);
+/* Of all that compiled programs depend on beside their sources and options. */
+mcor_cache_key mcor_device_key(const mcor_cl* cl);
 
 #endif

@@ -4,6 +4,7 @@
 /* The life of a context: what it begins with, what of the last call still holds, what is given back
  * when; and how any call on it runs. */
 
+#include "mcor_box.h"
 #include "mcor_internal.h"
 
 #include <stdlib.h>
@@ -29,6 +30,9 @@ void mcor_set_default_options(mcor_options* options)
     .normals = 1 };
 }
 
+/* Between signs of life, so that cancelling is answered at once and reports cost nothing. */
+#define MCOR_REPORT_SECONDS 0.05
+
 mcor_status mcor_create_context(const char* device, mcor_context** context)
 {
   if (!context)
@@ -40,6 +44,7 @@ mcor_status mcor_create_context(const char* device, mcor_context** context)
   {
     return MCOR_OUT_OF_CAPACITY;
   }
+  (*context)->report_interval = MCOR_REPORT_SECONDS;
   mcor_status status = mcor_open_device(*context, device);
   if (status == MCOR_OK)
   {
@@ -74,6 +79,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_topology(context);
   mcor_release_trim(context);
   mcor_release_attributes(context);
+  mcor_release_box(context);
   mcor_release(context, &context->sort.sums);
   free(context->source);
   context->source = NULL;
@@ -102,6 +108,18 @@ static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
     (a->data || a->constant == b->constant);
 }
 
+/* Whether the same particles and images reach the box, and as much is needed of them. */
+static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
+{
+  bool same = a->has_box == b->has_box && (!a->has_box || a->seeds == b->seeds), part = a->has_box;
+  for (int i = 0; i < 6; ++i)
+  {
+    same = same && (!a->has_box || a->box[i] == b->box[i]) && a->periodic[i] == b->periodic[i];
+    part = part || a->periodic[i] != 0;
+  }
+  return same && (!part || a->nearest_particle == b->nearest_particle);
+}
+
 /* What of the last call still holds. The caller's version numbers stand for the arrays' content;
  * all else that the search grid, the scalar and the node values depend on is compared. */
 static void mcor_check_reuse(
@@ -121,7 +139,8 @@ static void mcor_check_reuse(
     (input->solid == NULL) == (last->solid == NULL);
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
-    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision;
+    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
+    mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
   context->grid_valid =
     context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
   context->value_valid = context->value_valid && context->grid_valid &&
@@ -141,6 +160,7 @@ mcor_status mcor_prepare(
   {
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
+  mcor_place_box(context, options);
   context->grid.has_solids = context->measure.solid_count > 0 && uses_solids;
   const mcor_build build = { .sph_kernel = options->sph_kernel,
     .field = options->field,
@@ -174,14 +194,18 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->statistics = statistics;
   context->phase = MCOR_PHASE_INPUT;
   context->phase_begin = mcor_seconds();
-  context->fraction = context->cl.build_seconds = 0;
+  context->doing = mcor_phase_name(context->phase);
+  context->fraction_end = 0.1;
+  context->cl.build_seconds = 0;
   context->correction_count = context->correction_sum = context->correction_squares = 0;
   context->cl.bytes_peak = context->cl.bytes;
   const mcor_status status = body(context, input, options, result);
   context->last_input = *input;
   context->last_options = *options;
+  mcor_keep_globals(context, options->globals);
   context->options = NULL;
   context->statistics = NULL;
+  mcor_end_box(context);
   if (status != MCOR_OK)
   {
     context->grid_valid = context->value_valid = context->nodes_valid = false;
@@ -200,6 +224,8 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
   cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
   const int64_t held = cl->bytes;
+  context->fraction = 0;
+  context->report_time = mcor_seconds();
   mcor_status status = mcor_try_call(context, input, options, statistics, body, result);
   if (status == MCOR_OUT_OF_CAPACITY)
   {

@@ -14,35 +14,45 @@ typedef struct mcor_decompose_job
   const mcor_flow* flow;
 } mcor_decompose_job;
 
-/* The eigenvalue in the middle of a symmetric matrix, by the roots of its characteristic polynomial
- * as cosines (O. K. Smith, Eigenvalues of a symmetric 3 x 3 matrix, Commun. ACM 4, 1961). */
-static double mcor_middle_eigenvalue(const double m[3][3])
+/* Turns the symmetric matrix so that element (p, q) becomes 0; r is the third index. */
+static void mcor_rotate_away(double m[3][3], int p, int q, int r)
 {
-  const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
-  double square = 0, most = 0;
-  double d[3][3];
-  for (int i = 0; i < 9; ++i)
+  if (fabs(m[p][q]) < 1e-18 * (fabs(m[p][p]) + fabs(m[q][q])))
   {
-    d[i / 3][i % 3] = m[i / 3][i % 3] - (i % 4 == 0 ? mean : 0);
-    most = fmax(most, fabs(d[i / 3][i % 3]));
+    m[p][q] = m[q][p] = 0;
   }
-  if (!(most > 0))
+  if (m[p][q] == 0)
   {
-    return mean;
+    return;
   }
-  for (int i = 0; i < 9; ++i)
+  const double theta = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
+  const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+  const double c = 1 / sqrt(t * t + 1), s = t * c;
+  const double change = t * m[p][q], rp = m[r][p], rq = m[r][q];
+  m[p][p] -= change;
+  m[q][q] += change;
+  m[p][q] = m[q][p] = 0;
+  m[r][p] = m[p][r] = c * rp - s * rq;
+  m[r][q] = m[q][r] = s * rp + c * rq;
+}
+
+/* The eigenvalue in the middle of a symmetric matrix, by Jacobi's rotations: the roots of the
+ * characteristic polynomial would lose half of the digits where two are equal, as of a rotation. */
+static double mcor_middle_eigenvalue(double m[3][3])
+{
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  if (!isfinite(trace))
   {
-    d[i / 3][i % 3] /= most; /* so that no power overflows or vanishes */
-    square += d[i / 3][i % 3] * d[i / 3][i % 3];
+    return trace;
   }
-  const double p = sqrt(square / 6);
-  const double det = d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) -
-    d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
-    d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
-  const double cosine = fmin(fmax(det / (2 * p * p * p), -1), 1);
-  const double angle = acos(cosine) / 3, third = 2.0943951023931954923; /* 2 pi / 3 */
-  /* The largest at `angle`, the smallest a third further, the middle one a third back. */
-  return mean + most * 2 * p * cos(angle - third);
+  for (int sweep = 0; sweep < 20 && (m[0][1] != 0 || m[0][2] != 0 || m[1][2] != 0); ++sweep)
+  {
+    mcor_rotate_away(m, 0, 1, 2);
+    mcor_rotate_away(m, 0, 2, 1);
+    mcor_rotate_away(m, 1, 2, 0);
+  }
+  const double low = fmin(m[0][0], m[1][1]), high = fmax(m[0][0], m[1][1]);
+  return fmax(low, fmin(high, m[2][2]));
 }
 
 static void mcor_decompose(const double j[3][3], const mcor_flow* flow, int64_t i)

@@ -15,7 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Particles that are treated at a time; between two batches a run may be cancelled. */
+/* Particles that are treated at a time. */
 #define MCOR_DERIVE_BATCH (1 << 20)
 
 /* M is inverted where that magnifies rounding by less than this, which it does by its condition: in
@@ -28,8 +28,8 @@ typedef struct mcor_derive_run
   const mcor_input* input;
   bool standard;
   mcor_derivatives* derivatives;
-  mcor_buffer arrays; /* fix [varying_count][grid.count], sorted */
-  mcor_buffer keys, order, in_node, in_offset, node, offset; /* of a batch's particles */
+  mcor_buffer arrays;     /* fix [varying_count][grid.count], sorted */
+  mcor_point_batch batch; /* of particles */
   mcor_buffer moments, slopes;
   int first, count;  /* sorted particles of the batch */
   cl_int* particles; /* [grid.count] index on the device, in input order, of sorted particles */
@@ -37,8 +37,8 @@ typedef struct mcor_derive_run
 
 static void mcor_release_derive(mcor_derive_run* run)
 {
-  MCOR_RELEASE(run->context, &run->arrays, &run->keys, &run->order, &run->in_node, &run->in_offset,
-    &run->node, &run->offset, &run->moments, &run->slopes);
+  mcor_release_batch(run->context, &run->batch);
+  MCOR_RELEASE(run->context, &run->arrays, &run->moments, &run->slopes);
   free(run->particles);
 }
 
@@ -121,23 +121,19 @@ static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
 {
   mcor_context* context = run->context;
   const mcor_grid* grid = &context->grid;
-  const int* blocks = context->lattice.blocks;
   const size_t n = (size_t)run->count, real = context->cl.real_size;
-  const uint64_t bricks = (uint64_t)blocks[0] * (uint64_t)blocks[1] * (uint64_t)blocks[2] * 512;
-  MCOR_TRY(mcor_reserve(context, &run->keys, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &run->in_node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &run->in_offset, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &run->node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &run->offset, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, run->count, MCOR_INT(run->first),
-    MCOR_INT(run->count), MCOR_INT(context->lattice.fix_bits), MCOR_INT(blocks[0] * 8),
-    MCOR_INT(blocks[1] * 8), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
-    MCOR_BUFFER(&run->keys), MCOR_BUFFER(&run->in_node), MCOR_BUFFER(&run->in_offset)));
-  MCOR_TRY(mcor_sort(context, &run->keys, &run->order, run->count, bricks << 6));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_order", MCOR_LIGHT, run->count, MCOR_INT(run->count),
-    MCOR_BUFFER(&run->order), MCOR_BUFFER(&run->in_node), MCOR_BUFFER(&run->in_offset),
-    MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset)));
-  return mcor_make_groups(context, &run->node, 0, run->count, groups);
+    MCOR_INT(run->count), MCOR_INT(context->lattice.fix_bits), MCOR_BUFFER(&grid->px),
+    MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&run->batch.in_node),
+    MCOR_BUFFER(&run->batch.in_offset)));
+  for (int a = 0; a < 3; ++a)
+  {
+    run->batch.first[a] = 0;
+    run->batch.bricks[a] = 8 * context->lattice.blocks[a];
+  }
+  return mcor_group_batch(context, &run->batch, run->count, run->count, groups);
 }
 
 /* The inverse of m; false where it would magnify rounding too much. */
@@ -225,7 +221,7 @@ static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
   mcor_context* context = run->context;
   const size_t n = (size_t)run->count, real = context->cl.real_size;
   void *order = NULL, *moments = NULL, *slopes = NULL;
-  mcor_status status = mcor_map(context, &run->order, n * sizeof(cl_int), false, &order);
+  mcor_status status = mcor_map(context, &run->batch.order, n * sizeof(cl_int), false, &order);
   if (status == MCOR_OK)
   {
     status = mcor_map(context, &run->moments, n * 9 * real, false, &moments);
@@ -240,7 +236,7 @@ static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
     mcor_derive_job job = { run, order, moments, slopes };
     mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job);
   }
-  const mcor_status unmapped[] = { mcor_unmap(context, &run->order, &order),
+  const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.order, &order),
     mcor_unmap(context, &run->moments, &moments), mcor_unmap(context, &run->slopes, &slopes) };
   for (int i = 0; i < 3; ++i)
   {
@@ -260,30 +256,30 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
   MCOR_TRY(mcor_reserve(context, &run->slopes, n * 3 * (size_t)arrays * real));
   for (int array = 0; array < arrays; array += MCOR_ARRAY_STEP)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_gradients", MCOR_HEAVY, groups,
-      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-      MCOR_BUFFER(&run->node), MCOR_BUFFER(&run->offset), MCOR_INT(run->first),
-      MCOR_BUFFER(&run->order), MCOR_INT(array), MCOR_INT(arrays), MCOR_INT(context->grid.count),
-      MCOR_BUFFER(&run->arrays), MCOR_BUFFER(&run->moments), MCOR_BUFFER(&run->slopes)));
+    MCOR_TRY(
+      MCOR_LAUNCH(context, "mcor_derive_gradients", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&run->batch.node),
+        MCOR_BUFFER(&run->batch.offset), MCOR_INT(run->first), MCOR_BUFFER(&run->batch.order),
+        MCOR_INT(array), MCOR_INT(arrays), MCOR_INT(context->grid.count), MCOR_BUFFER(&run->arrays),
+        MCOR_BUFFER(&run->moments), MCOR_BUFFER(&run->slopes)));
   }
+  MCOR_TRY(mcor_finish(context));
+  MCOR_TRY(mcor_report_launch(context));
   return mcor_deliver_derivatives(run);
 }
 
 static mcor_status mcor_derive_all(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
-  const mcor_options* options = context->options;
   const int particles = context->grid.count;
   MCOR_TRY(mcor_load_arrays(run));
   for (run->first = 0; run->first < particles; run->first += run->count)
   {
     const int rest = particles - run->first;
     run->count = rest < MCOR_DERIVE_BATCH ? rest : MCOR_DERIVE_BATCH;
+    const double begin = 0.2 + 0.8 * run->first / particles;
+    MCOR_TRY(mcor_report(context, "derivatives", begin, begin + 0.8 * run->count / particles));
     MCOR_TRY(mcor_derive_batch(run));
-    const double done = (double)(run->first + run->count) / particles;
-    MCOR_RETURN_IF(options->progress &&
-        options->progress(options->progress_user, 0.2 + 0.8 * done, "derivatives") != 0,
-      context, MCOR_CANCELLED, "The derivatives were cancelled.");
   }
   return MCOR_OK;
 }
@@ -334,14 +330,14 @@ static mcor_status mcor_run_derive(
     return MCOR_OK;
   }
   MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   mcor_derive_run run = {
     .context = context, .input = input, .standard = call->standard, .derivatives = call->derivatives
   };
   const mcor_status status = mcor_derive_all(&run);
   mcor_release_derive(&run);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }
 

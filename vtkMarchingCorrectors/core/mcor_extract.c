@@ -4,7 +4,7 @@
 /* mcor_extract: the phases in order. Section numbers in brackets, here and in the phases' files,
  * are those of the paper named in mcor.h. */
 
-#include "mcor_internal.h"
+#include "mcor_box.h"
 
 /* One iso value's surface, appended. */
 static mcor_status mcor_extract_iso(
@@ -14,23 +14,25 @@ static mcor_status mcor_extract_iso(
   const bool last = i + 1 == options->iso_count;
   const double value = options->iso_values[i], iso = value - context->value_shift;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
   MCOR_TRY(mcor_select_seeds(context, iso));
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step));
+  MCOR_TRY(
+    mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
   MCOR_TRY(mcor_march(context, iso));
   if (last && input->scalar_version == 0)
   {
     mcor_release_nodes(context);
   }
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step));
+  MCOR_TRY(
+    mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step, begin + 0.7 * step));
   if (context->mesh.march_count > 0)
   {
     MCOR_TRY(mcor_load_attributes(context, input, 0));
   }
   MCOR_TRY(mcor_correct(context, iso));
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context, iso));
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
   if (last && input->particles_version == 0 && !mcor_output_evaluates(context))
   {
@@ -50,9 +52,13 @@ static mcor_status mcor_extract_all(
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_prepare(
-    context, input, options, !input->ignore_solids && options->field != MCOR_WEIGHT_SUM));
-  for (int i = 0; i < options->iso_count; ++i)
+  const mcor_build build = { .sph_kernel = options->sph_kernel,
+    .field = options->field,
+    .precision = options->precision,
+    .solids = mcor_uses_solids(input, options) && input->solid };
+  mcor_begin_ahead(context, &build, input);
+  MCOR_TRY(mcor_prepare(context, input, options, mcor_uses_solids(input, options)));
+  for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
   }
@@ -60,7 +66,8 @@ static mcor_status mcor_extract_all(
   {
     MCOR_TRY(mcor_finish_normals(context, surface));
   }
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1));
+  MCOR_TRY(mcor_crop_surface(context, input, surface));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }
 
@@ -75,6 +82,7 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
   const mcor_status status =
     mcor_run_call(context, input, options, &surface->statistics, mcor_extract_all, surface);
+  mcor_end_ahead(context, status == MCOR_OK);
   if (status != MCOR_OK)
   {
     mcor_free_surface(surface);

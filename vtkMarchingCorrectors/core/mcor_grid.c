@@ -137,14 +137,16 @@ static mcor_status mcor_order_cells(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
+  const double norm = mcor_kernel_norm(context->cl.build.sph_kernel);
   const mcor_buffer *xyz = &context->stage.xyz, *inv_h = &context->stage.inv_h,
                     *size = &context->stage.size, *solid = &context->stage.solid;
   mcor_buffer* most = &context->stage.found;
   cl_int most_in_cell = MCOR_USUAL_IN_CELL;
   MCOR_TRY(mcor_write(context, most, &most_in_cell, sizeof most_in_cell));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
-    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_GRID_INPUT(xyz, inv_h, size, solid),
-    MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid), MCOR_BUFFER(most)));
+    MCOR_INT(count), MCOR_REAL(norm), MCOR_BUFFER(&grid->cell_keys),
+    MCOR_GRID_INPUT(xyz, inv_h, size, solid), MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid),
+    MCOR_BUFFER(most)));
   MCOR_TRY(mcor_read(context, most, 0, &most_in_cell, sizeof most_in_cell));
   grid->most_in_cell = most_in_cell;
   if (most_in_cell <= MCOR_INSERTION_OF(context->cl.lanes))
@@ -159,7 +161,7 @@ static mcor_status mcor_order_cells(mcor_context* context)
     .value = inv_h,
     .most = most_in_cell };
   MCOR_TRY(mcor_sort_same_keys(context, &sort));
-  return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count), MCOR_REAL(norm),
     MCOR_BUFFER(&grid->cell_keys), MCOR_GRID_INPUT(xyz, inv_h, size, solid),
     MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid));
 }
@@ -171,7 +173,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   const size_t n = (size_t)staging->count;
   const mcor_buffer *xyz = &context->stage.xyz, *level = &context->stage.level;
   const uint64_t cells = mcor_make_levels(context, staging);
-  const int count = grid->count = staging->count;
+  const int count = grid->count;
   MCOR_TRY(mcor_unmap_staging(context, staging));
   MCOR_TRY(mcor_write(
     context, &grid->level_buffer, grid->levels, (size_t)grid->level_count * sizeof(mcor_level)));
@@ -245,16 +247,17 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   mcor_status status = mcor_stage(context, input, &staging);
   if (status == MCOR_OK)
   {
-    status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1);
+    status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15);
   }
-  if (status == MCOR_OK)
+  context->grid.count = staging.count;
+  if (status == MCOR_OK && staging.count > 0)
   {
     status = mcor_sort_particles(context, &staging);
   }
   const mcor_status unmapped = mcor_unmap_staging(context, &staging);
   MCOR_TRY(status);
   MCOR_TRY(unmapped);
-  if (mcor_needs_density(input))
+  if (mcor_needs_density(input) && staging.count > 0)
   {
     MCOR_TRY(mcor_compute_volumes(context, input));
   }
@@ -313,7 +316,15 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   mcor_grid* grid = &context->grid;
   const mcor_field field = context->options->field;
   context->value_shift = 0;
-  if (field == MCOR_SHEPARD)
+  if (grid->count == 0)
+  {
+    return MCOR_OK;
+  }
+  if (field == MCOR_SHEPARD && context->options->globals)
+  {
+    context->value_shift = context->options->globals->scalar_shift;
+  }
+  else if (field == MCOR_SHEPARD)
   {
     MCOR_TRY(mcor_find_median(context, input, &context->value_shift));
   }

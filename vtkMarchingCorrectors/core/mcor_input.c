@@ -165,6 +165,16 @@ static int mcor_exponent_of(const mcor_array* array, int64_t i)
   return exponent;
 }
 
+static bool mcor_is_zero(const mcor_array* array, int64_t i)
+{
+  bool zero = true;
+  for (int c = 0; c < mcor_components(array); ++c)
+  {
+    zero = zero && mcor_array_at(array, i, c) == 0;
+  }
+  return zero;
+}
+
 /* Of particle i, a^T b or its root, by powers of 2 that keep what exists from overflowing, or
  * vanishing, on the way. */
 static double mcor_scaled_product(
@@ -183,38 +193,98 @@ static double mcor_scaled_product(
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 
-void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
+/* Compilers vectorise these where they know the stride. */
+static inline void mcor_square_floats(const float* x, int components, int count, double* out)
 {
-  const mcor_array *a = &input->scalar, *b = input->scalar_dot.data ? &input->scalar_dot : a;
-  const int components = mcor_components(a);
-  if (!mcor_scalar_is_derived(input))
-  {
-    mcor_read_array(a, first, count, components > 1 ? input->scalar_component : 0, out);
-    return;
-  }
-  double x[MCOR_CHUNK], y[MCOR_CHUNK];
-  memset(out, 0, (size_t)count * sizeof *out);
-  for (int c = 0; c < components; ++c)
-  {
-    mcor_read_array(a, first, count, c, x);
-    if (b != a)
-    {
-      mcor_read_array(b, first, count, c, y);
-    }
-    const double* other = b != a ? y : x;
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] += x[i] * other[i];
-    }
-  }
-  const bool magnitude = !input->scalar_dot.data;
   for (int i = 0; i < count; ++i)
   {
-    const bool good =
-      magnitude ? out[i] > MCOR_SQUARE_MIN && out[i] < MCOR_SQUARE_MAX : isfinite(out[i]);
-    out[i] = !good ? mcor_scaled_product(a, b, first + i, magnitude)
-      : magnitude  ? sqrt(out[i])
-                   : out[i];
+    double sum = 0;
+    for (int c = 0; c < components; ++c)
+    {
+      const double v = (double)x[(int64_t)i * components + c];
+      sum += v * v;
+    }
+    out[i] = sum;
+  }
+}
+
+static inline void mcor_square_doubles(const double* x, int components, int count, double* out)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    double sum = 0;
+    for (int c = 0; c < components; ++c)
+    {
+      const double v = x[(int64_t)i * components + c];
+      sum += v * v;
+    }
+    out[i] = sum;
+  }
+}
+
+static void mcor_read_magnitude(const mcor_array* a, int64_t first, int count, double* out)
+{
+  const int components = mcor_components(a);
+  if (a->type == MCOR_FLOAT64)
+  {
+    const double* x = (const double*)a->data + first * components;
+    components == 3 ? mcor_square_doubles(x, 3, count, out)
+                    : mcor_square_doubles(x, components, count, out);
+  }
+  else
+  {
+    const float* x = (const float*)a->data + first * components;
+    components == 3 ? mcor_square_floats(x, 3, count, out)
+                    : mcor_square_floats(x, components, count, out);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const bool good = out[i] > MCOR_SQUARE_MIN && out[i] < MCOR_SQUARE_MAX;
+    if (good)
+    {
+      out[i] = sqrt(out[i]);
+    }
+    else if (out[i] != 0 || !mcor_is_zero(a, first + i))
+    {
+      out[i] = mcor_scaled_product(a, a, first + i, true);
+    }
+  }
+}
+
+static void mcor_read_dot(
+  const mcor_array* a, const mcor_array* b, int64_t first, int count, double* out)
+{
+  double x[MCOR_CHUNK], y[MCOR_CHUNK];
+  memset(out, 0, (size_t)count * sizeof *out);
+  for (int c = 0; c < mcor_components(a); ++c)
+  {
+    mcor_read_array(a, first, count, c, x);
+    mcor_read_array(b, first, count, c, y);
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] += x[i] * y[i];
+    }
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    out[i] = isfinite(out[i]) ? out[i] : mcor_scaled_product(a, b, first + i, false);
+  }
+}
+
+void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
+{
+  const mcor_array *a = &input->scalar, *b = &input->scalar_dot;
+  if (!mcor_scalar_is_derived(input))
+  {
+    mcor_read_array(a, first, count, mcor_components(a) > 1 ? input->scalar_component : 0, out);
+  }
+  else if (b->data)
+  {
+    mcor_read_dot(a, b, first, count, out);
+  }
+  else
+  {
+    mcor_read_magnitude(a, first, count, out);
   }
 }
 

@@ -29,6 +29,9 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
 
 #define MCOR_CHUNK 1024
 
+/* Kernels count in int, also a little beyond the last particle. */
+#define MCOR_PARTICLE_LIMIT 2000000000
+
 static inline const char* mcor_array_name(const mcor_array* array, const char* role)
 {
   return array->name ? array->name : role;
@@ -49,6 +52,13 @@ int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int6
 /* Whether all values of one component are equal. */
 bool mcor_is_constant(const mcor_array* array, int64_t count, int component);
 
+/* Components of all attributes together. */
+size_t mcor_count_components(const mcor_input* input);
+
+/* mcor_attribute.c. Of one component, all but whether its attribute is finite. */
+void mcor_measure_component(
+  const mcor_input* input, int attribute, int component, mcor_global_component* found);
+
 /* Whether the scalar is a magnitude or a dot product. */
 static inline bool mcor_scalar_is_derived(const mcor_input* input)
 {
@@ -61,6 +71,15 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
 /* One for all particles, from their spacing. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
+/* Of `count` numbers, which it sorts; 0 of none. */
+double mcor_median_of(double* values, int count);
+
+/* mcor_measure_neighbours.c. Told of all positions, it ends by filling in the measure's neighbours,
+ * spacing, filled and h_median. An estimated smoothing length is to be known before. */
+typedef struct mcor_watch mcor_watch;
+mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun);
+void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK]);
+void mcor_end_watch(mcor_watch* watch, int slices, mcor_measure* m);
 /* Smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);

@@ -6,6 +6,7 @@
 /* State shared by the phases. Each phase is one file of the same name as its kernels. */
 
 #include "mcor.h"
+#include "mcor_ahead.h"
 #include "mcor_cl.h"
 #include "mcor_shared.h"
 
@@ -41,6 +42,8 @@ typedef struct mcor_measure
   double scalar_min, scalar_max;
   int64_t not_finite; /* first fluid particle of which the scalar is not, INT64_MAX: none */
   double h_estimate;  /* where it was asked for */
+  double neighbours, spacing, filled, h_median; /* see mcor_end_watch */
+  double x_low[3], x_high[3];                   /* of the positions of fluid particles */
   double cube;
 } mcor_measure;
 
@@ -52,6 +55,7 @@ typedef struct mcor_lattice
   int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
   int fix_bits;
   int blocks[3];
+  int period[3], period_first[3]; /* cells, 0: open; where one begins, from origin */
 } mcor_lattice;
 
 /* On the way to the search grid. */
@@ -137,10 +141,18 @@ typedef struct mcor_points
   mcor_buffer flags, groups;
 } mcor_points;
 
+/* Points that are evaluated in sorted order, as nodes and offsets; in_: as they came. */
+typedef struct mcor_point_batch
+{
+  mcor_buffer keys, order, in_node, in_offset, node, offset;
+  cl_int first[3], bricks[3]; /* the bricks that its points are in: fewer make shorter keys */
+} mcor_point_batch;
+
 /* [III-D.3] */
 typedef struct mcor_trim_data
 {
   mcor_buffer eigenvalue;            /* real, at vertices; what the vertex threshold may apply to */
+  mcor_buffer margin;                /* real, at vertices; see mcor_trim_margin */
   mcor_buffer remaining, cuts;       /* per batch of triangles */
   mcor_buffer keys, distinct, index; /* of cut edges */
   mcor_buffer triangles;
@@ -169,10 +181,21 @@ typedef struct mcor_attributes
   mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
 
+/* The cells that a call owns; see mcor_box.c. */
+typedef struct mcor_box
+{
+  bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
+  int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
+  mcor_buffer owned;      /* uchar per triangle of the mesh: 1 of an owned cell */
+  mcor_buffer clipped;    /* ulong per brick, of mcor_count_cells */
+  uint8_t* kept;          /* per triangle of the surface: as owned; NULL: all are */
+} mcor_box;
+
 struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
   mcor_cl cl;
+  mcor_ahead ahead;
   mcor_sort_data sort;
   mcor_stage_data stage;
   mcor_grid grid;
@@ -185,11 +208,13 @@ struct mcor_context
   mcor_measure measure;
   mcor_buffer case_table;
   mcor_attributes attributes;
-  int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
-  double value_shift;    /* A0 */
-  double largest_weight; /* no particle has a greater V / (scaled h)^3 */
-  bool nodes_valid;      /* bricks hold node values of the current scalar */
-  mcor_input last_input; /* what grid and value were made from */
+  mcor_box box;
+  int32_t* source;           /* [grid.count] input index of each device particle; NULL: the same */
+  double value_shift;        /* A0 */
+  double largest_weight;     /* no particle has a greater V / (scaled h)^3 */
+  bool nodes_valid;          /* bricks hold node values of the current scalar */
+  mcor_input last_input;     /* what grid and value were made from */
+  mcor_globals last_globals; /* given; 0 where none were; its components are not kept */
   mcor_options last_options;
   bool grid_valid, value_valid;
   const mcor_options* options; /* of the call under way; NULL between calls */
@@ -197,8 +222,11 @@ struct mcor_context
   mcor_statistics* statistics;
   mcor_phase phase;
   double phase_begin;
-  double fraction;    /* last reported */
-  bool building_told; /* in this phase */
+  const char* doing;             /* what runs, as last reported */
+  double fraction, fraction_end; /* last reported; where what runs ends */
+  double report_time;            /* of the last report */
+  double report_interval;        /* between launches, seconds; at least that */
+  bool building_told;            /* in this phase */
   double correction_count, correction_sum, correction_squares;
   char error[4096];
 };
@@ -209,6 +237,8 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 #endif
   ;
 double mcor_seconds(void);
+/* Of a kernel with W = norm / h^3 w(q). */
+double mcor_kernel_norm(mcor_sph_kernel kernel);
 
 /* mcor_pages.c. Before an array of the host, or of a device that shares its memory, is touched. */
 #define MCOR_LARGE_ARRAY ((size_t)4 << 20)
@@ -236,6 +266,12 @@ static inline int mcor_batches(const mcor_context* context, int count)
   return (count - 1) / MCOR_BATCH_OF(context->cl.lanes) + 1;
 }
 
+/* The free surface needs solids only to end at them. */
+static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options* options)
+{
+  return !input->ignore_solids && (options->field != MCOR_WEIGHT_SUM || options->wall_share > 0);
+}
+
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
 static inline bool mcor_uses_pairs(const mcor_context* context)
 {
@@ -258,8 +294,12 @@ mcor_status mcor_prepare(
     sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count);
 
+/* Reports that something runs from one fraction of the call to another; may cancel. */
+mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
+/* The same between two launches: where it is time for a sign of life, a bit nearer to the end. */
+mcor_status mcor_report_launch(mcor_context* context);
 /* Ends the phase under way, reports progress and may cancel. */
-mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction);
+mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 
 /* mcor_check.c, mcor_measure.c */
@@ -267,6 +307,11 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
+
+/* mcor_globals.c */
+void mcor_take_globals(mcor_context* context, const mcor_globals* globals);
+bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals);
+void mcor_keep_globals(mcor_context* context, const mcor_globals* globals);
 
 /* mcor_scan.c */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total);
@@ -304,6 +349,9 @@ mcor_status mcor_find_neighbours(mcor_context* context);
 mcor_status mcor_append_bricks(mcor_context* context);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
+mcor_status mcor_group_batch(
+  mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
+void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int count, int* total);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
@@ -328,6 +376,15 @@ mcor_status mcor_add_attributes(
 bool mcor_output_evaluates(const mcor_context* context);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
+/* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
+#define MCOR_SURFACE_ARRAYS 10
+typedef struct mcor_surface_array
+{
+  void** array;
+  size_t width;
+} mcor_surface_array;
+void mcor_list_surface_arrays(
+  mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 
 /* 256 rows of 16: up to 15 edges, 3 a triangle, see mcor_cell_row; then the number of triangles. */
@@ -372,6 +429,7 @@ extern const char mcor_source_mcor_topology_cl[];
 extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
+extern const char mcor_source_mcor_box_cl[];
 extern const char mcor_source_mcor_probe_cl[];
 extern const char mcor_source_mcor_derive_cl[];
 

@@ -3,18 +3,19 @@
 
 /* Extraction [III-D.1]. */
 
-#include "mcor_internal.h"
+#include "mcor_box.h"
 
-/* The used cells, among those examined. */
+/* The used cells, among those examined, of the box and its ring. */
 static mcor_status mcor_classify_cells(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used));
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used)));
+  return mcor_clip_used(context);
 }
 
 /* From the cells of pairs: one round of growth; *grown is false when no cell was added. */
@@ -42,7 +43,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   mcor_statistics* statistics = context->statistics;
   const bool pairs = mcor_uses_pairs(context);
   int seeds = 0, hits, used;
-  MCOR_TRY(mcor_count_bits(context, &bricks->now.cells, bricks->now.count, &seeds));
+  MCOR_TRY(mcor_count_cells(context, &bricks->now.cells, &seeds));
   statistics->seed_cells += seeds;
   for (bool first = true, grown = true; grown; first = false)
   {
@@ -52,7 +53,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
     if (first)
     {
       MCOR_TRY(mcor_classify_cells(context));
-      MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &hits));
+      MCOR_TRY(mcor_count_cells(context, &mesh->used, &hits));
       statistics->seed_cells_not_intersected += seeds - hits;
     }
     ++statistics->march_rounds;
@@ -64,9 +65,20 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
     MCOR_TRY(mcor_find_neighbours(context));
   }
   MCOR_TRY(mcor_classify_cells(context));
-  MCOR_TRY(mcor_count_bits(context, &mesh->used, bricks->now.count, &used));
+  MCOR_TRY(mcor_count_cells(context, &mesh->used, &used));
   statistics->cells_used += used;
   return MCOR_OK;
+}
+
+static mcor_status mcor_emit_triangles(mcor_context* context)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  const mcor_mesh* mesh = &context->mesh;
+  const int count = bricks->now.count;
+  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }
 
 /* Vertices and triangles. iso: relative to A0. */
@@ -93,7 +105,6 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
-  context->statistics->triangles_before_trimming += mesh->triangle_count;
   const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
   MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
@@ -102,14 +113,11 @@ mcor_status mcor_march(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->edges),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  if (resolved)
-  {
-    return mcor_emit_resolved(context);
-  }
-  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+  MCOR_TRY(resolved ? mcor_emit_resolved(context) : mcor_emit_triangles(context));
+  int owned;
+  MCOR_TRY(mcor_mark_owned(context, &owned));
+  context->statistics->triangles_before_trimming += owned;
+  return MCOR_OK;
 }
 
 void mcor_release_mesh(mcor_context* context)

@@ -3,6 +3,7 @@
 
 /* What the other phases need to know of the particles: ranges, bounds, the lattice. */
 
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
@@ -63,6 +64,11 @@ static void mcor_measure_particle(
     m->low[a] = mcor_least(m->low[a], chunk->x[a][i] - support);
     m->high[a] = mcor_most(m->high[a], chunk->x[a][i] + support);
   }
+  for (int a = 0; a < 3 && !solid; ++a)
+  {
+    m->x_low[a] = mcor_least(m->x_low[a], chunk->x[a][i]);
+    m->x_high[a] = mcor_most(m->x_high[a], chunk->x[a][i]);
+  }
   if (!solid)
   {
     m->h_min = mcor_least(m->h_min, h);
@@ -77,6 +83,8 @@ static void mcor_measure_particle(
 
 static const mcor_measure mcor_nothing = { .low = { DBL_MAX, DBL_MAX, DBL_MAX },
   .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
+  .x_low = { DBL_MAX, DBL_MAX, DBL_MAX },
+  .x_high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
   .h_min = DBL_MAX,
   .support_min = DBL_MAX,
   .scalar_min = DBL_MAX,
@@ -91,6 +99,8 @@ static void mcor_merge_measure(mcor_measure* m, const mcor_measure* other)
   {
     m->low[a] = mcor_least(m->low[a], other->low[a]);
     m->high[a] = mcor_most(m->high[a], other->high[a]);
+    m->x_low[a] = mcor_least(m->x_low[a], other->x_low[a]);
+    m->x_high[a] = mcor_most(m->x_high[a], other->x_high[a]);
   }
   m->h_min = mcor_least(m->h_min, other->h_min);
   m->h_max = mcor_most(m->h_max, other->h_max);
@@ -106,6 +116,7 @@ typedef struct mcor_measuring
   const mcor_context* context;
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
+  mcor_watch* watch;
   mcor_measure measures[MCOR_SLICES];
 } mcor_measuring;
 
@@ -120,6 +131,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   {
     chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
     mcor_read_chunk(job->context, input, begin, &chunk);
+    mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
     for (int i = 0; i < chunk.count; ++i)
     {
       const bool solid = input->solid && input->solid[begin + i];
@@ -138,14 +150,18 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   job->measures[slice] = m;
 }
 
-static void mcor_measure_particles(mcor_context* context, const mcor_input* input, double reach)
+static mcor_status mcor_measure_particles(
+  mcor_context* context, const mcor_input* input, double reach)
 {
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
+  MCOR_TRY(mcor_begin_watch(context, input, &job.watch));
   const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job);
   for (int s = 0; s < slices; ++s)
   {
     mcor_merge_measure(&context->measure, &job.measures[s]);
   }
+  mcor_end_watch(job.watch, slices, &context->measure);
+  return MCOR_OK;
 }
 
 /* The components are finite, but the magnitude or the dot product may not be. */
@@ -170,8 +186,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
 {
   mcor_measure* m = &context->measure;
   mcor_lattice* lattice = &context->lattice;
-  const double cube =
-    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  double cube = options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
   MCOR_RETURN_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
     "The cube size is %g; it must be between %g and %g. Use another cube size, or another unit of "
     "length.",
@@ -180,6 +195,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
     "or remove particles of such a smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
+  MCOR_TRY(mcor_fit_period(context, options, &cube));
   lattice->cube = m->cube = cube;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)
@@ -195,6 +211,9 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     lattice->first[a] = (int64_t)first - lattice->origin[a];
     lattice->last[a] = (int64_t)last - lattice->origin[a];
     lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
+    lattice->period_first[a] = lattice->period[a] > 0
+      ? (int)(ceil(options->periodic[2 * a] / cube - 0.5) - (double)lattice->origin[a])
+      : 0;
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
@@ -212,12 +231,17 @@ mcor_status mcor_measure_input(
 {
   mcor_measure* m = &context->measure;
   *m = mcor_nothing;
+  if (options->globals)
+  {
+    mcor_take_globals(context, options->globals);
+    return mcor_measure_lattice(context, options);
+  }
   if (input->estimate_smoothing_length)
   {
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));
   }
-  mcor_measure_particles(
-    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale);
+  MCOR_TRY(mcor_measure_particles(
+    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale));
   MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
     "None of the %lld particles is marked as fluid.", (long long)input->count);
   if (options->field == MCOR_WEIGHT_SUM)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Where most values of the scalar are. */
+/* Medians: about that of the scalar, and that of a few numbers. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -116,4 +116,16 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
   *median = mcor_narrow_median(&job, m->fluid_count);
   free(job.bins);
   return MCOR_OK;
+}
+
+static int mcor_compare_doubles(const void* a, const void* b)
+{
+  const double x = *(const double*)a, y = *(const double*)b;
+  return (x > y) - (x < y);
+}
+
+double mcor_median_of(double* values, int count)
+{
+  qsort(values, (size_t)count, sizeof *values, mcor_compare_doubles);
+  return count > 0 ? values[count / 2] : 0;
 }

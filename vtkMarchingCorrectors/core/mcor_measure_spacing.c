@@ -31,12 +31,6 @@ static uint64_t mcor_hash_position(const double x[3])
   return hash;
 }
 
-static int mcor_compare_double(const void* a, const void* b)
-{
-  const double x = *(const double*)a, y = *(const double*)b;
-  return (x > y) - (x < y);
-}
-
 #define MCOR_SAMPLES 256
 #define MCOR_SAMPLE_NEIGHBOURS 32
 
@@ -178,8 +172,7 @@ mcor_status mcor_estimate_smoothing_length(
   const int count = job.samples[0].count;
   mcor_parallel_for(count, 1, mcor_space_slice, &job);
   free(job.samples);
-  qsort(job.spacing, (size_t)count, sizeof job.spacing[0], mcor_compare_double);
-  *estimate = 1.3 * job.spacing[count / 2] / job.scale;
+  *estimate = 1.3 * mcor_median_of(job.spacing, count) / job.scale;
   MCOR_RETURN_IF(!(*estimate > 0), context, MCOR_INVALID_DATA,
     "The smoothing length cannot be estimated: most particles lie at one point.");
   return MCOR_OK;

@@ -6,9 +6,11 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_box.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Views of the mesh's vertices; see mcor_is_output. */
 enum
@@ -31,6 +33,7 @@ typedef struct mcor_download
   const cl_int *scanned, *node;
   const void *offset, *linear, *value, *gradient, *weight;
   const uint8_t* flag;
+  uint8_t* owned; /* see mcor_keep_owned */
 } mcor_download;
 
 /* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
@@ -107,30 +110,30 @@ static mcor_status mcor_grow(
   return MCOR_OK;
 }
 
+void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS])
+{
+  const mcor_surface_array all[MCOR_SURFACE_ARRAYS] = { { (void**)&s->points, 3 * sizeof(double) },
+    { (void**)&s->normals, 3 * sizeof(float) }, { (void**)&s->gradients, 3 * sizeof(double) },
+    { (void**)&s->weight_sum, sizeof(float) }, { (void**)&s->boundary_eigenvalue, sizeof(float) },
+    { (void**)&s->correction_length, sizeof(float) }, { (void**)&s->residual, sizeof(float) },
+    { (void**)&s->boundary_flag, 1 }, { (void**)&s->iso_value, sizeof(double) },
+    { (void**)&s->nearest_particle, sizeof(int64_t) } };
+  memcpy(arrays, all, sizeof all);
+}
+
 static mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points)
 {
   const mcor_options* o = context->options;
   const int64_t n = s->point_count;
-  const bool normals = o->normals;
-  struct
+  const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
+    o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
+    o->nearest_particle };
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
+  mcor_list_surface_arrays(s, arrays);
+  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
   {
-    bool wanted;
-    void** array;
-    size_t width;
-  } const arrays[] = { { true, (void**)&s->points, 3 * sizeof(double) },
-    { normals, (void**)&s->normals, 3 * sizeof(float) },
-    { o->gradients, (void**)&s->gradients, 3 * sizeof(double) },
-    { o->weight_sum, (void**)&s->weight_sum, sizeof(float) },
-    { o->boundary_eigenvalue, (void**)&s->boundary_eigenvalue, sizeof(float) },
-    { o->correction_length, (void**)&s->correction_length, sizeof(float) },
-    { o->residual, (void**)&s->residual, sizeof(float) },
-    { o->boundary_flag, (void**)&s->boundary_flag, 1 },
-    { o->iso_value, (void**)&s->iso_value, sizeof(double) },
-    { o->nearest_particle, (void**)&s->nearest_particle, sizeof(int64_t) } };
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
-  {
-    if (arrays[i].wanted)
+    if (wanted[i])
     {
       MCOR_TRY(mcor_grow(context, arrays[i].array, n, points, arrays[i].width));
     }
@@ -287,7 +290,10 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
     {
       mcor_store_point(
         delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
-      mcor_count_correction(delivery->context, d, v, &tally);
+      if (!d->owned || d->owned[v])
+      {
+        mcor_count_correction(delivery->context, d, v, &tally);
+      }
     }
   }
   delivery->tallies[slice] = tally;
@@ -382,6 +388,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   {
     MCOR_TRY(mcor_map_vertices(context, download));
   }
+  MCOR_TRY(mcor_keep_owned(context, surface, &download->owned));
   MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
@@ -429,6 +436,7 @@ mcor_status mcor_append_output(
   const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
   const mcor_status unmapped = mcor_unmap_vertices(context, &download);
   mcor_release_vertices(context);
+  free(download.owned);
   return status != MCOR_OK ? status : unmapped;
 }
 

@@ -20,6 +20,35 @@ mcor_status mcor_make_groups(
     MCOR_INT(count), MCOR_BUFFER(&points->flags), MCOR_BUFFER(&points->groups));
 }
 
+/* Sorts the batch's points by place, those in no brick last, and cuts the `inside` other ones into
+ * groups. */
+mcor_status mcor_group_batch(
+  mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count)
+{
+  const cl_int *first = batch->first, *bricks = batch->bricks;
+  const size_t n = (size_t)inside;
+  const uint64_t keys =
+    (uint64_t)bricks[0] * (uint64_t)bricks[1] * (uint64_t)bricks[2] * MCOR_BRICK_NODES;
+  MCOR_TRY(mcor_reserve(context, &batch->keys, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_probe_key", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(first[0]),
+      MCOR_INT(first[1]), MCOR_INT(first[2]), MCOR_INT(bricks[0]), MCOR_INT(bricks[1]),
+      MCOR_INT(bricks[2]), MCOR_BUFFER(&batch->in_node), MCOR_BUFFER(&batch->keys)));
+  MCOR_TRY(mcor_sort(context, &batch->keys, &batch->order, count, keys + (inside < count ? 1 : 0)));
+  MCOR_TRY(mcor_reserve(context, &batch->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &batch->offset, n * 4 * context->cl.real_size));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_order", MCOR_LIGHT, inside, MCOR_INT(inside),
+    MCOR_BUFFER(&batch->order), MCOR_BUFFER(&batch->in_node), MCOR_BUFFER(&batch->in_offset),
+    MCOR_BUFFER(&batch->node), MCOR_BUFFER(&batch->offset)));
+  return mcor_make_groups(context, &batch->node, 0, inside, group_count);
+}
+
+void mcor_release_batch(mcor_context* context, mcor_point_batch* batch)
+{
+  MCOR_RELEASE(context, &batch->keys, &batch->order, &batch->in_node, &batch->in_offset,
+    &batch->node, &batch->offset);
+}
+
 void mcor_release_points(mcor_context* context)
 {
   MCOR_RELEASE(context, &context->points.flags, &context->points.groups);

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Compilers take their time, so a program holds little that a run does not need, and what does not
- * depend on the SPH kernel, the field, the precision or solids is compiled once for all of them. */
+ * depend on the SPH kernel, the field or solids is compiled once for all of them. */
 
 #include "mcor_program.h"
 #include "mcor_internal.h"
@@ -40,7 +40,7 @@ int mcor_program_sources(
     { mcor_source_mcor_points_cl, FIELD | OPTIONS | PROBE },
     { vectors ? mcor_source_mcor_gather_lanes_cl : mcor_source_mcor_gather_point_cl,
       FIELD | OPTIONS | PROBE },
-    { mcor_source_mcor_scan_cl, LATTICE }, { mcor_source_mcor_grid_cl, FIELD },
+    { mcor_source_mcor_scan_cl, LATTICE }, { mcor_source_mcor_grid_cl, LATTICE | FIELD },
     { mcor_source_mcor_brick_cl, LATTICE | FIELD | OPTIONS },
     { mcor_source_mcor_node_cl, FIELD | OPTIONS },
     { vectors ? mcor_source_mcor_node_lanes_cl : mcor_source_mcor_node_point_cl, FIELD | OPTIONS },
@@ -52,7 +52,8 @@ int mcor_program_sources(
     { mcor_source_mcor_evaluate_cl, FIELD | OPTIONS },
     { mcor_source_mcor_correct_cl, FIELD | OPTIONS }, { mcor_source_mcor_topology_cl, OPTIONS },
     { mcor_source_mcor_boundary_cl, trim | OPTIONS }, { mcor_source_mcor_trim_cl, LATTICE | trim },
-    { mcor_source_mcor_probe_cl, PROBE }, { mcor_source_mcor_derive_cl, PROBE } };
+    { mcor_source_mcor_box_cl, LATTICE | FIELD | OPTIONS }, { mcor_source_mcor_probe_cl, PROBE },
+    { mcor_source_mcor_derive_cl, PROBE } };
   int count = 0;
   for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
   {
@@ -84,13 +85,13 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
   const char* f = is_double ? "" : "f";
-  int length = snprintf(text, size, "-w -cl-std=CL1.2%s -DMCOR_PROGRAM=%d",
+  int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s -DMCOR_PROGRAM=%d",
     cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", (int)program);
   if (program == MCOR_PROGRAM_LATTICE)
   {
     /* It knows no vectors, only whether to work for a CPU. */
-    snprintf(text + length, size - (size_t)length, " -DMCOR_LANES=%d -DMCOR_DOUBLE=0",
-      cl->lanes == 1 ? 1 : 8);
+    snprintf(text + length, size - (size_t)length, " -DMCOR_LANES=%d -DMCOR_DOUBLE=%d",
+      cl->lanes == 1 ? 1 : 8, is_double);
     return;
   }
   snprintf(text + length, size - (size_t)length,

@@ -3,7 +3,7 @@
 
 /* Seed cells [III-C]. */
 
-#include "mcor_internal.h"
+#include "mcor_box.h"
 
 #include <float.h>
 #include <math.h>
@@ -48,6 +48,7 @@ static mcor_status mcor_test_regions(
   cl_int count;
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
   *listed = count;
+  MCOR_TRY(mcor_void_bricks(context));
   return mcor_place_bricks(context);
 }
 

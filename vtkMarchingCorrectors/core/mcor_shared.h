@@ -87,6 +87,15 @@ typedef struct mcor_cell_row
 /* Points that one work-item cuts into groups. */
 #define MCOR_GROUPED_POINTS_OF(lanes) ((lanes) == 1 ? 1 : 512)
 
+/* How far apart the nodes of a group of points may be along an axis, in cubes. */
+#define MCOR_GROUP_EDGE 7
+
+/* How far the points of a group may be from the node that their positions, and those of particles,
+ * count from: half a group, an offset from the node, and 1. Positions of particles are so many digits
+ * shorter the larger their support is (mcor_stage.c) that they are exact, as reals, this much beyond
+ * it. */
+#define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
+
 /* Components of attributes that are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 12
 

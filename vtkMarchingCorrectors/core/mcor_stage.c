@@ -4,9 +4,11 @@
 /* From the caller's arrays to the device: particles and values, in input order. */
 
 #include "mcor_stage.h"
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,7 +114,8 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input)
   {
     return 1;
   }
-  return 1 / mcor_largest(&input->mass, NULL, input->count, 0);
+  const mcor_globals* globals = context->options->globals;
+  return 1 / (globals ? globals->mass_max : mcor_largest(&input->mass, NULL, input->count, 0));
 }
 
 static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
@@ -147,8 +150,9 @@ typedef struct mcor_stage_chunk
   int32_t source[MCOR_CHUNK];
 } mcor_stage_chunk;
 
-static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
-  int64_t first, const mcor_staging* staging, mcor_stage_chunk* chunk)
+/* Where they are, and how large. reach: NULL, or what tells of a period. */
+static void mcor_read_stage_places(const mcor_context* context, const mcor_input* input,
+  int64_t first, const mcor_reach_box* reach, mcor_stage_chunk* chunk)
 {
   const mcor_lattice* lattice = &context->lattice;
   const double scale = ldexp(1, lattice->fix_bits);
@@ -164,13 +168,26 @@ static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input*
     {
       x[i] = (x[i] / lattice->cube - origin) * scale;
     }
+    for (int i = 0; i < count && reach && reach->period[a] > 0; ++i)
+    {
+      x[i] = mcor_wrap(reach, a, x[i]);
+    }
   }
   mcor_read_smoothing_length(context, input, first, count, chunk->h);
-  mcor_read_size(input, first, count, chunk->size);
   for (int i = 0; i < count; ++i)
   {
-    chunk->size[i] *= staging->size_scale;
     chunk->source[i] = (int32_t)(first + i);
+  }
+}
+
+static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
+  int64_t first, const mcor_staging* staging, const mcor_reach_box* reach, mcor_stage_chunk* chunk)
+{
+  mcor_read_stage_places(context, input, first, reach, chunk);
+  mcor_read_size(input, first, chunk->count, chunk->size);
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    chunk->size[i] *= staging->size_scale;
   }
 }
 
@@ -206,25 +223,63 @@ static int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* in
   return -1;
 }
 
-/* Drops particles that are not used. */
-static void mcor_pack_stage_chunk(
-  const mcor_context* context, const mcor_input* input, mcor_stage_chunk* chunk)
+typedef struct mcor_stage_job
 {
-  int to = 0;
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_staging* staging;
+  const mcor_reach_box* reach; /* NULL: all particles are needed */
+  uint8_t* images;             /* of each particle, whether any is staged; NULL without reach */
+  int64_t used[MCOR_SLICES];   /* particles in each slice */
+  int64_t to[MCOR_SLICES];     /* where the first of them goes */
+  int64_t heavy[MCOR_SLICES];  /* see mcor_find_heavy */
+  double largest_weight[MCOR_SLICES];
+} mcor_stage_job;
+
+/* The images of particle i of a chunk that are staged. */
+static int mcor_images_of(
+  const mcor_stage_job* job, const mcor_stage_chunk* chunk, int i, mcor_images* images)
+{
+  *images = (mcor_images){ 0 };
+  if (!mcor_is_used(job->context, job->input, chunk->source[i]))
+  {
+    return 0;
+  }
+  if (!job->reach)
+  {
+    return 1;
+  }
+  double at[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    at[a] = ldexp(chunk->x[a][i], -job->reach->fix_bits);
+  }
+  return mcor_list_images(job->reach, at, chunk->h[i] * job->reach->support, images);
+}
+
+/* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
+ * MCOR_POINT_EXTENT. */
+static int mcor_spared_bits(const mcor_context* context, double support)
+{
+  const int digits = context->cl.real_size == sizeof(float) ? FLT_MANT_DIG : DBL_MANT_DIG;
+  int exponent;
+  frexp(1.0001 * support / context->lattice.cube + MCOR_POINT_EXTENT, &exponent);
+  const int bits = exponent + context->lattice.fix_bits - digits;
+  return bits > 0 ? bits : 0;
+}
+
+/* Rounds positions to what evaluations make of them. reach: of a support radius in smoothing
+ * lengths. */
+static void mcor_round_positions(const mcor_context* context, double reach, mcor_stage_chunk* chunk)
+{
   for (int i = 0; i < chunk->count; ++i)
   {
-    if (mcor_is_used(context, input, chunk->source[i]))
+    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach));
+    for (int a = 0; a < 3; ++a)
     {
-      for (int a = 0; a < 3; ++a)
-      {
-        chunk->x[a][to] = chunk->x[a][i];
-      }
-      chunk->h[to] = chunk->h[i];
-      chunk->size[to] = chunk->size[i];
-      chunk->source[to++] = chunk->source[i];
+      chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
     }
   }
-  chunk->count = to;
 }
 
 /* To element `to` of the staging arrays. */
@@ -235,6 +290,10 @@ static void mcor_store_stage_chunk(const mcor_context* context, const mcor_input
   const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
   const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
   uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
+  if (mcor_spared_bits(context, m->support_max) > 0)
+  {
+    mcor_round_positions(context, reach, chunk);
+  }
   for (int a = 0; a < 3; ++a)
   {
     mcor_store_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
@@ -252,56 +311,112 @@ static void mcor_store_stage_chunk(const mcor_context* context, const mcor_input
   memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
 }
 
-typedef struct mcor_stage_job
-{
-  const mcor_context* context;
-  const mcor_input* input;
-  const mcor_staging* staging;
-  int64_t used[MCOR_SLICES];  /* particles in each slice */
-  int64_t to[MCOR_SLICES];    /* where the first of them goes */
-  int64_t heavy[MCOR_SLICES]; /* see mcor_find_heavy */
-  double largest_weight[MCOR_SLICES];
-} mcor_stage_job;
-
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
   int64_t used = 0;
-  for (int64_t i = first; i < last; ++i)
+  mcor_stage_chunk chunk;
+  for (int64_t begin = first; begin < last && job->reach; begin += MCOR_CHUNK)
+  {
+    chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    mcor_read_stage_places(job->context, job->input, begin, job->reach, &chunk);
+    for (int i = 0; i < chunk.count; ++i)
+    {
+      mcor_images images;
+      const int count = mcor_images_of(job, &chunk, i, &images);
+      job->images[begin + i] = count > 0;
+      used += count;
+    }
+  }
+  for (int64_t i = first; i < last && !job->reach; ++i)
   {
     used += mcor_is_used(job->context, job->input, i);
   }
   job->used[slice] = used;
 }
 
+/* Stages a chunk from element *to on, which moves to where the next one goes; not after a particle
+ * that is too heavy. */
+static void mcor_stage_chunk_at(
+  mcor_stage_job* job, int slice, mcor_stage_chunk* chunk, int64_t* to)
+{
+  if (job->heavy[slice] < 0)
+  {
+    job->heavy[slice] =
+      mcor_find_heavy(job->context, job->input, chunk, &job->largest_weight[slice]);
+  }
+  if (job->heavy[slice] < 0)
+  {
+    mcor_store_stage_chunk(job->context, job->input, chunk, job->staging, *to);
+    *to += chunk->count;
+  }
+}
+
+/* The same for the images that are staged of a chunk's particles. */
+static void mcor_stage_images(
+  mcor_stage_job* job, int slice, const mcor_stage_chunk* chunk, int64_t* to)
+{
+  mcor_stage_chunk out;
+  mcor_images images;
+  out.count = 0;
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const int count = mcor_images_of(job, chunk, i, &images);
+    int k[3] = { images.first[0], images.first[1], images.first[2] };
+    for (int n = 0; n < count; ++n)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        const double period = job->reach ? ldexp(job->reach->period[a], job->reach->fix_bits) : 0;
+        out.x[a][out.count] = chunk->x[a][i] + k[a] * period;
+      }
+      out.h[out.count] = chunk->h[i];
+      out.size[out.count] = chunk->size[i];
+      out.source[out.count++] = chunk->source[i];
+      for (int a = 0; a < 3 && ++k[a] > images.last[a]; ++a)
+      {
+        k[a] = images.first[a];
+      }
+      if (out.count == MCOR_CHUNK)
+      {
+        mcor_stage_chunk_at(job, slice, &out, to);
+        out.count = 0;
+      }
+    }
+  }
+  mcor_stage_chunk_at(job, slice, &out, to);
+}
+
 static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
-  int64_t to = job->to[slice], heavy = -1;
+  int64_t to = job->to[slice];
   mcor_stage_chunk chunk;
-  for (int64_t begin = first; begin < last && heavy < 0; begin += MCOR_CHUNK)
+  job->heavy[slice] = -1;
+  for (int64_t begin = first; begin < last && job->heavy[slice] < 0; begin += MCOR_CHUNK)
   {
     chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-    mcor_read_stage_chunk(job->context, job->input, begin, job->staging, &chunk);
-    if (job->input->solid)
+    if (job->reach && !memchr(job->images + begin, 1, (size_t)chunk.count))
     {
-      mcor_pack_stage_chunk(job->context, job->input, &chunk);
+      continue;
     }
-    heavy = mcor_find_heavy(job->context, job->input, &chunk, &job->largest_weight[slice]);
-    if (heavy < 0)
+    mcor_read_stage_chunk(job->context, job->input, begin, job->staging, job->reach, &chunk);
+    if (job->input->solid || job->reach)
     {
-      mcor_store_stage_chunk(job->context, job->input, &chunk, job->staging, to);
-      to += chunk.count;
+      mcor_stage_images(job, slice, &chunk, &to);
+    }
+    else
+    {
+      mcor_stage_chunk_at(job, slice, &chunk, &to);
     }
   }
-  job->heavy[slice] = heavy;
 }
 
 static mcor_status mcor_refuse_heavy(
   mcor_context* context, const mcor_input* input, const mcor_staging* staging, int64_t i)
 {
   mcor_stage_chunk chunk = { .count = 1 };
-  mcor_read_stage_chunk(context, input, i, staging, &chunk);
+  mcor_read_stage_chunk(context, input, i, staging, NULL, &chunk);
   return mcor_fail(context, MCOR_INVALID_DATA,
     "The volume of particle %lld is %.3g times the cube of its smoothing length, too much for %s "
     "precision. Correct it or remove such particles.",
@@ -309,23 +424,38 @@ static mcor_status mcor_refuse_heavy(
     context->cl.real_size == sizeof(float) ? "single" : "double");
 }
 
-mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging)
+/* Room for the particles that the job stages. */
+static mcor_status mcor_make_room(mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
 {
-  staging->size_scale = mcor_size_scale(context, input);
-  free(context->source);
-  context->source = malloc((size_t)input->count * sizeof(int32_t));
-  MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld particles could not be allocated.", (long long)input->count);
-  mcor_use_large_pages(context->source, (size_t)input->count * sizeof(int32_t));
-  MCOR_TRY(mcor_map_staging(context, input->count, staging));
-  mcor_stage_job job = { .context = context, .input = input, .staging = staging };
-  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_count_slice, &job);
+  const int64_t count = job->input->count;
+  const int slices = mcor_parallel_for(count, MCOR_HEAVY_GRAIN, mcor_count_slice, job);
+  int64_t total = 0;
   for (int s = 0; s < slices; ++s)
   {
-    job.to[s] = staging->count;
-    staging->count += (int)job.used[s];
+    job->to[s] = total;
+    total += job->used[s];
   }
-  mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, &job);
+  MCOR_RETURN_IF(total > MCOR_PARTICLE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "With their images there are %lld particles; %d is the limit.", (long long)total,
+    MCOR_PARTICLE_LIMIT);
+  staging->count = (int)total;
+  const size_t bytes = (size_t)staging->count * sizeof(int32_t);
+  free(context->source);
+  context->source = malloc(bytes + 1);
+  MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %d particles could not be allocated.", staging->count);
+  mcor_use_large_pages(context->source, bytes);
+  return staging->count > 0 ? mcor_map_staging(context, staging->count, staging) : MCOR_OK;
+}
+
+static mcor_status mcor_stage_particles(
+  mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
+{
+  const mcor_input* input = job->input;
+  MCOR_TRY(mcor_make_room(context, job, staging));
+  const int slices = staging->count > 0
+    ? mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, job)
+    : 0;
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
   context->largest_weight =
     mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
@@ -336,13 +466,30 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
     context->options->h_scale);
   for (int s = 0; s < slices; ++s)
   {
-    if (job.heavy[s] >= 0)
+    if (job->heavy[s] >= 0)
     {
-      return mcor_refuse_heavy(context, input, staging, job.heavy[s]);
+      return mcor_refuse_heavy(context, input, staging, job->heavy[s]);
     }
-    context->largest_weight = fmax(context->largest_weight, job.largest_weight[s]);
+    context->largest_weight = fmax(context->largest_weight, job->largest_weight[s]);
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging)
+{
+  mcor_stage_job job = { .context = context, .input = input, .staging = staging };
+  staging->size_scale = mcor_size_scale(context, input);
+  mcor_reach_box reach;
+  if (mcor_find_reach(context, input, &reach))
+  {
+    job.reach = &reach;
+    job.images = malloc((size_t)input->count);
+    MCOR_RETURN_IF(!job.images, context, MCOR_OUT_OF_CAPACITY,
+      "Host memory for %lld particles could not be allocated.", (long long)input->count);
+  }
+  const mcor_status status = mcor_stage_particles(context, &job, staging);
+  free(job.images);
+  return status;
 }
 
 typedef struct mcor_value_job
@@ -369,7 +516,8 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
     double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
     job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
                : mcor_read_scalar(input, from, count, chunk);
-    for (n = 0; begin + n < last && source[begin + n] < from + count; ++n)
+    /* Images of a particle stand side by side. */
+    for (n = 0; n < MCOR_CHUNK && begin + n < last && source[begin + n] < from + count; ++n)
     {
       used[n] = (chunk[source[begin + n] - from] - shift) * scale;
     }

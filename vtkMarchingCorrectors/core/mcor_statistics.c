@@ -8,21 +8,44 @@
 #include <math.h>
 #include <stdio.h>
 
-mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction)
+mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end)
 {
   const mcor_options* options = context->options;
+  context->doing = doing;
+  context->fraction = fmax(fraction, context->fraction); /* also in a second attempt */
+  context->fraction_end = end;
+  context->report_time = mcor_seconds();
+  MCOR_RETURN_IF(
+    options->progress && options->progress(options->progress_user, context->fraction, doing) != 0,
+    context, MCOR_CANCELLED, "The run was cancelled. It was at: %s.", doing);
+  return MCOR_OK;
+}
+
+/* How many launches are to come is not known: each report goes a part of what is left. */
+#define MCOR_REPORT_STEP 0.125
+
+mcor_status mcor_report_launch(mcor_context* context)
+{
+  const mcor_options* options = context->options;
+  if (!options || !options->progress ||
+    mcor_seconds() - context->report_time < context->report_interval)
+  {
+    return MCOR_OK;
+  }
+  const double rest = fmax(context->fraction_end - context->fraction, 0);
+  return mcor_report(
+    context, context->doing, context->fraction + MCOR_REPORT_STEP * rest, context->fraction_end);
+}
+
+mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end)
+{
   MCOR_TRY(mcor_finish(context));
   const double now = mcor_seconds();
   context->statistics->seconds[context->phase] += now - context->phase_begin;
   context->phase = phase;
   context->phase_begin = now;
-  context->fraction = fraction;
   context->building_told = false;
-  MCOR_RETURN_IF(options->progress &&
-      options->progress(options->progress_user, fraction, mcor_phase_name(phase)) != 0,
-    context, MCOR_CANCELLED, "The extraction was cancelled before phase \"%s\".",
-    mcor_phase_name(phase));
-  return MCOR_OK;
+  return mcor_report(context, mcor_phase_name(phase), fraction, end);
 }
 
 /* Numbers that are known at the end. */
@@ -31,20 +54,32 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   mcor_statistics* s = context->statistics;
   const mcor_measure* m = &context->measure;
   const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
   const double n = context->correction_count;
   s->build_seconds = context->cl.build_seconds;
   s->fluid_particles = m->fluid_count;
   s->solid_particles = m->solid_count;
+  s->particles_in_reach = context->grid.count;
   s->smoothing_length_min = m->h_min;
   s->smoothing_length_max = m->h_max;
+  s->smoothing_length_median = m->h_median;
+  s->neighbours_median = m->neighbours;
+  s->spacing_median = m->spacing;
+  s->filled_median = m->filled;
+  for (int a = 0; a < 3; ++a)
+  {
+    s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
+  }
   s->cube_size = lattice->cube;
   s->scalar_min = m->scalar_min;
   s->scalar_max = m->scalar_max;
   s->virtual_cells = 1;
   for (int a = 0; a < 3; ++a)
   {
-    s->lattice_origin[a] = lattice->origin[a] + lattice->first[a];
-    s->lattice_cells[a] = lattice->last[a] - lattice->first[a];
+    const int64_t first = box->is_part ? box->first[a] : lattice->first[a];
+    const int64_t last = box->is_part ? box->last[a] : lattice->last[a];
+    s->lattice_origin[a] = lattice->origin[a] + first;
+    s->lattice_cells[a] = last > first ? last - first : 0;
     s->virtual_cells *= s->lattice_cells[a];
   }
   s->bricks = context->bricks.now.count;

@@ -27,11 +27,11 @@ const char* mcor_phase_name(mcor_phase phase)
   return (unsigned)phase < MCOR_PHASE_COUNT ? names[phase] : "unknown phase";
 }
 
-#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, support },
+#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, support, norm },
 static const struct
 {
   const char* name;
-  double support;
+  double support, norm;
 } mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
 
@@ -55,6 +55,11 @@ const char* mcor_sph_kernel_name(mcor_sph_kernel kernel)
 double mcor_support_factor(mcor_sph_kernel kernel)
 {
   return (unsigned)kernel < MCOR_SPH_KERNEL_COUNT ? mcor_kernel_table[kernel].support : 0;
+}
+
+double mcor_kernel_norm(mcor_sph_kernel kernel)
+{
+  return mcor_kernel_table[kernel].norm;
 }
 
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)

@@ -3,7 +3,7 @@
 
 /* Trimming [III-D.3]. */
 
-#include "mcor_internal.h"
+#include "mcor_box.h"
 
 #define MCOR_TRIM_STEPS 25
 
@@ -19,12 +19,62 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* nod
     MCOR_BUFFER(eigenvalue));
 }
 
+/* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
+static bool mcor_trims_by_eigenvalue(const mcor_context* context)
+{
+  return context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE &&
+    context->options->field != MCOR_WEIGHT_SUM;
+}
+
 /* What the vertex threshold applies to, at the vertices on lattice edges. */
+static const mcor_buffer* mcor_threshold_quantity(const mcor_context* context)
+{
+  return mcor_trims_by_eigenvalue(context) ? &context->trim.eigenvalue
+                                           : &context->mesh.vertex_weight;
+}
+
+/* Whether the surface ends at solids, too. */
+static bool mcor_ends_at_solids(const mcor_context* context)
+{
+  return context->grid.has_solids && context->options->wall_share > 0;
+}
+
+/* The share of the weight that the fluid needs; 0: none. */
+static double mcor_fluid_share(const mcor_context* context)
+{
+  return mcor_ends_at_solids(context) ? 1 - context->options->wall_share : 0;
+}
+
+/* What is trimmed by, and where it ends. */
 static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
-  return context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
-    ? &context->trim.eigenvalue
-    : &context->mesh.vertex_weight;
+  return mcor_ends_at_solids(context) ? &context->trim.margin : mcor_threshold_quantity(context);
+}
+
+static double mcor_trim_threshold(const mcor_context* context)
+{
+  return mcor_ends_at_solids(context) ? 0 : context->options->vertex_threshold;
+}
+
+/* Evaluates it where that is not done yet. */
+static mcor_status mcor_evaluate_margins(mcor_context* context)
+{
+  const mcor_mesh* mesh = &context->mesh;
+  mcor_trim_data* trim = &context->trim;
+  const int count = mesh->march_count;
+  if (mcor_trims_by_eigenvalue(context))
+  {
+    MCOR_TRY(mcor_evaluate_boundary(context, &mesh->node, &mesh->offset, count, &trim->eigenvalue));
+  }
+  if (!mcor_ends_at_solids(context))
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_reserve(context, &trim->margin, (size_t)count * context->cl.real_size));
+  return MCOR_LAUNCH(context, "mcor_trim_margin", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(mcor_threshold_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient),
+    MCOR_REAL(mcor_fluid_share(context)), MCOR_BUFFER(&trim->margin));
 }
 
 /* Counts what remains; ends with scanned counts in trim->remaining and trim->cuts. */
@@ -36,7 +86,7 @@ static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* r
   MCOR_TRY(mcor_reserve(context, &trim->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
   MCOR_TRY(mcor_scan(context, &trim->remaining, batches, remaining));
   return mcor_scan(context, &trim->cuts, batches, cuts);
@@ -74,18 +124,17 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
-    MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(options->vertex_threshold),
+    MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(mcor_trim_quantity(context))));
   MCOR_TRY(mcor_make_groups(context, &mesh->node, vertices, cut_count, &groups));
-  const char* solve = options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE
-    ? "mcor_trim_solve_eigenvalue"
-    : "mcor_trim_solve_weight";
+  const char* solve =
+    mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
   return MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context), MCOR_INT(groups),
     MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
     MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
-    MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_BUFFER(&mesh->offset),
-    MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+    MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
+    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
@@ -96,31 +145,30 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   mcor_mesh* mesh = &context->mesh;
   mcor_trim_data* trim = &context->trim;
   int remaining, cuts, cut_count;
-  if (context->options->field == MCOR_WEIGHT_SUM || mesh->triangle_count == 0)
+  if (mesh->triangle_count == 0 ||
+    (context->options->field == MCOR_WEIGHT_SUM && !mcor_ends_at_solids(context)))
   {
     return MCOR_OK;
   }
-  if (context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE)
-  {
-    MCOR_TRY(mcor_evaluate_boundary(
-      context, &mesh->node, &mesh->offset, mesh->march_count, &context->trim.eigenvalue));
-  }
+  MCOR_TRY(mcor_evaluate_margins(context));
   const int batches = mcor_batches(context, mesh->triangle_count);
   MCOR_TRY(mcor_count_trimmed(context, batches, &remaining, &cuts));
   MCOR_TRY(mcor_reserve(context, &trim->keys, (size_t)cuts * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_MEDIUM, batches,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
-    MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_MEDIUM, batches, MCOR_INT(mesh->triangle_count),
+      MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(mcor_trim_quantity(context)),
+      MCOR_REAL(mcor_trim_threshold(context)), MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
   MCOR_TRY(mcor_reserve(context, &trim->index, sizeof(cl_int)));
   MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
     &trim->distinct, &trim->index, &cut_count));
   MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),
     MCOR_BUFFER(&trim->index), MCOR_BUFFER(&trim->triangles)));
+  MCOR_TRY(
+    mcor_trim_owned(context, mcor_trim_quantity(context), mcor_trim_threshold(context), remaining));
   mcor_release(context, &mesh->triangles);
   mesh->triangles = trim->triangles;
   trim->triangles = (mcor_buffer){ 0 };
@@ -131,6 +179,6 @@ mcor_status mcor_trim(mcor_context* context, double iso)
 void mcor_release_trim(mcor_context* context)
 {
   mcor_trim_data* t = &context->trim;
-  MCOR_RELEASE(context, &t->eigenvalue, &t->remaining, &t->cuts, &t->keys, &t->distinct, &t->index,
-    &t->triangles);
+  MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->distinct,
+    &t->index, &t->triangles);
 }

@@ -61,12 +61,11 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
 }
 
 /* Updates each point's nearest fluid particle from those that reach it, or from all within the
- * query's radius and maybe more. */
+ * query's radius and maybe more. Those that do not reach it may be too far away for positions that
+ * count from the query's origin: differences are made first. */
 void mcor_attribute_nearer(
   const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {
-  realv at[3], d[3];
-  mcor_points_relative(grid, query, points, at);
   mcor_tile tile;
   mcor_tile_init(&tile);
   for (bool first = true; mcor_tile_next(grid, query, &tile, first); first = false)
@@ -77,12 +76,14 @@ void mcor_attribute_nearer(
       {
         continue;
       }
-      mcor_points_from(
-        at, points, MCOR_EACH(&tile, x, i), MCOR_EACH(&tile, y, i), MCOR_EACH(&tile, z, i), d);
-      const realv r2 = mcor_square(d[0], d[1], d[2]);
+      const int k = MCOR_INDEX(&tile, i);
+      const realv x = MCOR_CONVERT_REALV(points->x - grid->px[k]) * grid->unit + points->ox;
+      const realv y = MCOR_CONVERT_REALV(points->y - grid->py[k]) * grid->unit + points->oy;
+      const realv z = MCOR_CONVERT_REALV(points->z - grid->pz[k]) * grid->unit + points->oz;
+      const realv r2 = mcor_square(x, y, z);
       const real own = query->radius < 0 ? MCOR_SUPPORT / MCOR_EACH(&tile, inv_h, i) : (real)0;
       const fixv nearer = r2 < *least && (query->radius >= 0 || r2 < own * own);
-      *index = nearer ? (fixv)MCOR_INDEX(&tile, i) : *index;
+      *index = nearer ? (fixv)k : *index;
       *least = nearer ? r2 : *least;
     }
   }

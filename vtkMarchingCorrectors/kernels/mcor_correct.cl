@@ -43,14 +43,21 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
   return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);
 }
 
-/* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight. */
+/* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight; where there
+ * are solids, the fluid's part of the weight goes with the gradient. */
 void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int lane, int v,
   __global real4* offset, __global real* value, __global real4* gradient, __global real* weight)
 {
   offset[v] =
     (real4)(MCOR_GET(points->ox, lane), MCOR_GET(points->oy, lane), MCOR_GET(points->oz, lane), 0);
   value[v] = MCOR_GET(at->value, lane);
-  gradient[v] = (real4)(MCOR_GET(at->gx, lane), MCOR_GET(at->gy, lane), MCOR_GET(at->gz, lane), 0);
+#if MCOR_SOLIDS
+  const real fluid = MCOR_GET(at->fluid, lane);
+#else
+  const real fluid = 0;
+#endif
+  gradient[v] =
+    (real4)(MCOR_GET(at->gx, lane), MCOR_GET(at->gy, lane), MCOR_GET(at->gz, lane), fluid);
   weight[v] = MCOR_GET(at->weight, lane);
 }
 

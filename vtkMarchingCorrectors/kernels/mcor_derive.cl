@@ -6,11 +6,10 @@
  * Arrays are fixed-point numbers, so that a difference of two values is exact as that of two
  * positions is: a linear array then has an exact gradient up to the rounding of the sums. */
 
-/* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset,
- * and a key by which particles of a cell, and cells of a brick, follow each other. */
+/* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset. */
 __kernel void mcor_derive_place(const int first, const int count, const int fix_bits,
-  const int bricks_x, const int bricks_y, __global const fix* px, __global const fix* py,
-  __global const fix* pz, __global ulong* keys, __global int4* node, __global real4* offset)
+  __global const fix* px, __global const fix* py, __global const fix* pz, __global int4* node,
+  __global real4* offset)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -20,10 +19,7 @@ __kernel void mcor_derive_place(const int first, const int count, const int fix_
   const fix x = px[first + i], y = py[first + i], z = pz[first + i];
   const fix mask = ((fix)1 << fix_bits) - 1;
   const real unit = ldexp((real)1, -fix_bits);
-  const int4 n = (int4)((int)(x >> fix_bits), (int)(y >> fix_bits), (int)(z >> fix_bits), 0);
-  const ulong brick = ((ulong)(n.z >> 2) * bricks_y + (n.y >> 2)) * bricks_x + (n.x >> 2);
-  keys[i] = brick << 6 | (ulong)((n.z & 3) << 4 | (n.y & 3) << 2 | (n.x & 3));
-  node[i] = n;
+  node[i] = (int4)((int)(x >> fix_bits), (int)(y >> fix_bits), (int)(z >> fix_bits), 0);
   offset[i] =
     (real4)((real)(x & mask) * unit, (real)(y & mask) * unit, (real)(z & mask) * unit, 0);
 }

@@ -8,6 +8,9 @@ typedef struct
 {
   realv value, gx, gy, gz;
   realv weight, wx, wy, wz;
+#if MCOR_SOLIDS
+  realv fluid, fx, fy, fz; /* the fluid's part of the weight */
+#endif
 } mcor_field_at;
 
 /* Evaluates at all points. iso: relative to A0 for the Shepard mean. */
@@ -87,6 +90,10 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   at->wx = tx;
   at->wy = ty;
   at->wz = tz;
+  at->fluid = w;
+  at->fx = wx;
+  at->fy = wy;
+  at->fz = wz;
 #else
   at->weight = w;
   at->wx = wx;

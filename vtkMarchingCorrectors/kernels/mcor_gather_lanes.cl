@@ -18,8 +18,7 @@ typedef struct
   bool complete;  /* the tile holds everything */
   bool delivered; /* nothing is left for this loop */
   MCOR_ALIGNED int list[MCOR_TILE_SIZE + 16];
-  /* Position from the query's origin, in cubes: exact in single precision while it is below 16
-   * cubes. */
+  /* Position from the query's origin, in cubes. */
   MCOR_ALIGNED real x[MCOR_TILE_SIZE + 16], y[MCOR_TILE_SIZE + 16], z[MCOR_TILE_SIZE + 16];
   real inv_h[MCOR_TILE_SIZE + 16], weight[MCOR_TILE_SIZE + 16], value[MCOR_TILE_SIZE + 16];
 #if MCOR_SOLIDS
@@ -31,6 +30,13 @@ typedef struct
 #define MCOR_TILE(tile, name, i) MCOR_LOAD(i, (tile)->name)
 #define MCOR_EACH(tile, name, i) ((tile)->name[i])
 #define MCOR_INDEX(tile, i) ((tile)->list[i])
+
+int mcor_list_lanes(fixv chosen, int count, int lanes[MCOR_LANES])
+{
+  const mcor_mask mask = MCOR_MASK(chosen, count);
+  MCOR_PACK_INDEX(mask, 0, lanes);
+  return MCOR_MASK_COUNT(mask);
+}
 
 void mcor_tile_init(mcor_tile* tile)
 {
@@ -310,25 +316,28 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 
 #define MCOR_REACH_KEEP(reach, i, weight) ((reach)->w[i] = (weight))
 
+/* Values of an attribute at the particles of a tile. */
+void mcor_tile_values(const mcor_tile* tile, __global const real* attribute, real* values)
+{
+  for (int i = 0; i < tile->count; ++i)
+  {
+    values[i] = attribute[tile->list[i]];
+  }
+}
+
 /* Values of an attribute at the particles of a reach, to be read by MCOR_VALUE. */
 #if MCOR_PARTS == 1
 #define MCOR_VALUE(values, i) (values)[i]
 void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
 {
-  for (int i = 0; i < reach->tile.count; ++i)
-  {
-    values[i] = attribute[reach->tile.list[i]];
-  }
+  mcor_tile_values(&reach->tile, attribute, values);
 }
 #else
 #define MCOR_VALUE(values, i) mcor_each_lane(vload4(i, values))
 void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
 {
   MCOR_ALIGNED real of_tile[MCOR_TILE_SIZE + 16];
-  for (int i = 0; i < reach->tile.count; ++i)
-  {
-    of_tile[i] = attribute[reach->tile.list[i]];
-  }
+  mcor_tile_values(&reach->tile, attribute, of_tile);
   mcor_reach_pack(&reach->masks, of_tile, values);
 }
 #endif
@@ -339,8 +348,8 @@ typedef struct
   real of[MCOR_ARRAY_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
 } mcor_values;
 
-void mcor_values_load(const mcor_reach* reach, __global const real* const arrays[MCOR_ARRAY_STEP],
-  mcor_values* values)
+void mcor_values_load(
+  const mcor_reach* reach, __global const real* const arrays[MCOR_ARRAY_STEP], mcor_values* values)
 {
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
@@ -377,44 +386,110 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
   sums[3] = s3;
 }
 
-/* Sets reach->w at the points, as mcor_evaluate does. */
-void mcor_reach_evaluate(
-  const mcor_grid* grid, const mcor_query* query, const mcor_points* points, mcor_reach* reach)
+/* Whether the parts lie so close together that it takes longer to pack their lists of particles than to
+ * go through the whole tile: measured at planes of points. */
+#define MCOR_TILE_SHARE 0.8f
+bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mcor_points* points)
 {
-  realv at[3], d[3], along[3], slope;
-  mcor_points_relative(grid, query, points, at);
-  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+  real rest = 0;
+  for (int a = 0; a < 3; ++a)
   {
-    mcor_points_from(
-      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
+    real most = points->half_size[a][0];
+    for (int part = 1; part < MCOR_PARTS; ++part)
+    {
+      most = fmax(most, points->half_size[a][part]);
+    }
+    rest += query->half_size[a] - most;
+  }
+  return rest < MCOR_TILE_SHARE * grid->levels[0].support;
+}
+
+/* Particle i of a reach, or of its tile. */
+#define MCOR_SEEN(reach, of_tile, name, i)                                                         \
+  ((of_tile) ? (realv)((reach)->tile.name[i]) : MCOR_REACH(reach, name, i))
+
+/* As mcor_attribute_add for the first `step` arrays, but sets the weights, too, and adds them: in one
+ * loop, as each sum alone would wait for its last addition. of_tile: goes through the tile instead of
+ * the lists of the parts. It and `step` are constants. */
+__attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
+  const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const bool of_tile,
+  const int step, int count, const int stride, __global const real* attributes, realv* weight,
+  realv* weight_sum, realv sums[MCOR_ATTRIBUTE_STEP])
+{
+  real values[MCOR_ATTRIBUTE_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
+  const real* from[MCOR_ATTRIBUTE_STEP];
+  realv s[MCOR_ATTRIBUTE_STEP], w = *weight_sum, at[3], d[3], along[3], slope;
+  for (int c = 0; c < step; ++c)
+  {
+    from[c] = values[c < count ? c : 0];
+    s[c] = sums[c];
+    if (c < count)
+    {
+      of_tile ? mcor_tile_values(&reach->tile, attributes + c * (long)stride, values[c])
+              : mcor_attribute_load(reach, attributes + c * (long)stride, values[c]);
+    }
+  }
+  mcor_points_relative(grid, query, points, at);
+  const int particles = of_tile ? reach->tile.count : MCOR_REACH_COUNT(reach);
+  for (int i = 0; i < particles; ++i)
+  {
+    mcor_points_from(at, points, MCOR_SEEN(reach, of_tile, x, i), MCOR_SEEN(reach, of_tile, y, i),
+      MCOR_SEEN(reach, of_tile, z, i), d);
     const mcor_length length = mcor_length_of(d);
-    reach->w[i] = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+    const realv k =
+      mcor_weight_gradient(d, &length, MCOR_SEEN(reach, of_tile, inv_h, i), &slope, along);
+    weight[i] = MCOR_SEEN(reach, of_tile, weight, i) * k;
+    w += weight[i];
+    for (int c = 0; c < step; ++c)
+    {
+      const realv value = of_tile ? (realv)(from[c][i]) : MCOR_VALUE(from[c], i);
+      s[c] = MCOR_FMA(weight[i], value, s[c]);
+    }
+  }
+  *weight_sum = w;
+  for (int c = 0; c < step; ++c)
+  {
+    sums[c] = s[c];
   }
 }
+
+#define MCOR_ATTRIBUTE_BEGIN(of_tile, step)                                                        \
+  mcor_attribute_begin(                                                                            \
+    grid, query, points, reach, of_tile, step, count, stride, attributes, weight, &w, sums)
+#define MCOR_ATTRIBUTE_BEGIN_ANY(of_tile)                                                          \
+  (count == 0      ? MCOR_ATTRIBUTE_BEGIN(of_tile, 0)                                              \
+      : count == 1 ? MCOR_ATTRIBUTE_BEGIN(of_tile, 1)                                              \
+                   : MCOR_ATTRIBUTE_BEGIN(of_tile, MCOR_ATTRIBUTE_STEP))
 
 void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   real iso, mcor_reach* reach, bool evaluated, int count, const int stride,
   __global const real* attributes, realv sums[MCOR_ATTRIBUTE_LIMIT], realv* weight_sum)
 {
   const bool known = evaluated && reach->tile.complete;
+  const bool of_tile = MCOR_PARTS > 1 && !known && count <= MCOR_ATTRIBUTE_STEP &&
+    mcor_reach_is_tile(grid, query, points);
   realv w = 0;
-  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
+  bool first = true;
+  while (of_tile ? mcor_tile_next(grid, query, &reach->tile, first)
+                 : mcor_reach_next(grid, query, points, iso, reach, first))
   {
     realv weight[MCOR_TILE_SIZE];
-    if (!known)
-    {
-      mcor_reach_evaluate(grid, query, points, reach);
-    }
-    for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
+    first = false;
+    for (int i = 0; known && i < MCOR_REACH_COUNT(reach); ++i)
     {
       weight[i] = MCOR_REACH(reach, weight, i) * reach->w[i];
       w += weight[i];
     }
-    for (int c = 0; c < count; c += MCOR_ATTRIBUTE_STEP)
+    if (!known)
+    {
+      of_tile ? MCOR_ATTRIBUTE_BEGIN_ANY(true) : MCOR_ATTRIBUTE_BEGIN_ANY(false);
+    }
+    for (int c = known ? 0 : MCOR_ATTRIBUTE_STEP; c < count; c += MCOR_ATTRIBUTE_STEP)
     {
       mcor_attribute_add(reach, attributes + c * (long)stride, stride,
         min(count - c, MCOR_ATTRIBUTE_STEP), weight, sums + c);
     }
   }
+  reach->tile.complete = reach->tile.complete && !of_tile; /* the lists are not made */
   *weight_sum = w;
 }

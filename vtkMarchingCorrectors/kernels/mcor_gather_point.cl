@@ -30,6 +30,12 @@ real mcor_tile_position(const mcor_tile* tile, __global const fix* position, int
 #define MCOR_EACH MCOR_TILE
 #define MCOR_INDEX(tile, i) ((tile)->begin + (i))
 
+int mcor_list_lanes(fixv chosen, int count, int lanes[MCOR_LANES])
+{
+  lanes[0] = 0;
+  return chosen && count > 0;
+}
+
 void mcor_tile_init(mcor_tile* tile)
 {
   tile->complete = false;

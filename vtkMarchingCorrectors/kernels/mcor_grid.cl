@@ -3,6 +3,7 @@
 
 /* Search grid [III-A]: particles sorted by cell; volumes. */
 
+#if MCOR_OF_LATTICE
 /* One work-item = one particle. Reads position and level. Writes the key of its search cell. */
 __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   __global const uchar* level_of, __global const fix* xyz, __global ulong* keys)
@@ -84,7 +85,7 @@ int mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
 }
 
 /* The particles' arrays, of the input and in sorted order. `volume` is the mass, or 1, where it is
- * still to be computed. */
+ * still to be computed; norm: of the SPH kernel. */
 #define MCOR_GRID_INPUT                                                                            \
   __global const fix *xyz, __global const real *inv_h_in, __global const real *volume,             \
     __global const uchar *solid
@@ -93,18 +94,16 @@ int mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
     __global real *weight, __global real *trim_weight
 
 /* Moves particle j of the input to place i. */
-void mcor_grid_move_particle(int i, int j, MCOR_GRID_INPUT, MCOR_GRID_OUTPUT)
+void mcor_grid_move_particle(int i, int j, real norm, MCOR_GRID_INPUT, MCOR_GRID_OUTPUT)
 {
   px[i] = xyz[3L * j];
   py[i] = xyz[3L * j + 1];
   pz[i] = xyz[3L * j + 2];
   const real inv_h = inv_h_in[j];
   inv_h_out[i] = inv_h;
-  const real w = volume[j] * (real)MCOR_NORM * inv_h * inv_h * inv_h;
+  const real w = volume[j] * norm * inv_h * inv_h * inv_h;
   trim_weight[i] = w;
-#if MCOR_SOLIDS
-  weight[i] = solid[j] ? (real)0 : w;
-#endif
+  weight[i] = solid[j] ? (real)0 : w; /* the same array where there are no solids */
 }
 
 /* End of the whole cells from `first` on that begin before `end`, as many as have room for insertion
@@ -131,8 +130,8 @@ int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int coun
  * order of the particles in these cells, so that it no longer depends on that of the input, and the
  * arrays in that order. Raises `most` to the particles of a cell; one with more than
  * MCOR_INSERTION_LIMIT is left to mcor_grid_sort_runs. */
-__kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_GRID_INPUT,
-  __global int* order, MCOR_GRID_OUTPUT, __global int* most)
+__kernel void mcor_grid_order(const int count, const real norm, __global const ulong* keys,
+  MCOR_GRID_INPUT, __global int* order, MCOR_GRID_OUTPUT, __global int* most)
 {
   int first = get_global_id(0) * MCOR_BATCH;
   const int end = min(first + MCOR_BATCH, count);
@@ -148,8 +147,8 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
       : mcor_grid_insert(keys + first, xyz, inv_h_in, volume, solid, order + first, last - first);
     for (int i = first; i < last; ++i)
     {
-      mcor_grid_move_particle(
-        i, order[i], xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
+      mcor_grid_move_particle(i, order[i], norm, xyz, inv_h_in, volume, solid, px, py, pz,
+        inv_h_out, weight, trim_weight);
     }
     if (size > MCOR_USUAL_IN_CELL)
     {
@@ -254,14 +253,14 @@ __kernel void mcor_grid_merge(
 
 /* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order where
  * mcor_grid_order left a cell to mcor_grid_sort_runs. */
-__kernel void mcor_grid_move(const int count, __global const ulong* keys, MCOR_GRID_INPUT,
-  __global const int* order, MCOR_GRID_OUTPUT)
+__kernel void mcor_grid_move(const int count, const real norm, __global const ulong* keys,
+  MCOR_GRID_INPUT, __global const int* order, MCOR_GRID_OUTPUT)
 {
   const int i = get_global_id(0);
   if (i < count && mcor_sort_is_large(keys, i, count))
   {
     mcor_grid_move_particle(
-      i, order[i], xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
+      i, order[i], norm, xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
   }
 }
 
@@ -343,6 +342,9 @@ __kernel void mcor_grid_fill_places(
   }
 }
 
+#endif
+
+#if MCOR_OF_FIELD
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (1 each: number density).
  * Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j. */
 __kernel void mcor_grid_density(
@@ -415,3 +417,4 @@ __kernel void mcor_grid_weight(const int count, const real h_scale, __global con
   weight[i] = solid[order[i]] ? (real)0 : w;
 #endif
 }
+#endif

@@ -214,9 +214,7 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
   }
   triangle_count[slot] = triangles;
 }
-#endif
 
-#if MCOR_OF_FIELD
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
  * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against
  * the iso value. */

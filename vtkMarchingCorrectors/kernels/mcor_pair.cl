@@ -55,22 +55,45 @@ void mcor_pair_seed_line(
  * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* Which of particles i, i + 1, ... of the tile are on the other side of the iso value and closer to
- * particle j than its smoothing length. A pair in which each is closer than the other's is left to
- * the particle above. */
-fixv mcor_pair_chosen(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, int i,
-  int j, real iso, real h_scale)
+/* What rounding may do, at most, to the square of a distance within the smoothing length 1 / inv_h, as
+ * positions count from the query's origin. */
+real mcor_pair_slack(const mcor_query* query, real inv_h)
+{
+  const real* half_size = query->half_size;
+  const real extent = 2 * fmax(half_size[0], fmax(half_size[1], half_size[2])) + query->radius;
+  const real off = 16 * MCOR_UNIT_ROUNDOFF * extent;
+  return off * (2 / inv_h + 3 * off);
+}
+
+/* Which of particles i, i + 1, ... of the tile may make a pair with particle j. */
+fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
+  int i, int j, real iso, real h_scale)
 {
   const real x = (real)(grid->px[j] - query->origin[0]) * grid->unit;
   const real y = (real)(grid->py[j] - query->origin[1]) * grid->unit;
   const real z = (real)(grid->pz[j] - query->origin[2]) * grid->unit;
   const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
+  const real slack = mcor_pair_slack(query, inv_h);
   const fixv above = grid->value[j] >= iso ? (fixv)MCOR_TRUE : (fixv)0;
   const realv dx = MCOR_TILE(tile, x, i) - x, dy = MCOR_TILE(tile, y, i) - y,
               dz = MCOR_TILE(tile, z, i) - z, other = MCOR_TILE(tile, inv_h, i) * scale;
-  const realv r2 = dx * dx + dy * dy + dz * dz;
-  return r2 * inv_h * inv_h < (real)1 && (MCOR_TILE(tile, value, i) >= iso) != above &&
-    MCOR_TILE(tile, weight, i) != 0 && (above || r2 * other * other >= (real)1);
+  const realv r2 = mcor_square(dx, dy, dz);
+  return (r2 - slack) * inv_h * inv_h < (real)1 && (MCOR_TILE(tile, value, i) >= iso) != above &&
+    MCOR_TILE(tile, weight, i) != 0 && (above || (r2 + slack) * other * other >= (real)1);
+}
+
+/* Whether particle k, on the other side of the iso value, is closer to particle j than its smoothing
+ * length. A pair in which each is closer than the other's is left to the particle above. By exact
+ * differences: which particles were looked at together does not matter. */
+bool mcor_pair_is_chosen(const mcor_grid* grid, int j, int k, real iso, real h_scale)
+{
+  const real x = (real)(grid->px[k] - grid->px[j]) * grid->unit;
+  const real y = (real)(grid->py[k] - grid->py[j]) * grid->unit;
+  const real z = (real)(grid->pz[k] - grid->pz[j]) * grid->unit;
+  const real scale = h_scale / MCOR_PAIR_REACH;
+  const real own = grid->inv_h[j] * scale, other = grid->inv_h[k] * scale;
+  const real r2 = x * x + y * y + z * z;
+  return r2 * own * own < 1 && (grid->value[j] >= iso || r2 * other * other >= 1);
 }
 
 /* Marks the cells between particles j and k. */
@@ -98,12 +121,15 @@ void mcor_pair_seed_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mco
 {
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const fixv chosen = mcor_pair_chosen(grid, query, tile, i, j, iso, h_scale);
-    for (int lane = 0; MCOR_ANY(chosen) && lane < min(MCOR_LANES, tile->count - i); ++lane)
+    int lanes[MCOR_LANES];
+    const fixv candidates = mcor_pair_candidates(grid, query, tile, i, j, iso, h_scale);
+    const int count = mcor_list_lanes(candidates, min(MCOR_LANES, tile->count - i), lanes);
+    for (int c = 0; c < count; ++c)
     {
-      if (MCOR_GET_FIX(chosen, lane))
+      const int k = MCOR_INDEX(tile, i + lanes[c]);
+      if (mcor_pair_is_chosen(grid, j, k, iso, h_scale))
       {
-        mcor_pair_seed_pair(grid, MCOR_BLOCK_ARGS, j, MCOR_INDEX(tile, i + lane), cells);
+        mcor_pair_seed_pair(grid, MCOR_BLOCK_ARGS, j, k, cells);
       }
     }
   }

@@ -10,8 +10,8 @@
  * MCOR_PARTS. Every sum goes through its particles in the order of the search grid, whatever the
  * groups are. */
 
-/* How far apart the nodes of a group may be, in cubes: an edge of its box, and the sum of three. */
-#define MCOR_GROUP_EDGE 7
+/* How far apart the nodes of a group may be, in cubes, all three axes together; along one:
+ * MCOR_GROUP_EDGE. */
 #define MCOR_GROUP_EDGES 12
 
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
@@ -83,22 +83,6 @@ __kernel void mcor_group_count(
   }
 }
 
-/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last
- * entry is the end. */
-__kernel void mcor_group_fill(
-  const int first, const int count, __global const int* scanned, __global int* groups)
-{
-  const int i = get_global_id(0);
-  if (i < count && scanned[i] != scanned[i + 1])
-  {
-    groups[scanned[i]] = first + i;
-  }
-  if (i == count)
-  {
-    groups[scanned[count]] = first + count;
-  }
-}
-
 /* Gives the points of a group to lanes; `from` is the point to load in each lane. */
 void mcor_points_place(
   __global const int4* node, int begin, int end, mcor_points* points, int from[MCOR_LANES])
@@ -140,40 +124,51 @@ void mcor_points_load(
   points->z = MCOR_LOAD(0, n[2]);
 }
 
-/* Fits the query, and the boxes of the parts, to points with offsets between low and high. */
+/* Fits the query, and the boxes of the parts, to points with offsets between low and high. The query's
+ * origin is a node in the middle. */
 void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv high[3],
   mcor_points* points, mcor_query* query)
 {
   const fixv* node[3] = { &points->x, &points->y, &points->z };
+  fix origin[3];
   query->radius = -1;
   for (int a = 0; a < 3; ++a)
   {
-    const fix origin = MCOR_GET_FIX(*node[a], 0);
-    const realv at = MCOR_CONVERT_REALV(*node[a] - origin) * grid->unit;
+    const fix some = MCOR_GET_FIX(*node[a], 0);
+    const realv at = MCOR_CONVERT_REALV(*node[a] - some) * grid->unit;
     const realv begin = at + low[a], end = at + high[a];
     real least = MCOR_GET(begin, 0), most = MCOR_GET(end, 0);
+#if MCOR_PARTS == 4
+    const float8 low8 = fmin(begin.lo, begin.hi), high8 = fmax(end.lo, end.hi);
+    const float4 low4 = fmin(low8.lo, low8.hi), high4 = fmax(high8.lo, high8.hi);
+#endif
     for (int part = 0; part < MCOR_PARTS; ++part)
     {
+#if MCOR_PARTS == 4
+      const real first = low4[part], last = high4[part];
+#else
       real first = MCOR_GET(begin, part), last = MCOR_GET(end, part);
       for (int lane = part; lane < MCOR_LANES; lane += MCOR_PARTS)
       {
         first = fmin(first, MCOR_GET(begin, lane));
         last = fmax(last, MCOR_GET(end, lane));
       }
+#endif
       points->center[a][part] = (real)0.5 * (first + last);
       points->half_size[a][part] = (real)0.5 * (last - first);
       least = fmin(least, first);
       most = fmax(most, last);
     }
-    const fix corner = (fix)floor(ldexp(least, grid->fix_bits)) - 1;
-    query->low[a] = origin + corner;
-    query->high[a] = origin + (fix)ceil(ldexp(most, grid->fix_bits)) + 1;
+    const real middle = floor((real)0.5 * (least + most));
+    origin[a] = some + ((fix)middle << grid->fix_bits);
+    query->low[a] = some + (fix)floor(ldexp(least, grid->fix_bits)) - 1;
+    query->high[a] = some + (fix)ceil(ldexp(most, grid->fix_bits)) + 1;
     for (int part = 0; part < MCOR_PARTS; ++part)
     {
-      points->center[a][part] -= (real)corner * grid->unit;
+      points->center[a][part] -= middle;
     }
   }
-  mcor_query_place(grid, query, query->low);
+  mcor_query_place(grid, query, origin);
 }
 
 /* Loads the group of points from begin to before end and their offsets, and fits the query to them,
@@ -205,7 +200,9 @@ void mcor_points_relative(
   at[2] = MCOR_CONVERT_REALV(points->z - query->origin[2]) * grid->unit;
 }
 
-/* Where the points are from a particle at (x, y, z); `at` is of mcor_points_relative. */
+/* Where the points are from a particle at (x, y, z); `at` is of mcor_points_relative. What is in
+ * parentheses is exact where the particle reaches the point, see MCOR_POINT_EXTENT: so the distance
+ * depends on particle and point alone, not on the query's origin. */
 void mcor_points_from(
   const realv at[3], const mcor_points* points, realv x, realv y, realv z, realv d[3])
 {

@@ -15,8 +15,8 @@
  * cubes, counted from the lattice origin, so that a difference of two positions is exact: a node's
  * value does not depend on the brick it is evaluated in, nor on how far away the origin is. */
 
-/* Programs. That of the lattice is compiled once for all kernels, fields and precisions: it knows none
- * of what is named after MCOR_LANES. */
+/* Programs. That of the lattice is compiled once for all SPH kernels and fields: it knows none of what is
+ * named after MCOR_DOUBLE, and fewer lanes than the others maybe. */
 #define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
 #define MCOR_OF_OPTIONS (MCOR_PROGRAM == 2)
@@ -153,4 +153,16 @@ int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
     }
   }
   return low;
+}
+
+/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. */
+int mcor_cell_of(fix x, float inv_cell)
+{
+  return (int)floor((float)x * inv_cell);
+}
+
+/* Cell along an axis of a particle of the level. */
+int mcor_cell_of_particle(mcor_level level, int axis, fix x)
+{
+  return clamp(mcor_cell_of(x, level.inv_cell), 0, level.cells[axis] - 1);
 }

@@ -5,6 +5,24 @@
  * their gradients. Every sum goes through its particles in the order of the search grid, so that a
  * point's bits do not depend on the other points. */
 
+/* One work-item = one point. Reads its node; below 0 where no particle reaches it. Writes a key by
+ * which points of a cell, and cells of a brick, follow each other; first: the first brick. */
+__kernel void mcor_probe_key(const int count, const int first_x, const int first_y,
+  const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
+  __global const int4* node, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    const int4 n = node[i];
+    const ulong z = (n.z >> 2) - first_z, y = (n.y >> 2) - first_y, x = (n.x >> 2) - first_x;
+    const ulong brick =
+      n.x < 0 ? (ulong)bricks_z * bricks_y * bricks_x : (z * bricks_y + y) * bricks_x + x;
+    keys[i] =
+      n.x < 0 ? brick << 6 : brick << 6 | (ulong)((n.z & 3) << 4 | (n.y & 3) << 2 | (n.x & 3));
+  }
+}
+
 /* One work-item = one point of the sorted order. Reads the points in input order. Writes them as
  * node and offset in sorted order. */
 __kernel void mcor_probe_order(const int count, __global const int* order,

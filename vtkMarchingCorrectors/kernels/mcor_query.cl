@@ -36,18 +36,6 @@ typedef struct
       buckets, cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                    \
   }
 
-/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. */
-int mcor_cell_of(fix x, float inv_cell)
-{
-  return (int)floor((float)x * inv_cell);
-}
-
-/* Cell along an axis of a particle of the level. */
-int mcor_cell_of_particle(mcor_level level, int axis, fix x)
-{
-  return clamp(mcor_cell_of(x, level.inv_cell), 0, level.cells[axis] - 1);
-}
-
 /* Index of the first particle whose cell key is >= key. */
 int mcor_first_particle(const mcor_grid* grid, ulong key)
 {
@@ -275,12 +263,16 @@ int mcor_query_particles(
  *
  * MCOR_EACH is an element, for all lanes; MCOR_TILE that of particles i, i + 1, ..., one for each
  * lane; MCOR_INDEX the place in the sorted arrays. The elements are x, y, z (from the query's
- * origin, in cubes: exact in single precision while below 16 cubes), inv_h, weight, trim_weight (to
- * be read as MCOR_TRIM_WEIGHT) and value.
+ * origin, in cubes; of particles that reach points of a group, and of those that reach nodes of a
+ * brick, exact: MCOR_POINT_EXTENT), inv_h, weight, trim_weight (to be read as MCOR_TRIM_WEIGHT) and
+ * value.
  *
  * The loop may be repeated. What is `complete` fits one tile and is then not gathered again, and
  * mcor_tile_narrow(&wide, &query, &tile) fills a tile, but for MCOR_INDEX, from a complete one of a
  * query with the same origin and a box that holds this one's.
+ *
+ * mcor_list_lanes(chosen, count, lanes) lists which of the first `count` lanes are chosen, and returns
+ * how many.
  *
  * For points (mcor_points.cl), whose lanes may see different particles at a time:
  *

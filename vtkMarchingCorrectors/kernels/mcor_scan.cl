@@ -186,3 +186,19 @@ __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, cons
     buckets[b] = first;
   }
 }
+
+/* One work-item = one point. Reads the scanned flags. Writes where each group starts; the last
+ * entry is the end. */
+__kernel void mcor_group_fill(
+  const int first, const int count, __global const int* scanned, __global int* groups)
+{
+  const int i = get_global_id(0);
+  if (i < count && scanned[i] != scanned[i + 1])
+  {
+    groups[scanned[i]] = first + i;
+  }
+  if (i == count)
+  {
+    groups[scanned[count]] = first + count;
+  }
+}

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight (or the boundary
- * eigenvalue, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to
+ * eigenvalue, or the margin, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to
  * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
  * there. */
 
@@ -18,6 +18,20 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
     inside |= (weight[t[c]] > threshold) << c;
   }
   return inside;
+}
+
+/* One work-item = one vertex. Writes how far it is inside, of a threshold of `quantity` and of the
+ * fluid's share of the weight, whichever is nearer: what is trimmed by, its threshold being 0. */
+__kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
+  __global const real* weight, __global const real4* gradient, const real fluid_share,
+  __global real* margin)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    const real share = gradient[i].w - fluid_share * weight[i];
+    margin[i] = MCOR_FIELD == 2 ? share : fmin(quantity[i] - threshold, share);
+  }
 }
 
 /* One work-item = one batch of triangles. Writes how many triangles remain of them, and their cut
@@ -163,19 +177,50 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 /* |w - threshold| of a cut vertex, at most. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
-/* What is trimmed by, at all points where the field was evaluated. */
-void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
-  const mcor_points* points, const mcor_field_at* at, bool by_eigenvalue, mcor_boundary_at* bound)
+/* What is trimmed by: thresholds of the weight or the boundary eigenvalue and, above 0, of the
+ * fluid's share of the weight. */
+typedef struct
 {
-  if (by_eigenvalue)
+  real threshold, fluid_share;
+  bool by_eigenvalue;
+} mcor_trim_limits;
+
+#if MCOR_SOLIDS
+/* Where the fluid's share is the nearer limit, or the only one, it is the one that counts. */
+void mcor_trim_bound_share(const mcor_field_at* at, real fluid_share, mcor_boundary_at* bound)
+{
+  const realv share = at->fluid - fluid_share * at->weight;
+  const fixv nearer = MCOR_FIELD == 2 ? (fixv)MCOR_TRUE : share < bound->value;
+  bound->value = nearer ? share : bound->value;
+  bound->gx = nearer ? at->fx - fluid_share * at->wx : bound->gx;
+  bound->gy = nearer ? at->fy - fluid_share * at->wy : bound->gy;
+  bound->gz = nearer ? at->fz - fluid_share * at->wz : bound->gz;
+}
+#endif
+
+/* How far all points, where the field was evaluated, are inside of the limits. */
+void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
+  const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
+  mcor_boundary_at* bound)
+{
+  if (limits->by_eigenvalue)
   {
     mcor_evaluate_boundary(grid, query, &reach->tile, points, true, bound);
-    return;
   }
-  bound->value = at->weight;
-  bound->gx = at->wx;
-  bound->gy = at->wy;
-  bound->gz = at->wz;
+  else
+  {
+    bound->value = at->weight;
+    bound->gx = at->wx;
+    bound->gy = at->wy;
+    bound->gz = at->wz;
+  }
+  bound->value -= limits->threshold;
+#if MCOR_SOLIDS
+  if (limits->fluid_share > 0)
+  {
+    mcor_trim_bound_share(at, limits->fluid_share, bound);
+  }
+#endif
 }
 
 /* Divides a value and its gradient by the gradient's length, whatever the unit. Returns where it has
@@ -203,10 +248,10 @@ fixv mcor_trim_normalize(realv* value, realv gradient[3])
 /* Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J J^T)^-1
  * (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there is none, the
  * gradients being parallel. */
-fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real threshold,
-  realv* dx, realv* dy, realv* dz)
+fixv mcor_trim_step(
+  const mcor_field_at* at, const mcor_boundary_at* bound, realv* dx, realv* dy, realv* dz)
 {
-  realv f = at->value, w = bound->value - threshold;
+  realv f = at->value, w = bound->value;
   realv gf[3] = { at->gx, at->gy, at->gz }, gw[3] = { bound->gx, bound->gy, bound->gz };
   const fixv flat = mcor_trim_normalize(&f, gf) || mcor_trim_normalize(&w, gw);
   const realv fw = gf[0] * gw[0] + gf[1] * gw[1] + gf[2] * gw[2];
@@ -228,7 +273,7 @@ fixv mcor_trim_step(const mcor_field_at* at, const mcor_boundary_at* bound, real
 /* Moves a group of points to where field = iso and weight = threshold; points for which that does
  * not succeed nearby stay where they were. Returns the latter. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  real threshold, bool by_eigenvalue, int limit, mcor_points* points, mcor_reach* reach,
+  const mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach,
   mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
@@ -238,15 +283,14 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   for (int i = 0;; ++i)
   {
     mcor_evaluate(grid, query, reach, points, iso, at);
-    mcor_trim_bound(grid, query, reach, points, at, by_eigenvalue, &bound);
-    done = done ||
-      (fabs(at->value) <= tolerance && fabs(bound.value - threshold) <= MCOR_TRIM_TOLERANCE);
-    if (i == limit || !MCOR_ANY(!(done || failed)))
+    mcor_trim_bound(grid, query, reach, points, at, limits, &bound);
+    done = done || (fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE);
+    if (i == steps || !MCOR_ANY(!(done || failed)))
     {
       break;
     }
     realv dx, dy, dz;
-    const fixv tangent = mcor_trim_step(at, &bound, threshold, &dx, &dy, &dz);
+    const fixv tangent = mcor_trim_step(at, &bound, &dx, &dy, &dz);
     const fixv far = fabs(points->ox + dx - x0) > MCOR_TRIM_REACH ||
       fabs(points->oy + dy - y0) > MCOR_TRIM_REACH || fabs(points->oz + dz - z0) > MCOR_TRIM_REACH;
     failed = failed || (!done && (far || tangent));
@@ -268,13 +312,13 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
 
 #define MCOR_TRIM_SOLVE_PARAMS                                                                     \
   const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
-    const real tolerance, const real threshold, const int limit, __global real4 *offset,           \
-    __global real *value, __global real4 *gradient, __global real *weight, __global uchar *flag,   \
-    MCOR_ATTRIBUTE_PARAMS
+    const real tolerance, const real threshold, const real fluid_share, const int steps,           \
+    __global real4 *offset, __global real *value, __global real4 *gradient, __global real *weight, \
+    __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
 
 #define MCOR_TRIM_SOLVE_ARGS                                                                       \
-  group_count, groups, node, iso, tolerance, threshold, limit, offset, value, gradient, weight,    \
-    flag, MCOR_ATTRIBUTE_ARGS
+  group_count, groups, node, iso, tolerance, threshold, fluid_share, steps, offset, value,         \
+    gradient, weight, flag, MCOR_ATTRIBUTE_ARGS
 
 /* What the next two kernels do. */
 void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
@@ -290,8 +334,9 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   mcor_field_at at;
   mcor_group_load(
     grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
-  const fixv linear = mcor_trim_group(
-    grid, &query, iso, tolerance, threshold, by_eigenvalue, limit, &points, &reach, &at);
+  const mcor_trim_limits limits = { threshold, fluid_share, by_eigenvalue };
+  const fixv linear =
+    mcor_trim_group(grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
   if (attribute_count > 0)
   {
     mcor_attribute_group(grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);

@@ -1,0 +1,435 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* A run over a box owns the cells there, and makes their part of the surface to
+ * the last bit.
+ *
+ * What is global is measured over all particles: lattice, ranges, shifts, levels. On the device are
+ * those alone that reach what is evaluated. One ring of cells around the owned ones is examined as
+ * well, with its triangles: pinched edges, the border that the node threshold leaves, and normals
+ * from triangles depend on it. Each triangle's flag follows it through trimming; those of the ring,
+ * and points that only they use, leave the surface at the very end.
+ *
+ * Beyond the ring's nodes sums lack particles and mean nothing; bounds there are lower than they
+ * were, but what they say of nodes within holds. Nothing is examined there: cubes and bricks are
+ * made void.
+ *
+ * Pairs [III-C] find their cells from cell to cell, from seeds that may be anywhere: their cells are
+ * found on the whole lattice, and only the rest is the box's. */
+
+#include "mcor_box.h"
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_stage.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_BOX_RING 1
+
+/* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
+#define MCOR_BOX_MARGIN 1.25
+
+/* Kernel arguments of MCOR_BOX_PARAMS, `ring` cells added. */
+#define MCOR_BOX_ARGS(r, ring)                                                                     \
+  MCOR_INT((r)->first[0] - (ring)), MCOR_INT((r)->first[1] - (ring)),                              \
+    MCOR_INT((r)->first[2] - (ring)), MCOR_INT((r)->last[0] + (ring)),                             \
+    MCOR_INT((r)->last[1] + (ring)), MCOR_INT((r)->last[2] + (ring))
+
+/* ---- Cells ---- */
+
+/* A cell is owned where its centre is in the box: so the side of a box may lie on the lattice's
+ * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
+void mcor_place_box(mcor_context* context, const mcor_options* options)
+{
+  mcor_box* box = &context->box;
+  const mcor_lattice* lattice = &context->lattice;
+  box->is_part = box->is_empty = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool periodic = lattice->period[a] > 0;
+    const double first = periodic ? lattice->period_first[a] : (double)lattice->first[a];
+    const double last = periodic ? first + lattice->period[a] : (double)lattice->last[a];
+    double side[2] = { first, last };
+    for (int s = 0; s < 2 && options->has_box; ++s)
+    {
+      const double at = ceil(options->box[2 * a + s] / lattice->cube - 0.5);
+      side[s] = fmin(fmax(at - (double)lattice->origin[a], first), last);
+    }
+    box->first[a] = (int)side[0];
+    box->last[a] = (int)side[1];
+    box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
+    box->is_empty = box->is_empty || side[0] >= side[1];
+  }
+}
+
+/* Whether the device lacks the particles that are far from the box. */
+static bool mcor_is_limited(const mcor_context* context)
+{
+  return context->box.is_empty || (context->box.is_part && !mcor_uses_pairs(context));
+}
+
+mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  return !mcor_is_limited(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, bricks->block_count,
+        MCOR_INT(bricks->block_count), MCOR_INT(cubes_x), MCOR_INT(cubes_y),
+        MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size),
+        MCOR_BOX_ARGS(&context->box, MCOR_BOX_RING), MCOR_BUFFER(&bricks->block_states));
+}
+
+mcor_status mcor_void_bricks(mcor_context* context)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  return !mcor_is_limited(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
+        (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
+        MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
+        MCOR_BUFFER(&bricks->block_keys), MCOR_BOX_ARGS(&context->box, MCOR_BOX_RING),
+        MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
+}
+
+static mcor_status mcor_clip(
+  mcor_context* context, const mcor_buffer* cells, mcor_buffer* clipped, int ring)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  MCOR_TRY(mcor_reserve(context, clipped, (size_t)now->count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_BUFFER(&now->bricks), MCOR_BOX_ARGS(&context->box, ring), MCOR_BUFFER(cells),
+    MCOR_BUFFER(clipped));
+}
+
+mcor_status mcor_clip_used(mcor_context* context)
+{
+  mcor_buffer* used = &context->mesh.used;
+  return context->box.is_part ? mcor_clip(context, used, used, MCOR_BOX_RING) : MCOR_OK;
+}
+
+mcor_status mcor_count_cells(mcor_context* context, const mcor_buffer* cells, int* count)
+{
+  mcor_buffer* clipped = &context->box.clipped;
+  if (!context->box.is_part)
+  {
+    return mcor_count_bits(context, cells, context->bricks.now.count, count);
+  }
+  MCOR_TRY(mcor_clip(context, cells, clipped, 0));
+  return mcor_count_bits(context, clipped, context->bricks.now.count, count);
+}
+
+/* ---- Particles ---- */
+
+/* Numbers of the images of a particle at `at`, cubes from the lattice's origin, that are within
+ * `reach` of where the field is evaluated; false: there is none. Without a period the only one is
+ * number 0. */
+static bool mcor_find_images(
+  const mcor_reach_box* box, int axis, double at, double reach, int* first, int* last)
+{
+  const double low = box->low[axis] - reach - at, high = box->high[axis] + reach - at;
+  const int period = box->period[axis];
+  *first = period > 0 ? (int)ceil(low / period) : 0;
+  *last = period > 0 ? (int)floor(high / period) : 0;
+  return period > 0 ? *first <= *last : low <= 0 && high >= 0;
+}
+
+int mcor_list_images(
+  const mcor_reach_box* box, const double at[3], double support, mcor_images* images)
+{
+  const double reach = support > box->radius ? support : box->radius;
+  int count = !box->is_empty;
+  for (int a = 0; a < 3 && count > 0; ++a)
+  {
+    if (!mcor_find_images(box, a, at[a], reach, &images->first[a], &images->last[a]))
+    {
+      return 0;
+    }
+    count *= images->last[a] - images->first[a] + 1;
+  }
+  return count;
+}
+
+double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
+{
+  const double period = ldexp(box->period[axis], box->fix_bits);
+  const double first = ldexp(box->first[axis], box->fix_bits);
+  const double rounded = floor(fixed + 0.5);
+  return period > 0 ? rounded - floor((rounded - first) / period) * period : fixed;
+}
+
+typedef struct mcor_reach_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_reach_box* box;
+  double farthest[MCOR_SLICES]; /* the largest support radius of those that reach it, cubes */
+} mcor_reach_job;
+
+static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_reach_job* job = data;
+  const mcor_lattice* lattice = &job->context->lattice;
+  const double scale = ldexp(1, lattice->fix_bits);
+  mcor_array positions = job->input->positions;
+  positions.components = 3;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], farthest = 0;
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    mcor_read_smoothing_length(job->context, job->input, begin, count, h);
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_read_array(&positions, begin, count, a, x[a]);
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      const double support = h[i] * job->box->support;
+      double at[3];
+      mcor_images images;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double fixed = (x[a][i] / lattice->cube - (double)lattice->origin[a]) * scale;
+        at[a] = mcor_wrap(job->box, a, fixed) / scale;
+      }
+      if (support > farthest && mcor_list_images(job->box, at, support, &images) > 0)
+      {
+        farthest = support;
+      }
+    }
+  }
+  job->farthest[slice] = farthest;
+}
+
+/* A volume is the sum over all within the support of the particle, not scaled; the nearest particle
+ * may be any that is nearer than one that reaches. */
+static double mcor_reach_beyond(
+  const mcor_options* options, const mcor_input* input, double farthest)
+{
+  const double volumes = mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
+  const double nearest = options->nearest_particle ? farthest + 2 : 0;
+  return farthest > 0 ? fmax(volumes, nearest) : 0;
+}
+
+/* With M'4 a density may be too low without its farthest particles, and is refused: there all are
+ * needed to know. */
+static bool mcor_needs_all(const mcor_context* context, const mcor_input* input)
+{
+  return context->options->sph_kernel == MCOR_M_PRIME_4 && mcor_needs_density(input);
+}
+
+bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach)
+{
+  const mcor_box* box = &context->box;
+  *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits, .is_empty = box->is_empty };
+  if (!mcor_is_limited(context) || (mcor_needs_all(context, input) && !box->is_empty))
+  {
+    return false;
+  }
+  reach->support = mcor_support_factor(context->options->sph_kernel) * context->options->h_scale /
+    context->lattice.cube;
+  for (int a = 0; a < 3; ++a)
+  {
+    reach->low[a] = box->first[a] - MCOR_BOX_RING - MCOR_BOX_MARGIN;
+    reach->high[a] = box->last[a] + MCOR_BOX_RING + MCOR_BOX_MARGIN;
+    reach->period[a] = context->lattice.period[a];
+    reach->first[a] = context->lattice.period_first[a];
+  }
+  if (mcor_needs_density(input) || context->options->nearest_particle)
+  {
+    mcor_reach_job job = { .context = context, .input = input, .box = reach };
+    const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
+    double farthest = 0;
+    for (int s = 0; s < slices; ++s)
+    {
+      farthest = fmax(farthest, job.farthest[s]);
+    }
+    reach->radius = mcor_reach_beyond(context->options, input, farthest);
+  }
+  return true;
+}
+
+/* ---- Triangles ---- */
+
+/* Flags the triangles of owned cells; *count of them. */
+mcor_status mcor_mark_owned(mcor_context* context, int* count)
+{
+  mcor_box* box = &context->box;
+  const mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  const mcor_topology_data* topology = &context->topology;
+  const int bricks_now = bricks->now.count;
+  *count = mesh->triangle_count;
+  if (!box->is_part)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_reserve(context, &box->owned, (size_t)mesh->triangle_count));
+  if (context->options->topology == MCOR_TOPOLOGY_FIELD)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark_resolved", MCOR_MEDIUM, bricks_now,
+      MCOR_INT(bricks_now), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
+      MCOR_BOX_ARGS(box, 0), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
+      MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->cases),
+      MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->owned)));
+  }
+  else
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark", MCOR_MEDIUM, bricks_now, MCOR_INT(bricks_now),
+      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BOX_ARGS(box, 0),
+      MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&context->case_table),
+      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->owned)));
+  }
+  void* view;
+  const size_t bytes = (size_t)mesh->triangle_count;
+  MCOR_TRY(mcor_map(context, &box->owned, bytes, false, &view));
+  *count = 0;
+  for (size_t i = 0; i < bytes; ++i)
+  {
+    *count += ((const uint8_t*)view)[i];
+  }
+  return mcor_unmap(context, &box->owned, &view);
+}
+
+/* Trimming is about to leave `remaining` triangles; see mcor_box_trim. */
+mcor_status mcor_trim_owned(
+  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining)
+{
+  mcor_box* box = &context->box;
+  const mcor_mesh* mesh = &context->mesh;
+  if (!box->is_part)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer trimmed = { 0 };
+  MCOR_TRY(mcor_reserve(context, &trimmed, (size_t)remaining));
+  const mcor_status status = MCOR_LAUNCH(context, "mcor_box_trim", MCOR_MEDIUM,
+    mcor_batches(context, mesh->triangle_count), MCOR_INT(mesh->triangle_count),
+    MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity), MCOR_REAL(threshold),
+    MCOR_BUFFER(&context->trim.remaining), MCOR_BUFFER(&box->owned), MCOR_BUFFER(&trimmed));
+  mcor_release(context, &box->owned);
+  box->owned = trimmed;
+  return status;
+}
+
+/* ---- Surface ---- */
+
+/* Takes the flags of the mesh's triangles along with the surface, and of its vertices to
+ * *vertices: 1 where an owned triangle uses it; NULL where all are owned. */
+mcor_status mcor_keep_owned(mcor_context* context, const mcor_surface* surface, uint8_t** vertices)
+{
+  mcor_box* box = &context->box;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t triangles = (size_t)mesh->triangle_count, base = (size_t)surface->triangle_count;
+  if (!box->is_part)
+  {
+    return MCOR_OK;
+  }
+  uint8_t* kept = realloc(box->kept, base + triangles + 1);
+  box->kept = kept ? kept : box->kept;
+  *vertices = calloc((size_t)mesh->vertex_count + 1, 1);
+  MCOR_RETURN_IF(!kept || !*vertices, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld triangles could not be allocated.", (long long)(base + triangles));
+  if (triangles == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_read(context, &box->owned, 0, kept + base, triangles));
+  void* view;
+  MCOR_TRY(mcor_map(context, &mesh->triangles, triangles * 3 * sizeof(cl_int), false, &view));
+  const cl_int* corners = view;
+  for (size_t i = 0; i < 3 * triangles; ++i)
+  {
+    (*vertices)[corners[i]] |= kept[base + i / 3];
+  }
+  return mcor_unmap(context, &mesh->triangles, &view);
+}
+
+/* Moves elements of `width` bytes to where their numbers say, which is not behind where they are;
+ * -1: dropped. */
+static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t count)
+{
+  char* bytes = array;
+  for (int64_t i = 0; i < count && array; ++i)
+  {
+    if (number[i] >= 0 && number[i] != i)
+    {
+      memcpy(bytes + (size_t)number[i] * width, bytes + (size_t)i * width, width);
+    }
+  }
+}
+
+/* Numbers the points that owned triangles use, in order; drops the other triangles. */
+static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, int32_t* number)
+{
+  int64_t triangles = 0, points = 0;
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    number[i] = -1;
+  }
+  for (int64_t i = 0; i < 3 * surface->triangle_count; ++i)
+  {
+    if (kept[i / 3])
+    {
+      number[surface->triangles[i]] = 0;
+    }
+  }
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    number[i] = number[i] < 0 ? -1 : (int32_t)points++;
+  }
+  for (int64_t i = 0; i < surface->triangle_count; ++i)
+  {
+    for (int c = 0; c < 3 && kept[i]; ++c)
+    {
+      surface->triangles[3 * triangles + c] = number[surface->triangles[3 * i + c]];
+    }
+    triangles += kept[i];
+  }
+  surface->triangle_count = triangles;
+  return points;
+}
+
+/* Leaves the owned triangles, and their points. */
+mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
+{
+  const uint8_t* kept = context->box.kept;
+  if (!kept)
+  {
+    return MCOR_OK;
+  }
+  int32_t* number = malloc(((size_t)surface->point_count + 1) * sizeof *number);
+  MCOR_RETURN_IF(!number, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld points could not be allocated.", (long long)surface->point_count);
+  const int64_t points = mcor_drop_triangles(surface, kept, number);
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
+  mcor_list_surface_arrays(surface, arrays);
+  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
+  {
+    mcor_pack(*arrays[i].array, arrays[i].width, number, surface->point_count);
+  }
+  for (int a = 0; a < surface->attribute_count; ++a)
+  {
+    mcor_pack(surface->attributes[a],
+      (size_t)mcor_components(&input->attributes[a]) * sizeof(double), number,
+      surface->point_count);
+  }
+  surface->point_count = points;
+  free(number);
+  return MCOR_OK;
+}
+
+/* What a call leaves behind on the host. */
+void mcor_end_box(mcor_context* context)
+{
+  free(context->box.kept);
+  context->box.kept = NULL;
+}
+
+void mcor_release_box(mcor_context* context)
+{
+  MCOR_RELEASE(context, &context->box.owned, &context->box.clipped);
+  mcor_end_box(context);
+}

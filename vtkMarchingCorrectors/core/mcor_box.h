@@ -1,0 +1,64 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_box_h
+#define mcor_box_h
+
+/* What the phases ask of the box; where all of the lattice is owned, nothing is done. See
+ * mcor_box.c. */
+
+#include "mcor_internal.h"
+
+/* mcor_period.c. Periods in cubes, which are made smaller so that these are whole numbers, and the
+ * bounds of all images that may be needed. */
+mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double* cube);
+
+/* The cells that the call owns; the lattice is known. */
+void mcor_place_box(mcor_context* context, const mcor_options* options);
+
+/* Stage: where particles, or their images at whole periods, matter; in cubes from the lattice's
+ * origin. */
+typedef struct mcor_reach_box
+{
+  double low[3], high[3]; /* where the field is evaluated */
+  double support;         /* support radius / smoothing length */
+  double radius;          /* as if no support radius were less */
+  int period[3], first[3], fix_bits;
+  bool is_empty; /* none matters */
+} mcor_reach_box;
+
+/* Images of a particle: numbers by axis, whole periods to its place within the first period. */
+typedef struct mcor_images
+{
+  int first[3], last[3];
+} mcor_images;
+
+/* False where all particles are needed. */
+bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach);
+/* A position in the device's units; with a period rounded as there, and in the first period. */
+double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
+/* Returns how many. */
+int mcor_list_images(
+  const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
+
+/* Seeds: of cubes of a size, and of bricks, those off the box become void. */
+mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size);
+mcor_status mcor_void_bricks(mcor_context* context);
+
+/* Extraction: leaves used cells of the box and its ring; counts owned ones of any cells, and owned
+ * triangles. */
+mcor_status mcor_clip_used(mcor_context* context);
+mcor_status mcor_count_cells(mcor_context* context, const mcor_buffer* cells, int* count);
+mcor_status mcor_mark_owned(mcor_context* context, int* count);
+
+mcor_status mcor_trim_owned(
+  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining);
+
+/* Output. */
+mcor_status mcor_keep_owned(mcor_context* context, const mcor_surface* surface, uint8_t** vertices);
+mcor_status mcor_crop_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface);
+
+void mcor_end_box(mcor_context* context);
+void mcor_release_box(mcor_context* context);
+
+#endif

@@ -1,0 +1,171 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Buffers of the device. */
+
+#include "mcor_cl_call.h"
+
+#include <math.h>
+
+void mcor_release(mcor_context* context, mcor_buffer* buffer)
+{
+  if (buffer->mem)
+  {
+    clReleaseMemObject(buffer->mem);
+    context->cl.bytes -= (int64_t)buffer->size;
+  }
+  buffer->mem = NULL;
+  buffer->size = 0;
+}
+
+/* A CPU's buffers are the host's memory. */
+static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* buffer)
+{
+  void* memory;
+  if (!context->cl.is_cpu || buffer->size < MCOR_LARGE_ARRAY)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_map(context, buffer, buffer->size, true, &memory));
+  mcor_use_large_pages(memory, buffer->size);
+  return mcor_unmap(context, buffer, &memory);
+}
+
+mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes)
+{
+  mcor_cl* cl = &context->cl;
+  const size_t size = (bytes + 255) / 256 * 256 + 256; /* never empty */
+  if (buffer->mem && buffer->size >= bytes)
+  {
+    return MCOR_OK;
+  }
+  mcor_release(context, buffer);
+  MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
+    context, MCOR_OUT_OF_CAPACITY,
+    "This would need a buffer of %.1f MiB besides %.1f MiB in use, but %.1f MiB of device %s may "
+    "be "
+    "used, %.1f MiB at most in one buffer. Use a larger cube size, fewer particles, or a higher "
+    "memory limit where one is set.",
+    ldexp((double)size, -20), ldexp((double)cl->bytes, -20), ldexp((double)cl->memory_limit, -20),
+    cl->device_name, ldexp((double)cl->largest_buffer, -20));
+  cl_int error;
+  buffer->mem = clCreateBuffer(cl->context, CL_MEM_READ_WRITE, size, NULL, &error);
+  if (error != CL_SUCCESS)
+  {
+    buffer->mem = NULL;
+    return mcor_fail(context,
+      mcor_is_no_memory(error) || error == CL_INVALID_BUFFER_SIZE ? MCOR_OUT_OF_CAPACITY
+                                                                  : MCOR_DEVICE_ERROR,
+      "Device %s could not allocate %.0f MB (%s). Use a larger cube size, or fewer particles.",
+      cl->device_name, (double)size / 1e6, mcor_cl_error_name(error));
+  }
+  buffer->size = size;
+  cl->bytes += (int64_t)size;
+  cl->bytes_peak = cl->bytes > cl->bytes_peak ? cl->bytes : cl->bytes_peak;
+  return mcor_enlarge_pages(context, buffer);
+}
+
+mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes)
+{
+  MCOR_TRY(mcor_reserve(context, buffer, bytes));
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueWriteBuffer(context->cl.queue, buffer->mem, CL_TRUE, 0, bytes, data, 0, NULL, NULL),
+      "clEnqueueWriteBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_read(
+  mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes)
+{
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueReadBuffer(
+        context->cl.queue, buffer->mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL),
+      "clEnqueueReadBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_map(
+  mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data)
+{
+  cl_int error;
+  *data = clEnqueueMapBuffer(context->cl.queue, buffer->mem, CL_TRUE,
+    write ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ, 0, bytes > 0 ? bytes : 1, 0, NULL, NULL,
+    &error);
+  if (error != CL_SUCCESS)
+  {
+    *data = NULL;
+  }
+  MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
+  return MCOR_OK;
+}
+
+mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data)
+{
+  void* const mapped = *data;
+  *data = NULL;
+  if (mapped)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueUnmapMemObject(context->cl.queue, buffer->mem, mapped, 0, NULL, NULL),
+      "clEnqueueUnmapMemObject");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes)
+{
+  return mcor_fill_range(context, buffer, byte, 0, bytes);
+}
+
+mcor_status mcor_fill_range(
+  mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last)
+{
+  MCOR_TRY(mcor_reserve(context, buffer, last));
+  if (last > first)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueFillBuffer(
+        context->cl.queue, buffer->mem, &byte, sizeof byte, first, last - first, 0, NULL, NULL),
+      "clEnqueueFillBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_copy(
+  mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t to_offset, size_t bytes)
+{
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueCopyBuffer(
+        context->cl.queue, from->mem, to->mem, 0, to_offset, bytes, 0, NULL, NULL),
+      "clEnqueueCopyBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes)
+{
+  if (buffer->size >= bytes)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer bigger = { 0 };
+  mcor_status status = mcor_reserve(context, &bigger, bytes);
+  if (status == MCOR_OK)
+  {
+    status = mcor_copy(context, buffer, &bigger, 0, old);
+  }
+  mcor_release(context, status == MCOR_OK ? buffer : &bigger);
+  if (status == MCOR_OK)
+  {
+    *buffer = bigger;
+  }
+  return status;
+}

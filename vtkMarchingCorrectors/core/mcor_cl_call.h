@@ -1,0 +1,38 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_cl_call_h
+#define mcor_cl_call_h
+
+/* What the files mcor_cl_*.c, the only ones that call OpenCL, share. */
+
+#include "mcor_internal.h"
+
+#define MCOR_CL_TRY(context, call, what)                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    const cl_int mcor_cl_error_ = (call);                                                          \
+    if (mcor_cl_error_ != CL_SUCCESS)                                                              \
+    {                                                                                              \
+      return mcor_cl_fail(context, mcor_cl_error_, what);                                          \
+    }                                                                                              \
+  } while (0)
+
+/* mcor_cl_device.c */
+const char* mcor_cl_error_name(cl_int error);
+/* Drivers that allocate when memory is first needed say so in any later call. */
+bool mcor_is_no_memory(cl_int error);
+/* Sets the sentence about a call that failed. */
+mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
+bool mcor_is_pocl(const mcor_cl* cl);
+
+/* mcor_cl_program.c */
+/* Builds a program, unless it is at hand. */
+mcor_status mcor_need_program(mcor_context* context, mcor_program number);
+/* Drops the programs, or those that depend on what is computed, and their kernels. */
+void mcor_drop_programs(mcor_cl* cl, bool all);
+/* Tells the caller, once in a phase, that the next is building, which may take seconds. */
+mcor_status mcor_report_building(mcor_context* context);
+/* Building is reported apart from the phase in which it happens. */
+void mcor_add_build_seconds(mcor_context* context, double seconds);
+
+#endif

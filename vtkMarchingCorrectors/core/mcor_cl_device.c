@@ -1,0 +1,304 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Which OpenCL device, what it can do, and what its errors mean. */
+
+#include "mcor_cl_call.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_PLATFORM_LIMIT 16
+#define MCOR_DEVICE_LIMIT 64
+
+/* The platform whose first device is the default. */
+#define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
+
+typedef struct mcor_device_list
+{
+  int count;
+  cl_platform_id platforms[MCOR_DEVICE_LIMIT];
+  cl_device_id devices[MCOR_DEVICE_LIMIT];
+} mcor_device_list;
+
+const char* mcor_cl_error_name(cl_int error)
+{
+#define MCOR_NAMED(code)                                                                           \
+  {                                                                                                \
+    code, #code                                                                                    \
+  }
+  static const struct
+  {
+    cl_int code;
+    const char* name;
+  } names[] = { MCOR_NAMED(CL_DEVICE_NOT_FOUND), MCOR_NAMED(CL_DEVICE_NOT_AVAILABLE),
+    MCOR_NAMED(CL_COMPILER_NOT_AVAILABLE), MCOR_NAMED(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+    MCOR_NAMED(CL_OUT_OF_RESOURCES), MCOR_NAMED(CL_OUT_OF_HOST_MEMORY),
+    MCOR_NAMED(CL_PROFILING_INFO_NOT_AVAILABLE), MCOR_NAMED(CL_MEM_COPY_OVERLAP),
+    MCOR_NAMED(CL_IMAGE_FORMAT_MISMATCH), MCOR_NAMED(CL_IMAGE_FORMAT_NOT_SUPPORTED),
+    MCOR_NAMED(CL_BUILD_PROGRAM_FAILURE), MCOR_NAMED(CL_MAP_FAILURE),
+    MCOR_NAMED(CL_MISALIGNED_SUB_BUFFER_OFFSET),
+    MCOR_NAMED(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+    MCOR_NAMED(CL_COMPILE_PROGRAM_FAILURE), MCOR_NAMED(CL_LINKER_NOT_AVAILABLE),
+    MCOR_NAMED(CL_LINK_PROGRAM_FAILURE), MCOR_NAMED(CL_DEVICE_PARTITION_FAILED),
+    MCOR_NAMED(CL_KERNEL_ARG_INFO_NOT_AVAILABLE), MCOR_NAMED(CL_INVALID_VALUE),
+    MCOR_NAMED(CL_INVALID_DEVICE_TYPE), MCOR_NAMED(CL_INVALID_PLATFORM),
+    MCOR_NAMED(CL_INVALID_DEVICE), MCOR_NAMED(CL_INVALID_CONTEXT),
+    MCOR_NAMED(CL_INVALID_QUEUE_PROPERTIES), MCOR_NAMED(CL_INVALID_COMMAND_QUEUE),
+    MCOR_NAMED(CL_INVALID_HOST_PTR), MCOR_NAMED(CL_INVALID_MEM_OBJECT),
+    MCOR_NAMED(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR), MCOR_NAMED(CL_INVALID_IMAGE_SIZE),
+    MCOR_NAMED(CL_INVALID_SAMPLER), MCOR_NAMED(CL_INVALID_BINARY),
+    MCOR_NAMED(CL_INVALID_BUILD_OPTIONS), MCOR_NAMED(CL_INVALID_PROGRAM),
+    MCOR_NAMED(CL_INVALID_PROGRAM_EXECUTABLE), MCOR_NAMED(CL_INVALID_KERNEL_NAME),
+    MCOR_NAMED(CL_INVALID_KERNEL_DEFINITION), MCOR_NAMED(CL_INVALID_KERNEL),
+    MCOR_NAMED(CL_INVALID_ARG_INDEX), MCOR_NAMED(CL_INVALID_ARG_VALUE),
+    MCOR_NAMED(CL_INVALID_ARG_SIZE), MCOR_NAMED(CL_INVALID_KERNEL_ARGS),
+    MCOR_NAMED(CL_INVALID_WORK_DIMENSION), MCOR_NAMED(CL_INVALID_WORK_GROUP_SIZE),
+    MCOR_NAMED(CL_INVALID_WORK_ITEM_SIZE), MCOR_NAMED(CL_INVALID_GLOBAL_OFFSET),
+    MCOR_NAMED(CL_INVALID_EVENT_WAIT_LIST), MCOR_NAMED(CL_INVALID_EVENT),
+    MCOR_NAMED(CL_INVALID_OPERATION), MCOR_NAMED(CL_INVALID_GL_OBJECT),
+    MCOR_NAMED(CL_INVALID_BUFFER_SIZE), MCOR_NAMED(CL_INVALID_MIP_LEVEL),
+    MCOR_NAMED(CL_INVALID_GLOBAL_WORK_SIZE), MCOR_NAMED(CL_INVALID_PROPERTY),
+    MCOR_NAMED(CL_INVALID_IMAGE_DESCRIPTOR), MCOR_NAMED(CL_INVALID_COMPILER_OPTIONS),
+    MCOR_NAMED(CL_INVALID_LINKER_OPTIONS), MCOR_NAMED(CL_INVALID_DEVICE_PARTITION_COUNT),
+    { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
+#undef MCOR_NAMED
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
+  {
+    if (names[i].code == error)
+    {
+      return names[i].name;
+    }
+  }
+  return "an OpenCL error";
+}
+
+bool mcor_is_no_memory(cl_int error)
+{
+  return error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_RESOURCES ||
+    error == CL_OUT_OF_HOST_MEMORY;
+}
+
+mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what)
+{
+  const char *device = context->cl.device_name, *name = mcor_cl_error_name(error);
+  return mcor_is_no_memory(error)
+    ? mcor_fail(context, MCOR_OUT_OF_CAPACITY,
+        "OpenCL device %s ran out of memory: %s failed with %s (%d). Use a larger cube size, or "
+        "fewer particles.",
+        device, what, name, (int)error)
+    : mcor_fail(context, MCOR_DEVICE_ERROR, "OpenCL device %s: %s failed with %s (%d).", device,
+        what, name, (int)error);
+}
+
+static void mcor_find_devices(mcor_device_list* list)
+{
+  cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
+  cl_uint platform_count = 0;
+  list->count = 0;
+  if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
+  {
+    return;
+  }
+  for (cl_uint p = 0; p < platform_count && p < MCOR_PLATFORM_LIMIT; ++p)
+  {
+    const int room = MCOR_DEVICE_LIMIT - list->count;
+    cl_uint found = 0;
+    if (room <= 0 ||
+      clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, (cl_uint)room, list->devices + list->count,
+        &found) != CL_SUCCESS)
+    {
+      continue;
+    }
+    for (cl_uint d = 0; d < found && d < (cl_uint)room; ++d)
+    {
+      list->platforms[list->count++] = platforms[p];
+    }
+  }
+}
+
+static void mcor_device_names(
+  cl_platform_id platform, cl_device_id device, char* device_name, char* platform_name, size_t size)
+{
+  device_name[0] = platform_name[0] = '\0';
+  clGetDeviceInfo(device, CL_DEVICE_NAME, size, device_name, NULL);
+  clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, platform_name, NULL);
+}
+
+/* The devices' numbers and names, as far as there is room. */
+static void mcor_write_devices(
+  const mcor_device_list* list, const char* separator, char* text, size_t room)
+{
+  size_t length = 0;
+  text[0] = '\0';
+  for (int i = 0; i < list->count && length < room; ++i)
+  {
+    char device[128], platform[128];
+    mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
+    length += (size_t)snprintf(
+      text + length, room - length, "%s%d: %s (%s)", i > 0 ? separator : "", i, device, platform);
+  }
+}
+
+mcor_status mcor_list_devices(char** text)
+{
+  if (!text)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  const size_t room = (size_t)list.count * 300 + 2;
+  *text = calloc(room, 1);
+  if (!*text)
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  mcor_write_devices(&list, "\n", *text, room - 1);
+  strcat(*text, list.count > 0 ? "\n" : "");
+  return MCOR_OK;
+}
+
+static char mcor_lower(char c)
+{
+  return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/* Whether `part` occurs in `text`, in capitals or not. */
+static bool mcor_contains(const char* text, const char* part)
+{
+  for (; *text; ++text)
+  {
+    size_t i = 0;
+    while (part[i] && mcor_lower(text[i]) == mcor_lower(part[i]))
+    {
+      ++i;
+    }
+    if (!part[i])
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Index into the list of the device that the user named, or -1. */
+static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
+{
+  char* end = NULL;
+  const bool is_default = !wanted || !*wanted;
+  const long number = is_default ? -1 : strtol(wanted, &end, 10);
+  if (!is_default && *end == '\0')
+  {
+    return number >= 0 && number < list->count ? (int)number : -1;
+  }
+  for (int i = 0; i < list->count; ++i)
+  {
+    char device[128], platform[128];
+    mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
+    if (is_default ? strcmp(platform, MCOR_DEFAULT_PLATFORM) == 0
+                   : mcor_contains(device, wanted) || mcor_contains(platform, wanted))
+    {
+      return i;
+    }
+  }
+  return is_default && list->count > 0 ? 0 : -1;
+}
+
+/* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
+ * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM is for tests: cpu or gpu. */
+static bool mcor_has_cpu_form(const mcor_cl* cl)
+{
+  const char* forced = getenv("MCOR_DEVICE_FORM");
+  if (forced && *forced)
+  {
+    return strcmp(forced, "gpu") != 0;
+  }
+  cl_device_type type = 0;
+  cl_uint width = 1;
+  clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  return (type & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
+}
+
+bool mcor_is_pocl(const mcor_cl* cl)
+{
+  return strcmp(cl->platform_name, MCOR_DEFAULT_PLATFORM) == 0;
+}
+
+static void mcor_query_device(mcor_cl* cl)
+{
+  cl_uint units = 1;
+  cl_device_fp_config fp32 = 0, fp64 = 0;
+  clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof fp32, &fp32, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL);
+  clGetDeviceInfo(
+    cl->device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof cl->device_memory, &cl->device_memory, NULL);
+  cl->memory_limit = cl->device_memory;
+  clGetDeviceInfo(
+    cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
+  cl->is_cpu = mcor_has_cpu_form(cl);
+  cl->has_fp64 = fp64 != 0;
+  cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+  /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries. */
+  cl->keeps_binaries = !mcor_is_pocl(cl);
+  cl->units = (int)units;
+  cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
+}
+
+mcor_status mcor_open_device(mcor_context* context, const char* device)
+{
+  mcor_cl* cl = &context->cl;
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  char fault[1200];
+  MCOR_RETURN_IF(list.count == 0 && mcor_pocl_folder_fault(fault, sizeof fault), context,
+    MCOR_DEVICE_ERROR, "No OpenCL device was found. If PoCL is installed: %s", fault);
+  MCOR_RETURN_IF(list.count == 0, context, MCOR_DEVICE_ERROR,
+    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
+    "runs on the CPU.");
+  const int chosen = mcor_choose_device(&list, device);
+  if (chosen < 0)
+  {
+    char devices[300];
+    mcor_write_devices(&list, ", ", devices, sizeof devices);
+    return mcor_fail(context, MCOR_DEVICE_ERROR,
+      "There is no OpenCL device \"%s\"; give the number of one, or part of its name: %s.", device,
+      devices);
+  }
+  cl->platform = list.platforms[chosen];
+  cl->device = list.devices[chosen];
+  cl->device_number = chosen;
+  mcor_device_names(
+    cl->platform, cl->device, cl->device_name, cl->platform_name, sizeof cl->device_name);
+  mcor_query_device(cl);
+  cl_int error;
+  cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
+  MCOR_CL_TRY(context, error, "clCreateContext");
+  cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);
+  MCOR_CL_TRY(context, error, "clCreateCommandQueue");
+  cl->timed_queue =
+    clCreateCommandQueue(cl->context, cl->device, CL_QUEUE_PROFILING_ENABLE, &error);
+  MCOR_CL_TRY(context, error, "clCreateCommandQueue");
+  return MCOR_OK;
+}
+
+void mcor_close_device(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  mcor_drop_programs(cl, true);
+  if (cl->timed_queue)
+  {
+    clReleaseCommandQueue(cl->timed_queue);
+  }
+  if (cl->queue)
+  {
+    clReleaseCommandQueue(cl->queue);
+  }
+  if (cl->context)
+  {
+    clReleaseContext(cl->context);
+  }
+}

@@ -1,0 +1,274 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Kernels, and their launches. */
+
+#include "mcor_cl_call.h"
+#include "mcor_program.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Whether a program has a kernel. Asking for one that it has not is an error, on which PoCL crashes
+ * while POCL_DEBUG is set. */
+static bool mcor_has_kernel(cl_program program, const char* name)
+{
+  size_t size = 0;
+  clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, 0, NULL, &size);
+  char* names = calloc(size + 1, 1);
+  bool has = false;
+  if (names && clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, size, names, NULL) == CL_SUCCESS)
+  {
+    for (const char* at = names; *at && !has; at += strspn(at, ";"))
+    {
+      const size_t length = strcspn(at, ";");
+      has = length == strlen(name) && memcmp(at, name, length) == 0;
+      at += length;
+    }
+  }
+  free(names);
+  return has;
+}
+
+/* Makes a kernel of the first program that has it. */
+static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mcor_kernel* kernel)
+{
+  mcor_cl* cl = &context->cl;
+  cl_int error = CL_INVALID_KERNEL_NAME;
+  *kernel = (mcor_kernel){ 0 };
+  snprintf(kernel->name, sizeof kernel->name, "%s", name);
+  for (int p = 0; p < MCOR_PROGRAM_COUNT && !kernel->kernel; ++p)
+  {
+    kernel->program = (mcor_program)p;
+    if (!mcor_program_may_have(kernel->program, name))
+    {
+      continue;
+    }
+    MCOR_TRY(mcor_need_program(context, kernel->program));
+    if (mcor_has_kernel(cl->programs[p], name))
+    {
+      kernel->kernel = clCreateKernel(cl->programs[p], name, &error);
+      MCOR_CL_TRY(context, error, name);
+    }
+  }
+  MCOR_CL_TRY(context, error, name);
+  return MCOR_OK;
+}
+
+static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** kernel)
+{
+  mcor_cl* cl = &context->cl;
+  for (int i = 0; i < cl->kernel_count; ++i)
+  {
+    if (strcmp(cl->kernels[i].name, name) == 0)
+    {
+      *kernel = &cl->kernels[i];
+      return MCOR_OK;
+    }
+  }
+  MCOR_RETURN_IF(cl->kernel_count == MCOR_KERNEL_LIMIT, context, MCOR_DEVICE_ERROR,
+    "There is no room for kernel %s.", name);
+  *kernel = &cl->kernels[cl->kernel_count];
+  (*kernel)->part = 0;
+  const mcor_status status = mcor_make_kernel(context, name, *kernel);
+  cl->kernel_count += status == MCOR_OK;
+  return status;
+}
+
+static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const mcor_arg* arg)
+{
+  const cl_int integer = arg->integer;
+  const cl_float single = (cl_float)arg->real;
+  const cl_double real = arg->real;
+  switch (arg->kind)
+  {
+    case MCOR_ARG_BUFFER:
+      return clSetKernelArg(kernel, i, sizeof(cl_mem), &arg->buffer->mem);
+    case MCOR_ARG_INT:
+      return clSetKernelArg(kernel, i, sizeof integer, &integer);
+    default:
+      return cl->real_size == sizeof single ? clSetKernelArg(kernel, i, sizeof single, &single)
+                                            : clSetKernelArg(kernel, i, sizeof real, &real);
+  }
+}
+
+/* A kernel that was at hand takes less. */
+#define MCOR_COMPILE_SECONDS 0.01
+
+/* Launches a kernel for the first time, alone: drivers may compile it only now. What the kernel
+ * itself does not take is building. */
+static cl_int mcor_enqueue_first(
+  mcor_context* context, cl_kernel kernel, const size_t* global, const size_t* group)
+{
+  mcor_cl* cl = &context->cl;
+  cl_event event;
+  cl_ulong start = 0, end = 0;
+  cl_int error = clFinish(cl->queue);
+  const double begin = mcor_seconds();
+  if (error == CL_SUCCESS)
+  {
+    error =
+      clEnqueueNDRangeKernel(cl->timed_queue, kernel, 1, NULL, global, group, 0, NULL, &event);
+  }
+  if (error != CL_SUCCESS)
+  {
+    return error;
+  }
+  error = clFinish(cl->timed_queue);
+  const double seconds = mcor_seconds() - begin;
+  if (error == CL_SUCCESS &&
+    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, NULL) ==
+      CL_SUCCESS &&
+    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL) == CL_SUCCESS)
+  {
+    const double building = fmax(seconds - 1e-9 * (double)(end - start), 0);
+    mcor_add_build_seconds(context, building);
+    cl->compiles = building > MCOR_COMPILE_SECONDS;
+  }
+  clReleaseEvent(event);
+  return error;
+}
+
+/* Drivers of GPUs end a launch that takes seconds: a heavy one is cut into parts, each to take about
+ * so long, as far as single work-items allow. */
+#define MCOR_PART_SECONDS 0.1
+#define MCOR_FIRST_PART 65536
+
+/* Launches the work-items from `offset` on. */
+static mcor_status mcor_enqueue_parts(
+  mcor_context* context, mcor_kernel* kernel, size_t offset, size_t global, size_t group)
+{
+  const mcor_cl* cl = &context->cl;
+  cl_int error = global - offset > kernel->part ? clFinish(cl->queue) : CL_SUCCESS;
+  while (offset < global && error == CL_SUCCESS)
+  {
+    const size_t rest = global - offset, part = rest < kernel->part ? rest : kernel->part;
+    const double begin = mcor_seconds();
+    error =
+      clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, &offset, &part, &group, 0, NULL, NULL);
+    offset += part;
+    if (offset < global && error == CL_SUCCESS)
+    {
+      error = clFinish(cl->queue);
+      const double seconds = mcor_seconds() - begin;
+      const size_t half = part / 2 / group * group;
+      kernel->part = seconds < MCOR_PART_SECONDS / 2  ? 2 * part
+        : seconds > 2 * MCOR_PART_SECONDS && half > 0 ? half
+                                                      : part;
+      MCOR_TRY(mcor_report_launch(context));
+    }
+  }
+  MCOR_CL_TRY(context, error, kernel->name);
+  return MCOR_OK;
+}
+
+static size_t mcor_group_size(const mcor_cl* cl, mcor_load load)
+{
+  return cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
+}
+
+mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
+  const mcor_arg* args, size_t arg_count)
+{
+  mcor_cl* cl = &context->cl;
+  if (items == 0)
+  {
+    return MCOR_OK;
+  }
+  if (load == MCOR_HEAVY && context->options && context->options->progress)
+  {
+    MCOR_TRY(mcor_finish(context)); /* so that what was launched before is not reported with it */
+  }
+  MCOR_TRY(mcor_report_launch(context));
+  mcor_kernel* kernel = NULL;
+  MCOR_TRY(mcor_find_kernel(context, name, &kernel));
+  cl_uint wanted = 0;
+  clGetKernelInfo(kernel->kernel, CL_KERNEL_NUM_ARGS, sizeof wanted, &wanted, NULL);
+  MCOR_RETURN_IF(arg_count != wanted, context, MCOR_DEVICE_ERROR,
+    "Kernel %s has %u arguments; %zu were given.", name, (unsigned)wanted, arg_count);
+  for (size_t i = 0; i < arg_count; ++i)
+  {
+    MCOR_CL_TRY(context, mcor_set_arg(cl, kernel->kernel, (cl_uint)i, args + i), name);
+  }
+  const size_t group = mcor_group_size(cl, load);
+  const size_t global = (items + group - 1) / group * group;
+  const bool large = global >= MCOR_LARGE_LAUNCH;
+  if (!kernel->launched[large] && cl->compiles)
+  {
+    MCOR_TRY(mcor_report_building(context));
+  }
+  const bool in_parts = !cl->is_cpu && load == MCOR_HEAVY;
+  if (!in_parts || kernel->part == 0)
+  {
+    kernel->part = in_parts ? MCOR_FIRST_PART : global;
+  }
+  size_t launched = 0;
+  if (!kernel->launched[large])
+  {
+    launched = global < kernel->part ? global : kernel->part;
+    MCOR_CL_TRY(context, mcor_enqueue_first(context, kernel->kernel, &launched, &group), name);
+    kernel->launched[large] = true;
+  }
+  return mcor_enqueue_parts(context, kernel, launched, global, group);
+}
+
+mcor_status mcor_finish(mcor_context* context)
+{
+  MCOR_CL_TRY(context, clFinish(context->cl.queue), "clFinish");
+  return MCOR_OK;
+}
+
+/* Sets an argument to 0: a number, or a buffer of zeros. */
+static cl_int mcor_set_zero(cl_kernel kernel, cl_uint i, cl_mem zeros)
+{
+  const cl_ulong8 zero = { { 0 } };
+  cl_kernel_arg_address_qualifier address = CL_KERNEL_ARG_ADDRESS_PRIVATE;
+  const cl_int error =
+    clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_ADDRESS_QUALIFIER, sizeof address, &address, NULL);
+  if (error != CL_SUCCESS)
+  {
+    return error;
+  }
+  return address != CL_KERNEL_ARG_ADDRESS_PRIVATE ? clSetKernelArg(kernel, i, sizeof zeros, &zeros)
+    : clSetKernelArg(kernel, i, sizeof(cl_int), &zero) == CL_SUCCESS
+    ? CL_SUCCESS
+    : clSetKernelArg(kernel, i, sizeof(cl_double), &zero);
+}
+
+/* Bytes of zeros that a kernel may look at, or write to, where its counts are 0. */
+#define MCOR_ZERO_BYTES (1 << 20)
+
+mcor_status mcor_compile_kernel(mcor_context* context, const mcor_ahead_kernel* ahead)
+{
+  mcor_cl* cl = &context->cl;
+  const size_t group = mcor_group_size(cl, ahead->load);
+  const size_t items = ahead->large ? MCOR_LARGE_LAUNCH + 1 : group;
+  cl_int error;
+  cl_uint count = 0;
+  mcor_buffer zeros = { 0 };
+  MCOR_TRY(mcor_need_program(context, ahead->program));
+  cl_kernel kernel = clCreateKernel(cl->programs[ahead->program], ahead->name, &error);
+  MCOR_CL_TRY(context, error, ahead->name);
+  mcor_status status = mcor_fill(context, &zeros, 0, MCOR_ZERO_BYTES);
+  error = status == MCOR_OK
+    ? clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof count, &count, NULL)
+    : CL_SUCCESS;
+  for (cl_uint i = 0; i < count && error == CL_SUCCESS; ++i)
+  {
+    error = mcor_set_zero(kernel, i, zeros.mem);
+  }
+  if (status == MCOR_OK && error == CL_SUCCESS)
+  {
+    error = clEnqueueNDRangeKernel(cl->queue, kernel, 1, NULL, &items, &group, 0, NULL, NULL);
+  }
+  if (error == CL_SUCCESS)
+  {
+    error = clFinish(cl->queue);
+  }
+  mcor_release(context, &zeros);
+  clReleaseKernel(kernel);
+  return status != MCOR_OK || error == CL_SUCCESS ? status
+                                                  : mcor_cl_fail(context, error, ahead->name);
+}

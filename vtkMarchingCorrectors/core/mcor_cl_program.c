@@ -1,0 +1,292 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Programs: built, or loaded, when they are first needed. */
+
+#include "mcor_cache.h"
+#include "mcor_cl_call.h"
+#include "mcor_program.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void mcor_drop_programs(mcor_cl* cl, bool all)
+{
+  int kept = 0;
+  for (int i = 0; i < cl->kernel_count; ++i)
+  {
+    if (!all && cl->kernels[i].program == MCOR_PROGRAM_LATTICE)
+    {
+      cl->kernels[kept++] = cl->kernels[i];
+    }
+    else
+    {
+      clReleaseKernel(cl->kernels[i].kernel);
+    }
+  }
+  cl->kernel_count = kept;
+  for (int p = all ? 0 : MCOR_PROGRAM_LATTICE + 1; p < MCOR_PROGRAM_COUNT; ++p)
+  {
+    if (cl->programs[p])
+    {
+      clReleaseProgram(cl->programs[p]);
+      cl->programs[p] = NULL;
+    }
+  }
+}
+
+mcor_status mcor_report_building(mcor_context* context)
+{
+  const mcor_options* options = context->options;
+  const char* phase = "building the OpenCL program (first time only)";
+  const bool told = context->building_told;
+  context->building_told = true;
+  MCOR_RETURN_IF(!told && options && options->progress &&
+      options->progress(options->progress_user, context->fraction, phase) != 0,
+    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
+  return MCOR_OK;
+}
+
+void mcor_add_build_seconds(mcor_context* context, double seconds)
+{
+  context->cl.build_seconds += seconds;
+  context->phase_begin += seconds;
+}
+
+static mcor_status mcor_fail_build(
+  mcor_context* context, cl_program program, cl_int error, const char* options)
+{
+  const mcor_cl* cl = &context->cl;
+  size_t size = 0;
+  clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+  char* log = calloc(size + 1, 1);
+  if (log)
+  {
+    clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+  }
+  const mcor_status status = mcor_fail(context, MCOR_DEVICE_ERROR,
+    "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
+    mcor_cl_error_name(error), options, log ? log : "");
+  free(log);
+  return status;
+}
+
+mcor_cache_key mcor_device_key(const mcor_cl* cl)
+{
+  mcor_cache_key key = { { 0 } };
+  const cl_device_info infos[] = { CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION };
+  mcor_cache_add(&key, cl->platform_name);
+  mcor_cache_add(&key, cl->device_name);
+  for (size_t i = 0; i < sizeof infos / sizeof infos[0]; ++i)
+  {
+    char text[256] = "";
+    clGetDeviceInfo(cl->device, infos[i], sizeof text - 1, text, NULL);
+    mcor_cache_add(&key, text);
+  }
+  return key;
+}
+
+/* Of all that a compiled program depends on. */
+static mcor_cache_key mcor_program_key(
+  const mcor_cl* cl, const char* const* sources, cl_uint count, const char* options)
+{
+  mcor_cache_key key = mcor_device_key(cl);
+  mcor_cache_add(&key, options);
+  for (cl_uint i = 0; i < count; ++i)
+  {
+    mcor_cache_add(&key, sources[i]);
+  }
+  return key;
+}
+
+/* The program from the cache; NULL where it is not there, or no longer to the driver's liking. */
+static cl_program mcor_load_program(
+  const mcor_cl* cl, const mcor_cache_key* key, const char* options)
+{
+  size_t size = 0;
+  void* binary = cl->keeps_binaries ? mcor_cache_load(key, &size) : NULL;
+  if (!binary)
+  {
+    return NULL;
+  }
+  cl_int error, loaded = CL_SUCCESS;
+  const unsigned char* data = binary;
+  cl_program program =
+    clCreateProgramWithBinary(cl->context, 1, &cl->device, &size, &data, &loaded, &error);
+  free(binary);
+  if (error != CL_SUCCESS)
+  {
+    return NULL;
+  }
+  if (loaded != CL_SUCCESS ||
+    clBuildProgram(program, 1, &cl->device, options, NULL, NULL) != CL_SUCCESS)
+  {
+    clReleaseProgram(program);
+    return NULL;
+  }
+  return program;
+}
+
+static void mcor_store_program(const mcor_cl* cl, const mcor_cache_key* key, cl_program program)
+{
+  size_t size = 0;
+  if (!cl->keeps_binaries ||
+    clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS ||
+    size == 0)
+  {
+    return;
+  }
+  unsigned char* binary = malloc(size);
+  if (binary &&
+    clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS)
+  {
+    mcor_cache_store(key, binary, size);
+  }
+  free(binary);
+}
+
+static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
+{
+  mcor_cl* cl = &context->cl;
+  const char* sources[MCOR_SOURCE_LIMIT];
+  const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
+  char options[512], fault[1200];
+  mcor_program_options(cl, number, options, sizeof options);
+  MCOR_RETURN_IF(mcor_is_pocl(cl) && mcor_pocl_folder_fault(fault, sizeof fault), context,
+    MCOR_DEVICE_ERROR, "%s", fault);
+  const mcor_cache_key key = mcor_program_key(cl, sources, count, options);
+  cl->programs[number] = mcor_load_program(cl, &key, options);
+  if (cl->programs[number])
+  {
+    return MCOR_OK;
+  }
+  cl_int error;
+  cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
+  MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
+  error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
+  if (error != CL_SUCCESS)
+  {
+    const mcor_status status = mcor_fail_build(context, program, error, options);
+    clReleaseProgram(program);
+    return status;
+  }
+  mcor_store_program(cl, &key, program);
+  cl->programs[number] = program;
+  return MCOR_OK;
+}
+
+mcor_status mcor_need_program(mcor_context* context, mcor_program number)
+{
+  if (context->cl.programs[number])
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_report_building(context));
+  const double begin = mcor_seconds();
+  const mcor_status status = mcor_build_program(context, number);
+  mcor_add_build_seconds(context, mcor_seconds() - begin);
+  return status;
+}
+
+/* What the device's compiler has registers for; of the width that it claims where that does not
+ * say. */
+static mcor_status mcor_ask_lanes(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  cl_uint width = 1;
+  cl_int error;
+  size_t lanes[3] = { 1, 1, 1 };
+  MCOR_TRY(mcor_need_program(context, MCOR_PROGRAM_LATTICE));
+  cl_kernel kernel =
+    clCreateKernel(cl->programs[MCOR_PROGRAM_LATTICE], "mcor_register_lanes", &error);
+  MCOR_CL_TRY(context, error, "mcor_register_lanes");
+  clGetKernelWorkGroupInfo(
+    kernel, cl->device, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof lanes, lanes, NULL);
+  clReleaseKernel(kernel);
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  cl->register_lanes = lanes[0] > 1 ? (int)lanes[0] : width >= 16 ? 16 : 8;
+  return MCOR_OK;
+}
+
+/* MCOR_LANES of the environment, for tests. */
+static int mcor_forced_lanes(const char* text)
+{
+  const int number = atoi(text);
+  return number == 8 || number == 16 ? number : 1;
+}
+
+/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs. */
+static mcor_status mcor_choose_lanes(mcor_context* context, mcor_type precision, int* lanes)
+{
+  mcor_cl* cl = &context->cl;
+  const char* forced = getenv("MCOR_LANES");
+  if (forced && *forced)
+  {
+    *lanes = mcor_forced_lanes(forced);
+    return MCOR_OK;
+  }
+  if (cl->is_cpu && cl->register_lanes == 0)
+  {
+    MCOR_TRY(mcor_ask_lanes(context));
+  }
+  *lanes = !cl->is_cpu ? 1 : precision == MCOR_FLOAT64 ? 8 : cl->register_lanes;
+  return MCOR_OK;
+}
+
+static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
+{
+  return a->sph_kernel == b->sph_kernel && a->field == b->field && a->precision == b->precision &&
+    a->solids == b->solids;
+}
+
+static void mcor_set_precision(mcor_cl* cl, mcor_type precision)
+{
+  if (cl->build.precision != precision)
+  {
+    mcor_drop_programs(cl, true);
+  }
+  cl->build.precision = precision;
+  cl->real_size = precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
+  cl->fix_size = precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
+}
+
+static void mcor_set_build(mcor_cl* cl, const mcor_build* build, int lanes)
+{
+  mcor_set_precision(cl, build->precision);
+  mcor_drop_programs(cl, (cl->lanes == 1) != (lanes == 1));
+  cl->lanes = lanes;
+  cl->build = *build;
+}
+
+mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  int lanes;
+  MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
+    "OpenCL device %s has no double precision; choose another device or single precision.",
+    cl->device_name);
+  mcor_set_precision(cl, build->precision);
+  MCOR_TRY(mcor_choose_lanes(context, build->precision, &lanes));
+  if (cl->lanes != lanes || !mcor_same_build(&cl->build, build))
+  {
+    mcor_set_build(cl, build, lanes);
+  }
+  return MCOR_OK;
+}
+
+bool mcor_can_compile_ahead(const mcor_cl* cl, const mcor_build* build)
+{
+  return mcor_is_pocl(cl) && cl->is_cpu && cl->units > 1 &&
+    !(cl->programs[MCOR_PROGRAM_FIELD] && mcor_same_build(&cl->build, build));
+}
+
+void mcor_guess_build(mcor_context* context, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  const char* forced = getenv("MCOR_LANES");
+  cl_uint width = 1;
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  const int lanes = build->precision == MCOR_FLOAT64 || width < 16 ? 8 : 16;
+  mcor_set_build(cl, build, forced && *forced ? mcor_forced_lanes(forced) : lanes);
+}

@@ -1,0 +1,137 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What is measured over all particles, handed out, and taken back where only some are at hand. */
+
+#include "mcor_input.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void mcor_take_globals(mcor_context* context, const mcor_globals* globals)
+{
+  mcor_measure* m = &context->measure;
+  m->fluid_count = globals->fluid_particles;
+  m->solid_count = globals->solid_particles;
+  memcpy(m->low, globals->low, sizeof m->low);
+  memcpy(m->high, globals->high, sizeof m->high);
+  m->h_min = globals->smoothing_length_min;
+  m->h_max = globals->smoothing_length_max;
+  m->support_min = globals->support_min;
+  m->support_max = globals->support_max;
+  m->h_estimate = globals->smoothing_length;
+  m->scalar_min = globals->scalar_min;
+  m->scalar_max = globals->scalar_max;
+}
+
+/* The other direction; what the measure does not hold is left. */
+static void mcor_give_globals(const mcor_measure* m, mcor_globals* globals)
+{
+  globals->fluid_particles = m->fluid_count;
+  globals->solid_particles = m->solid_count;
+  memcpy(globals->low, m->low, sizeof m->low);
+  memcpy(globals->high, m->high, sizeof m->high);
+  globals->smoothing_length_min = m->h_min;
+  globals->smoothing_length_max = m->h_max;
+  globals->support_min = m->support_min;
+  globals->support_max = m->support_max;
+  globals->smoothing_length = m->h_estimate;
+  globals->scalar_min = m->scalar_min;
+  globals->scalar_max = m->scalar_max;
+}
+
+static mcor_status mcor_measure_components(
+  mcor_context* context, const mcor_input* input, mcor_globals* globals)
+{
+  const size_t count = mcor_count_components(input);
+  globals->components = calloc(count + 1, sizeof *globals->components);
+  MCOR_RETURN_IF(!globals->components, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const mcor_array* array = &input->attributes[a];
+    const int64_t not_finite = mcor_find_not_finite(array, input->solid, input->count);
+    for (int c = 0; c < mcor_components(array); ++c)
+    {
+      mcor_global_component* found = &globals->components[globals->component_count++];
+      found->not_finite = not_finite;
+      if (not_finite < 0)
+      {
+        mcor_measure_component(input, a, c, found);
+      }
+    }
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_measure_all(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
+{
+  mcor_globals* globals = result;
+  mcor_free_globals(globals); /* of an attempt before */
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+  context->uses_solids = mcor_uses_solids(input, options);
+  MCOR_TRY(mcor_check_input(context, input, options));
+  MCOR_RETURN_IF(
+    input->count == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
+  MCOR_TRY(mcor_measure_input(context, input, options));
+  mcor_give_globals(&context->measure, globals);
+  globals->mass_max = input->has_mass ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
+  if (options->field == MCOR_SHEPARD)
+  {
+    MCOR_TRY(mcor_find_median(context, input, &globals->scalar_shift));
+  }
+  return mcor_measure_components(context, input, globals);
+}
+
+mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_globals* globals)
+{
+  if (!context || !globals)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *globals = (mcor_globals){ 0 };
+  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
+  mcor_options own = *options;
+  own.globals = NULL;
+  mcor_statistics statistics = { 0 };
+  const mcor_status status =
+    mcor_run_call(context, input, &own, &statistics, mcor_measure_all, globals);
+  if (status != MCOR_OK)
+  {
+    mcor_free_globals(globals);
+  }
+  return status;
+}
+
+void mcor_free_globals(mcor_globals* globals)
+{
+  if (globals)
+  {
+    free(globals->components);
+    *globals = (mcor_globals){ 0 };
+  }
+}
+
+void mcor_keep_globals(mcor_context* context, const mcor_globals* globals)
+{
+  context->last_globals = globals ? *globals : (mcor_globals){ 0 };
+}
+
+/* Whether they are as in the last call; components matter to nothing that is kept. */
+bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
+{
+  const mcor_globals none = { 0 };
+  const mcor_globals *a = &context->last_globals, *b = globals ? globals : &none;
+  bool same = a->fluid_particles == b->fluid_particles &&
+    a->solid_particles == b->solid_particles &&
+    a->smoothing_length_min == b->smoothing_length_min && a->support_min == b->support_min &&
+    a->support_max == b->support_max && a->smoothing_length == b->smoothing_length &&
+    a->mass_max == b->mass_max && a->scalar_min == b->scalar_min &&
+    a->scalar_max == b->scalar_max && a->scalar_shift == b->scalar_shift;
+  for (int i = 0; i < 3; ++i)
+  {
+    same = same && a->low[i] == b->low[i] && a->high[i] == b->high[i];
+  }
+  return same;
+}

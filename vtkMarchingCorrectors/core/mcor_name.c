@@ -1,0 +1,108 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The names under which particle files hold what a run needs. */
+
+#include "mcor.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+#define MCOR_NAMES 10
+
+/* The most usual name first; in small letters and digits alone. */
+static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
+  [MCOR_SMOOTHING_LENGTH] = { "smoothinglength", "smoothinglengths", "hsml", "h" },
+  [MCOR_VOLUME] = { "volume", "volumes", "particlevolume", "vol" },
+  [MCOR_MASS] = { "mass", "masses", "particlemass", "m" },
+  [MCOR_DENSITY] = { "density", "densities", "particledensity", "rho", "rhop" },
+  [MCOR_VELOCITY] = { "velocity", "velocities", "vel", "v" },
+  [MCOR_PARTICLE_ID] = { "idp", "particleid", "particleids", "partid", "id", "ids", "globalids",
+    "globalid", "gid", "pid" },
+  [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
+    "isboundary" },
+};
+
+static bool mcor_is_same_name(const char* name, const char* usual)
+{
+  for (; *name; ++name)
+  {
+    if (*name == '_' || *name == '-' || *name == ' ')
+    {
+      continue;
+    }
+    if (tolower((unsigned char)*name) != *usual)
+    {
+      return false;
+    }
+    ++usual;
+  }
+  return *usual == '\0';
+}
+
+int mcor_name_rank(mcor_quantity quantity, const char* name)
+{
+  for (int i = 0; name && (unsigned)quantity < MCOR_QUANTITY_COUNT && i < MCOR_NAMES; ++i)
+  {
+    const char* usual = mcor_usual_names[quantity][i];
+    if (usual && mcor_is_same_name(name, usual))
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/* By which names a solver's output is told, as above; sources: Documentation/Guide/your-data.md. Those
+ * that more files have come later. */
+typedef struct mcor_layout
+{
+  const char *solver, *names[4];
+} mcor_layout;
+
+static const mcor_layout mcor_layouts[] = { { "DualSPHysics", { "rhop", "idp" } },
+  { "PySPH", { "h", "rho", "m", "gid" } },
+  { "SWIFT", { "smoothinglengths", "densities", "masses" } },
+  { "GADGET", { "smoothinglength", "masses", "particleids" } },
+  { "GADGET", { "hsml", "masses", "particleids" } },
+  { "SPH-EXA", { "smoothinglength", "vx", "vy", "vz" } },
+  { "Phantom", { "h", "vx", "vy", "vz" } } };
+
+/* Whether one of the names, each on a line, is the usual one. */
+static bool mcor_lists_name(const char* names, const char* usual)
+{
+  for (const char* name = names; *name;)
+  {
+    char one[64];
+    const size_t length = strcspn(name, "\n");
+    if (length < sizeof one)
+    {
+      memcpy(one, name, length);
+      one[length] = '\0';
+      if (mcor_is_same_name(one, usual))
+      {
+        return true;
+      }
+    }
+    name += length + (name[length] != '\0');
+  }
+  return false;
+}
+
+const char* mcor_find_layout(const char* names)
+{
+  for (size_t l = 0; names && l < sizeof mcor_layouts / sizeof mcor_layouts[0]; ++l)
+  {
+    bool all = true;
+    for (int i = 0; i < 4 && mcor_layouts[l].names[i]; ++i)
+    {
+      all = all && mcor_lists_name(names, mcor_layouts[l].names[i]);
+    }
+    if (all)
+    {
+      return mcor_layouts[l].solver;
+    }
+  }
+  return "";
+}

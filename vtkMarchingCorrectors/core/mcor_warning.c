@@ -1,0 +1,222 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What may be wrong with an input that is legal: one sentence each, with figures. Only what hardly any
+ * simulation means. */
+
+#include "mcor.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define MCOR_SENTENCE 800
+
+/* Of fewer particles nothing is usual. */
+#define MCOR_FEW_PARTICLES 100
+
+typedef struct mcor_suspicion
+{
+  const mcor_input* input;
+  const mcor_options* options;
+  const mcor_surface* surface;
+  char text[MCOR_SENTENCE];
+} mcor_suspicion;
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static bool
+mcor_say(mcor_suspicion* s, const char* format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(s->text, sizeof s->text, format, arguments);
+  va_end(arguments);
+  return true;
+}
+
+/* Smoothing length over distance of the nearest particle: it hardly depends on free surfaces and walls.
+ * From 1 (a lattice of that spacing) to 1.7 for most solvers, up to 2.2 for DualSPHysics; kernels
+ * of Wendland's bear more. */
+#define MCOR_LEAST_RATIO 0.9
+#define MCOR_MOST_RATIO 2.2
+#define MCOR_MOST_RATIO_WENDLAND 2.6
+
+/* Particles strewn at random lie as near as with the former, but have not so many neighbours (per cube
+ * of the kernel's support in smoothing lengths); sheets and drops have few. */
+#define MCOR_MANY_NEIGHBOURS 10.0
+#define MCOR_SHEET_RATIO 2.6
+#define MCOR_SHEET_NEIGHBOURS 5.0
+
+static bool mcor_warn_neighbours(mcor_suspicion* s)
+{
+  static const char* const usual[MCOR_SPH_KERNEL_COUNT] = { "30 to 100", "30 to 100", "30 to 60",
+    "100 to 250", "50 to 250" };
+  const mcor_statistics* n = &s->surface->statistics;
+  const mcor_sph_kernel kernel = s->options->sph_kernel;
+  const double h = n->smoothing_length_median, spacing = n->spacing_median;
+  const double cube = pow(mcor_support_factor(kernel), 3);
+  const bool wendland = kernel == MCOR_WENDLAND_C2;
+  const bool few = h < MCOR_LEAST_RATIO * spacing || spacing == 0;
+  const double near = h / (spacing > 0 ? spacing : h), found = n->neighbours_median / cube;
+  const bool many = near > MCOR_SHEET_RATIO
+    ? found > MCOR_SHEET_NEIGHBOURS
+    : near > (wendland ? MCOR_MOST_RATIO_WENDLAND : MCOR_MOST_RATIO) &&
+      found > MCOR_MANY_NEIGHBOURS;
+  if (n->fluid_particles < MCOR_FEW_PARTICLES || s->input->estimate_smoothing_length ||
+    !(few || many))
+  {
+    return false;
+  }
+  const char* why = few && s->input->smoothing_length_is_support_radius
+    ? "Perhaps what is read as the support radius is the smoothing length, or it is not in the "
+      "unit "
+      "of the positions."
+    : few ? "Perhaps it is not in the unit of the positions."
+          : "Perhaps it is the support radius (then say so), or not in the unit of the positions.";
+  char times[100] = "no other particle is within that";
+  if (spacing > 0)
+  {
+    snprintf(times, sizeof times, "%.3g times the distance %.4g of the nearest particle",
+      h / spacing, spacing);
+  }
+  return mcor_say(s,
+    "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
+    "%s (medians). Usual for the %s kernel are %s neighbours and 1 to %g times. %s",
+    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel],
+    wendland ? 2.2 : 1.7, why);
+}
+
+static bool mcor_warn_plane(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const double h = n->smoothing_length_median;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double* e = n->fluid_extent;
+    const double other = e[(a + 1) % 3] < e[(a + 2) % 3] ? e[(a + 1) % 3] : e[(a + 2) % 3];
+    if (n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h && other > 8 * h)
+    {
+      return mcor_say(s,
+        "The fluid particles lie in a plane: along %c they extend over %.3g, %.4g times the "
+        "smoothing length. The kernels are those of three dimensions, so that weights are not "
+        "about 1 in the fluid of a two-dimensional simulation.",
+        "xyz"[a], e[a], e[a] / h);
+    }
+  }
+  return false;
+}
+
+/* What no value of the field can pass: a Shepard mean with positive kernels is between the values of
+ * the particles, a sum between 0 and somewhat above these. */
+static bool mcor_warn_iso_value(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const mcor_options* o = s->options;
+  const bool empty = n->triangles_before_trimming == 0;
+  const bool strict = o->field == MCOR_SHEPARD && o->sph_kernel != MCOR_M_PRIME_4;
+  const double low = o->field == MCOR_SUM && n->scalar_min > 0 ? 0 : n->scalar_min;
+  const double high = o->field == MCOR_SUM && n->scalar_max < 0 ? 0 : n->scalar_max;
+  int outside = 0, first = 0;
+  for (int i = 0; i < o->iso_count; ++i)
+  {
+    const bool is_outside = o->iso_values[i] < low || o->iso_values[i] > high;
+    first = is_outside && outside == 0 ? i : first;
+    outside += is_outside;
+  }
+  if (o->field == MCOR_WEIGHT_SUM || o->has_box || outside == 0 || !(empty || strict))
+  {
+    return false;
+  }
+  const char* name = s->input->scalar.name ? s->input->scalar.name : "the scalar";
+  char others[40] = "";
+  if (outside > 1)
+  {
+    snprintf(others, sizeof others, " (and %d more)", outside - 1);
+  }
+  return mcor_say(s, "Iso value %.6g%s is outside of the range of %s, %.6g to %.6g.",
+    o->iso_values[first], others, name, low, high);
+}
+
+/* Where particles fill a small share of space, no cell's nodes have a weight above the threshold. */
+static bool mcor_warn_discarded(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const mcor_options* o = s->options;
+  if (o->field == MCOR_WEIGHT_SUM || o->has_box || n->filled_median == 0 ||
+    n->filled_median > o->node_threshold)
+  {
+    return false;
+  }
+  return mcor_say(s,
+    "There is no surface, as the node threshold %g discards cells of a lower weight sum: the "
+    "particles' volumes fill but %.3g of their supports (median). Are volumes, or masses and "
+    "densities, in the units of the smoothing length?",
+    o->node_threshold, n->filled_median);
+}
+
+/* All that trimming did, or could do, to a surface that is not there. */
+static bool mcor_warn_trimmed(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const mcor_options* o = s->options;
+  const bool eigenvalue = o->boundary_detection == MCOR_BOUNDARY_EIGENVALUE;
+  const bool wall = o->wall_share > 0 && n->solid_particles > 0 && !s->input->ignore_solids;
+  char share[100] = "";
+  if (n->triangles_before_trimming == 0 && o->iso_count > 0)
+  {
+    return mcor_warn_discarded(s);
+  }
+  if (s->surface->triangle_count > 0 || n->triangles_before_trimming == 0 || o->has_box)
+  {
+    return false;
+  }
+  if (wall)
+  {
+    snprintf(share, sizeof share, "the solids' share of the weight above the wall share %g",
+      o->wall_share);
+  }
+  if (o->field == MCOR_WEIGHT_SUM)
+  {
+    return mcor_say(s, "All %lld triangles were trimmed: everywhere there is %s.",
+      (long long)n->triangles_before_trimming, share);
+  }
+  return mcor_say(s,
+    "All %lld triangles were trimmed: everywhere on the surface the %s is below the vertex "
+    "threshold %g%s%s. %s",
+    (long long)n->triangles_before_trimming, eigenvalue ? "boundary eigenvalue" : "weight sum",
+    o->vertex_threshold, wall ? ", or " : "", share,
+    eigenvalue ? "Try 0.3."
+               : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
+}
+
+char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
+  const mcor_options* options, const mcor_surface* surface)
+{
+  bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
+    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed };
+  /* With globals the input is a part of the particles. */
+  if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
+    input->count == 0 || options->globals)
+  {
+    return NULL;
+  }
+  mcor_suspicion suspicion = { .input = input, .options = options, .surface = surface };
+  if (!checks[warning](&suspicion))
+  {
+    return NULL;
+  }
+  size_t length = 0;
+  while (suspicion.text[length++])
+  {
+  }
+  char* text = malloc(length);
+  for (size_t i = 0; text && i < length; ++i)
+  {
+    text[i] = suspicion.text[i];
+  }
+  return text;
+}

@@ -4,6 +4,8 @@
 # Classes of superclasses must be known before our own module is loaded.
 import vtkmodules.vtkCommonExecutionModel  # noqa: F401
 
-from .vtkMarchingCorrectors import vtkMarchingCorrectors
+from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHDerivatives,
+                                    vtkSPHProbe, vtkSPHTemporalInterpolator)
 
-__all__ = ["vtkMarchingCorrectors"]
+__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHDerivatives", "vtkSPHProbe",
+           "vtkSPHTemporalInterpolator"]

@@ -44,19 +44,8 @@
  * ScalarComponent). If a second vector is chosen with SetInputArrayToProcess(1, ...), the dot
  * product of the two is contoured. In free-surface mode no scalar is needed.
  *
- * Smoothing lengths, volumes, masses and densities are point arrays, found by their usual names
- * (in this order; case, blanks, "_" and "-" do not matter) unless they are named, given as a
- * constant or DetectArrays is off:
- *
- *     smoothing length   SmoothingLength SmoothingLengths hsml h
- *     volume             Volume Volumes ParticleVolume vol
- *     mass               Mass Masses ParticleMass m
- *     density            Density Densities ParticleDensity rho
- *
- * The volume of a particle is the volume array; else mass / density; else, with masses alone, m_j
- * over the mass density that they sum up to; else 1 / sum_k W(x_j - x_k, h_j). What was chosen is
- * retrievable (GetUsedSmoothingLengthArrayName() and its kin) and stands in the output field data.
- * In place of any array name, "(automatic)" and "(none)" mean the same as an empty one.
+ * How the particles are described, and which of their arrays are found by their names, is told by
+ * vtkSPHAlgorithm. What was chosen stands in the output field data.
  *
  * The output point data holds "Normals", the arrays asked for ("Gradients", "WeightSum",
  * "BoundaryEigenvalue", "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see
@@ -69,8 +58,8 @@
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
  * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
  * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
- * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "Kernel", "SeedMode",
- * "Topology", "Precision", "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
+ * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "WallShare", "Kernel", "SeedMode",
+ * "Topology", "Precision", "CubeSize", "Box" and "PeriodicBounds" (where they are used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
  * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
  * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar;
  * mcor_statistics in mcor.h says more of each. All of the output is a function of the input and the
@@ -78,9 +67,6 @@
  * that KeepDeviceData kept. What a run cost is told by GetRunStatistics().
  *
  * All lengths are in the unit of the point coordinates (L below).
- *
- * Composite data give composite data: each block that is a point set is contoured by itself, in its
- * place. A block that fails leaves its place empty; the error names it.
  *
  * @warning
  * Every piece or block is contoured by itself. Particles of a neighbouring piece, also those marked
@@ -117,7 +103,7 @@
  * crash before the filter is asked.
  *
  * @sa
- * vtkSPHInterpolator vtkContourFilter vtkFlyingEdges3D vtkContourValues
+ * vtkSPHAlgorithm vtkSPHInterpolator vtkContourFilter vtkFlyingEdges3D vtkContourValues
  */
 
 #ifndef vtkMarchingCorrectors_h
@@ -126,41 +112,26 @@
 #include "vtkContourValues.h"            // Passes calls through
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkNew.h"                      // For members
-#include "vtkPolyDataAlgorithm.h"
-#include "vtkSmartPointer.h" // For members
+#include "vtkSPHAlgorithm.h"
 
-#include <memory> // For the device state
-#include <string> // For members
 #include <vector> // For members
 
-class vtkDataObjectTree;
-class vtkFieldData;
 class vtkMarchingCorrectorsInput;
-class vtkPointSet;
-struct mcor_options;
+struct mcor_input;
+struct mcor_statistics;
 struct vtkMarchingCorrectorsChoice;
-struct vtkMarchingCorrectorsRequest;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkPolyDataAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
 public:
   static vtkMarchingCorrectors* New();
-  vtkTypeMacro(vtkMarchingCorrectors, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkMarchingCorrectors, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
    * The modification time includes that of the contour values.
    */
   vtkMTimeType GetMTime() override;
-
-  enum KernelType
-  {
-    CUBIC_SPLINE = 0,   ///< M4, support radius 2 h
-    QUADRATIC = 1,      ///< support radius 2 h
-    M_PRIME_4 = 2,      ///< M'4 as a tensor product, support 2 h along each axis
-    QUINTIC_SPLINE = 3, ///< M6, support radius 3 h
-    WENDLAND_C2 = 4     ///< support radius 2 h
-  };
 
   enum SeedModeType
   {
@@ -178,6 +149,13 @@ public:
   {
     WEIGHT_SUM = 0, ///< sum_j V_j W(x - x_j, s h_j)
     EIGENVALUE = 1  ///< smallest one of sum_j V_j (x_j - x) (outer product) grad W(x - x_j, s h_j)
+  };
+
+  enum SolidsType
+  {
+    SOLIDS_WEIGHT = 0, ///< count in the weight sum used for trimming
+    SOLIDS_IGNORE = 1, ///< play no part
+    SOLIDS_WALL = 2    ///< count there, and the surface ends at them
   };
 
   /**
@@ -274,118 +252,6 @@ public:
 
   ///@{
   /**
-   * The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name.
-   */
-  vtkSetStdStringFromCharMacro(SmoothingLengthArrayName);
-  vtkGetCharFromStdStringMacro(SmoothingLengthArrayName);
-  ///@}
-
-  ///@{
-  /**
-   * One smoothing length for all particles, unit L. 0 (the default): use the array. If the points
-   * have no smoothing length at all, set this, or EstimateSmoothingLength.
-   */
-  vtkSetMacro(SmoothingLength, double);
-  vtkGetMacro(SmoothingLength, double);
-  ///@}
-
-  ///@{
-  /**
-   * Estimate one smoothing length for all particles: 1.3 times their median spacing. For positions
-   * without further data. Goes before array and constant. Off by default. The estimated value is
-   * the "SmoothingLengthRange" of the output field data.
-   */
-  vtkSetMacro(EstimateSmoothingLength, vtkTypeBool);
-  vtkGetMacro(EstimateSmoothingLength, vtkTypeBool);
-  vtkBooleanMacro(EstimateSmoothingLength, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * The array or constant holds the support radius of the kernel (where it becomes 0) instead of
-   * the smoothing length. Off by default.
-   */
-  vtkSetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  vtkGetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  vtkBooleanMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses
-   * and densities may have any units that give volumes in L^3; a density is used with masses only.
-   */
-  vtkSetStdStringFromCharMacro(VolumeArrayName);
-  vtkGetCharFromStdStringMacro(VolumeArrayName);
-  vtkSetStdStringFromCharMacro(MassArrayName);
-  vtkGetCharFromStdStringMacro(MassArrayName);
-  vtkSetStdStringFromCharMacro(DensityArrayName);
-  vtkGetCharFromStdStringMacro(DensityArrayName);
-  ///@}
-
-  ///@{
-  /**
-   * One mass (or density) for all particles. 0 (the default): use the array.
-   */
-  vtkSetMacro(Mass, double);
-  vtkGetMacro(Mass, double);
-  vtkSetMacro(Density, double);
-  vtkGetMacro(Density, double);
-  ///@}
-
-  ///@{
-  /**
-   * Find smoothing length, volume, mass and density arrays by their usual names. On by default.
-   */
-  vtkSetMacro(DetectArrays, vtkTypeBool);
-  vtkGetMacro(DetectArrays, vtkTypeBool);
-  vtkBooleanMacro(DetectArrays, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * The arrays used by the last run; empty where none was: a constant, or computed.
-   */
-  vtkGetCharFromStdStringMacro(UsedSmoothingLengthArrayName);
-  vtkGetCharFromStdStringMacro(UsedVolumeArrayName);
-  vtkGetCharFromStdStringMacro(UsedMassArrayName);
-  vtkGetCharFromStdStringMacro(UsedDensityArrayName);
-  ///@}
-
-  ///@{
-  /**
-   * The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation.
-   */
-  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, WENDLAND_C2);
-  vtkGetMacro(Kernel, int);
-  void SetKernelToCubicSpline() { this->SetKernel(CUBIC_SPLINE); }
-  void SetKernelToQuadratic() { this->SetKernel(QUADRATIC); }
-  void SetKernelToMPrime4() { this->SetKernel(M_PRIME_4); }
-  void SetKernelToQuinticSpline() { this->SetKernel(QUINTIC_SPLINE); }
-  void SetKernelToWendlandC2() { this->SetKernel(WENDLAND_C2); }
-  ///@}
-
-  ///@{
-  /**
-   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic" or "wendland". Returns false,
-   * and changes nothing, if there is no such kernel.
-   */
-  bool SetKernelByName(const char* name);
-  const char* GetKernelName() const;
-  ///@}
-
-  ///@{
-  /**
-   * The kernels use this factor times the smoothing length; volumes do not change. No unit, > 0,
-   * 1 by default. Less than 1 gives less smoothing.
-   */
-  vtkSetMacro(HScaleFactor, double);
-  vtkGetMacro(HScaleFactor, double);
-  ///@}
-
-  ///@{
-  /**
    * Size of the virtual grid's cubes, as a factor of the smallest smoothing length (unscaled). No
    * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. Where smoothing lengths vary, the smallest
    * one, and with it the lattice, may differ between time steps, or pieces of a data set: set
@@ -402,6 +268,39 @@ public:
    */
   vtkSetMacro(CubeSize, double);
   vtkGetMacro(CubeSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether only the cells in a box are drawn; off by default. Box: x0, x1, y0, y1, z0, z1, unit L;
+   * sides may be infinite. Cells whose centres are in it are exactly those of the whole surface, so
+   * that boxes side by side make it up; only the particles that reach them are evaluated (with pairs
+   * as seeds all are, but for the correction). The lattice is that of all particles.
+   */
+  vtkSetMacro(UseBox, vtkTypeBool);
+  vtkGetMacro(UseBox, vtkTypeBool);
+  vtkBooleanMacro(UseBox, vtkTypeBool);
+  vtkSetVector6Macro(Box, double);
+  vtkGetVector6Macro(Box, double);
+  ///@}
+
+  ///@{
+  /**
+   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, particles and
+   * all they carry repeat along x with that period, and their images count. The surface is that of
+   * one period, open at its sides, where it meets itself up to rounding. Periods are whole numbers of
+   * cubes: the cube size is made to fit, see "CubeSize" in the field data.
+   */
+  vtkSetVector6Macro(PeriodicBounds, double);
+  vtkGetVector6Macro(PeriodicBounds, double);
+  ///@}
+
+  ///@{
+  /**
+   * Box as its lower corner and its lengths, as ParaView's box widget has it.
+   */
+  void SetPanelBoxPosition(double x, double y, double z);
+  void SetPanelBoxLength(double x, double y, double z);
   ///@}
 
   ///@{
@@ -441,6 +340,17 @@ public:
 
   ///@{
   /**
+   * End the surface where the fluid ends, by VertexThreshold, and at walls where that was chosen. On
+   * by default. Off keeps the triangles beyond; what NodeThreshold discards stays discarded. The free
+   * surface does not need it.
+   */
+  vtkSetMacro(Trim, vtkTypeBool);
+  vtkGetMacro(Trim, vtkTypeBool);
+  vtkBooleanMacro(Trim, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Cells with a node whose weight sum is lower are discarded. No unit, 0.1 by default.
    */
   vtkSetMacro(NodeThreshold, double);
@@ -474,24 +384,24 @@ public:
 
   ///@{
   /**
-   * The point array and the value in it that mark fluid particles; all others are solid. The field
-   * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
-   * default.
+   * What solid particles (see SetFluidArrayName) do to the surface's end. SOLIDS_WEIGHT, the
+   * default: the surface runs on behind the wall, as the weight sum does. SOLIDS_IGNORE, as
+   * IgnoreSolids: it ends before the wall, where the fluid's weight is VertexThreshold. SOLIDS_WALL:
+   * it ends where the solids' share of the weight sum becomes greater than WallShare; so does the free
+   * surface, which then is open along walls.
    */
-  vtkSetStdStringFromCharMacro(FluidArrayName);
-  vtkGetCharFromStdStringMacro(FluidArrayName);
-  vtkSetMacro(FluidValue, double);
-  vtkGetMacro(FluidValue, double);
+  void SetSolids(int solids);
+  int GetSolids() const;
   ///@}
 
   ///@{
   /**
-   * Leave solid particles out of the weight sum used for trimming too. Off by default: they count
-   * there, so that the surface reaches the wall.
+   * For SOLIDS_WALL, above 0 and below 1. 0.5 by default: where solids weigh more than the fluid,
+   * about half way between the wall's and the fluid's particles. More is farther into the wall: about
+   * 0.85 is on particles that lie on the wall's surface in one layer.
    */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
+  vtkSetMacro(WallShare, double);
+  vtkGetMacro(WallShare, double);
   ///@}
 
   ///@{
@@ -588,84 +498,11 @@ public:
 
   ///@{
   /**
-   * Arrays that InterpolateAttributes leaves out, by name. None by default.
-   */
-  void AddExcludedArray(const std::string& name);
-  void ClearExcludedArrays();
-  int GetNumberOfExcludedArrays() const;
-  const char* GetExcludedArray(int i) const;
-  ///@}
-
-  ///@{
-  /**
    * Precision of the output points: vtkAlgorithm::DEFAULT_PRECISION (as the input points, the
    * default), SINGLE_PRECISION or DOUBLE_PRECISION.
    */
   vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
   vtkGetMacro(OutputPointsPrecision, int);
-  ///@}
-
-  ///@{
-  /**
-   * Precision of the field evaluation on the device: vtkAlgorithm::SINGLE_PRECISION (the default)
-   * or DOUBLE_PRECISION, which some devices lack.
-   */
-  vtkSetClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
-  vtkGetMacro(Precision, int);
-  ///@}
-
-  ///@{
-  /**
-   * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
-   * Empty (the default): PoCL, else the first one.
-   */
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
-
-  /**
-   * The sentence that says why the last run failed; empty if it did not. It is also reported as a
-   * VTK error. For composite data, one line for each block that failed, which it names.
-   */
-  vtkGetCharFromStdStringMacro(ErrorMessage);
-
-  /**
-   * What the last update cost, one array each: "Seconds" (one component per phase, one for building
-   * the OpenCL program, and the total, by name), "DeviceBytesPeak", "Bricks", "NodesEvaluated" (those kept from earlier updates counted)
-   * and "MarchRounds". Empty where nothing ran. The next update makes another field data and leaves
-   * this one as it is.
-   */
-  vtkFieldData* GetRunStatistics();
-
-  /**
-   * The OpenCL devices at hand, one line each: "number: device (platform)". Empty if there is none.
-   */
-  static std::string ListDevices();
-
-  /**
-   * Drop what is kept on the device between runs. The next run takes as long as the first.
-   */
-  void ReleaseDeviceMemory();
-
-  ///@{
-  /**
-   * Most device memory in use and kept between updates by this filter, in MiB; each filter has
-   * memory of its own. 0, the default, means all that there is. An update that would need more
-   * fails with a sentence that says how much.
-   */
-  vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
-  vtkGetMacro(DeviceMemoryLimit, int);
-  ///@}
-
-  ///@{
-  /**
-   * Keep on the device what the next update may reuse: the search grid and the node values. On by
-   * default. Off, everything is given back as soon as an update does not need it any more: for one
-   * that is the only one.
-   */
-  vtkSetMacro(KeepDeviceData, vtkTypeBool);
-  vtkGetMacro(KeepDeviceData, vtkTypeBool);
-  vtkBooleanMacro(KeepDeviceData, vtkTypeBool);
   ///@}
 
   ///@{
@@ -686,16 +523,31 @@ public:
   vtkGetMacro(IterationLimit, int);
   ///@}
 
+  ///@{
+  /**
+   * What the last update used, for a panel; of the last block of composite data. Empty, or 0, where
+   * nothing was drawn. The range is that of what was contoured (a component, magnitude or dot product)
+   * at the fluid particles, 0 to 0 for the free surface.
+   */
+  vtkGetVector2Macro(FluidScalarRange, double);
+  vtkGetCharFromStdStringMacro(UsedIsoValues);
+  vtkGetCharFromStdStringMacro(UsedSmoothingLength);
+  vtkGetCharFromStdStringMacro(UsedVolume);
+  vtkGetMacro(UsedCubeSize, double);
+  ///@}
+
+  /**
+   * About how many cubes of the virtual grid the fluid fills, known before the last update began:
+   * the measure of what it may take. From a billion on, a warning says so. 0: not known.
+   */
+  vtkGetMacro(EstimatedCells, double);
+
 protected:
   vtkMarchingCorrectors();
   ~vtkMarchingCorrectors() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  const char* GetOutputClassName(const char* inputClassName) override;
+  void Process(vtkDataObject* input, vtkDataObject* output) override;
 
   vtkNew<vtkContourValues> ContourValues;
   vtkNew<vtkContourValues> FreeSurfaceValues;
@@ -703,34 +555,20 @@ protected:
   vtkTypeBool ShepardNormalization = 1;
   vtkTypeBool FreeSurface = 0;
 
-  std::string SmoothingLengthArrayName;
-  double SmoothingLength = 0.0;
-  vtkTypeBool EstimateSmoothingLength = 0;
-  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
-  std::string VolumeArrayName;
-  std::string MassArrayName;
-  std::string DensityArrayName;
-  double Mass = 0.0;
-  double Density = 0.0;
-  vtkTypeBool DetectArrays = 1;
-  std::string UsedSmoothingLengthArrayName;
-  std::string UsedVolumeArrayName;
-  std::string UsedMassArrayName;
-  std::string UsedDensityArrayName;
-
-  int Kernel = CUBIC_SPLINE;
-  double HScaleFactor = 1.0;
   double CubeSizeFactor = 0.5;
   double CubeSize = 0.0;
+  vtkTypeBool UseBox = 0;
+  double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   int SeedMode = COMPLETE;
   int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
+  vtkTypeBool Trim = 1;
   double NodeThreshold = 0.1;
   int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
-  vtkTypeBool IgnoreSolids = 0;
+  bool EndAtSolids = false;
+  double WallShare = 0.5;
 
   vtkTypeBool ComputeNormals = 1;
   vtkTypeBool ComputeGradients = 0;
@@ -741,35 +579,29 @@ protected:
   vtkTypeBool ComputeResidual = 0;
   vtkTypeBool ComputeBoundaryFlag = 0;
   vtkTypeBool InterpolateAttributes = 1;
-  std::vector<std::string> ExcludedArrays;
   int OutputPointsPrecision = DEFAULT_PRECISION;
-  int Precision = SINGLE_PRECISION;
-  std::string Device;
   double Tolerance = 1e-6;
   int IterationLimit = 30;
-  int DeviceMemoryLimit = 0;
-  vtkTypeBool KeepDeviceData = 1;
+
+  double FluidScalarRange[2] = { 0.0, 0.0 };
+  std::string UsedIsoValues;
+  std::string UsedSmoothingLength;
+  std::string UsedVolume;
+  double UsedCubeSize = 0.0;
+  double EstimatedCells = 0.0;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
-  int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
-  int ExtractBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
-  int ExtractFrom(vtkPointSet* particles, vtkPolyData* output);
-  int Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
-  vtkMarchingCorrectorsRequest FindRequest(int index, vtkPointSet* particles);
+  void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
-  void FillOptions(mcor_options& options) const;
+  void FillOptions(mcor_options& options);
+  void ClearSummary();
+  void EstimateRun(const mcor_input& input, const mcor_options& options);
+  void Summarize(
+    const mcor_input& input, const mcor_options& options, const mcor_statistics& statistics);
   std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
-  void SetUsedNames(const vtkMarchingCorrectorsInput& input);
-  int Fail(const std::string& message);
-
-  std::string ErrorMessage;
-  std::string BlockName; // begins the messages about a block of composite data
-  vtkSmartPointer<vtkFieldData> RunStatistics;
-  class vtkInternals;
-  std::unique_ptr<vtkInternals> Internals;
 };
 
 #endif

@@ -32,10 +32,6 @@ public:
   void BuildMesh(vtkPolyData* output, int precision);
   /** Statistics and parameters: a function of the input and the options alone. */
   void BuildFieldData(vtkFieldData* fieldData) const;
-  /** What the run cost, added to what other blocks did: not the same for each run. */
-  void AddRunStatistics(vtkFieldData* run) const;
-  /** One sentence for each array that the core left out. */
-  std::vector<std::string> ListLeftOut() const;
 
 private:
   void BuildTriangles(vtkPolyData* output);

@@ -92,6 +92,32 @@ vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std
 }
 
 //------------------------------------------------------------------------------
+// In an array that is not of kinds, the first values tell.
+std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most)
+{
+  std::map<double, vtkIdType> counts;
+  const vtkIdType number = array->GetNumberOfTuples();
+  double last = 0.0;
+  vtkIdType run = 0;
+  for (vtkIdType i = 0; i < number && counts.size() <= most; ++i)
+  {
+    const double value = array->GetComponent(i, 0);
+    if (run > 0 && value != last)
+    {
+      counts[last] += run;
+      run = 0;
+    }
+    last = value;
+    ++run;
+  }
+  if (run > 0)
+  {
+    counts[last] += run;
+  }
+  return counts.size() <= most ? counts : std::map<double, vtkIdType>();
+}
+
+//------------------------------------------------------------------------------
 double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core)
 {
   std::vector<double> values(static_cast<size_t>(core.count));

@@ -10,7 +10,9 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 
 class vtkDataArray;
 
@@ -19,6 +21,9 @@ vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* ar
 
 /** Writes 0 to `solid` where the array has the value `fluid`, else 1. Returns how many are 0. */
 vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid);
+
+/** How often each value occurs in an array of one component; empty if there are more than `most`. */
+std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most);
 
 /**
  * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest and

@@ -4,19 +4,19 @@
  * Private to the module: what outlives a run, the core's context and what the particles and the
  * scalar were that it keeps.
  */
-#ifndef vtkMarchingCorrectorsInternals_h
-#define vtkMarchingCorrectorsInternals_h
+#ifndef vtkSPHAlgorithmInternals_h
+#define vtkSPHAlgorithmInternals_h
 
 #include "mcor.h"
-#include "vtkMarchingCorrectors.h"
+#include "vtkSPHAlgorithm.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-class vtkMarchingCorrectorsInput;
+class vtkSPHParticles;
 
-class vtkMarchingCorrectors::vtkInternals
+class vtkSPHAlgorithm::vtkInternals
 {
 public:
   ~vtkInternals();
@@ -26,7 +26,7 @@ public:
   std::string Prepare(const std::string& device);
 
   /** Tells the core what is the same as in the run before. */
-  void SetVersions(vtkMarchingCorrectorsInput& input);
+  void SetVersions(vtkSPHParticles& input);
 
   /** After a failure nothing is assumed about what is on the device, or about the device itself. */
   void Forget(mcor_status status);

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkMarchingCorrectorsInternals.h"
+#include "vtkSPHAlgorithmInternals.h"
 
-#include "vtkMarchingCorrectorsInput.h"
+#include "vtkSPHParticles.h"
 
 //------------------------------------------------------------------------------
-vtkMarchingCorrectors::vtkInternals::~vtkInternals()
+vtkSPHAlgorithm::vtkInternals::~vtkInternals()
 {
   mcor_free_context(this->Context);
 }
 
 //------------------------------------------------------------------------------
-std::string vtkMarchingCorrectors::vtkInternals::Prepare(const std::string& device)
+std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device)
 {
   if (this->Context && this->Device == device)
   {
@@ -30,7 +30,7 @@ std::string vtkMarchingCorrectors::vtkInternals::Prepare(const std::string& devi
 
 //------------------------------------------------------------------------------
 // The scalar is kept in the order of the particles: new particles make a new scalar.
-void vtkMarchingCorrectors::vtkInternals::SetVersions(vtkMarchingCorrectorsInput& input)
+void vtkSPHAlgorithm::vtkInternals::SetVersions(vtkSPHParticles& input)
 {
   const bool sameParticles = input.ParticlesSignature == this->Particles;
   if (!sameParticles || input.ScalarSignature != this->Scalar)
@@ -48,7 +48,7 @@ void vtkMarchingCorrectors::vtkInternals::SetVersions(vtkMarchingCorrectorsInput
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::vtkInternals::Forget(mcor_status status)
+void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
 {
   this->Particles.clear();
   this->Scalar.clear();
@@ -60,7 +60,7 @@ void vtkMarchingCorrectors::vtkInternals::Forget(mcor_status status)
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::vtkInternals::Release()
+void vtkSPHAlgorithm::vtkInternals::Release()
 {
   if (this->InRun)
   {
@@ -73,14 +73,14 @@ void vtkMarchingCorrectors::vtkInternals::Release()
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::vtkInternals::BeginRun()
+void vtkSPHAlgorithm::vtkInternals::BeginRun()
 {
   this->InRun = true;
   this->ReleaseAfterRun = false;
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::vtkInternals::EndRun()
+void vtkSPHAlgorithm::vtkInternals::EndRun()
 {
   this->InRun = false;
   if (this->ReleaseAfterRun)

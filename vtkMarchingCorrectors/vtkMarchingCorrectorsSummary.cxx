@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMarchingCorrectorsSummary.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <sstream>
+
+namespace
+{
+double ValueOf(const mcor_array& array, std::int64_t i)
+{
+  if (!array.data)
+  {
+    return array.constant;
+  }
+  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
+                                    : static_cast<const double*>(array.data)[i];
+}
+
+std::string Text(double value)
+{
+  std::ostringstream text;
+  text << value; // six digits
+  return text.str();
+}
+
+std::string Name(const mcor_array& array)
+{
+  return array.data ? std::string("array ") + (array.name ? array.name : "") : Text(array.constant);
+}
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_options& options)
+{
+  // In units of the smoothing length or, as a factor of it, the support radius.
+  double cubes = 0.0, smallest = std::numeric_limits<double>::infinity();
+  double count = 0.0;
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    if (!input.solid || !input.solid[i])
+    {
+      const double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
+      cubes += h * h * h;
+      smallest = std::min(smallest, h);
+      count += 1.0;
+    }
+  }
+  const bool isKnown = !input.estimate_smoothing_length || options.cube_size <= 0.0;
+  if (count == 0.0 || !isKnown)
+  {
+    return 0.0;
+  }
+  const double perLength =
+    input.smoothing_length_is_support_radius && !input.estimate_smoothing_length
+    ? 1.0 / mcor_support_factor(options.sph_kernel)
+    : 1.0;
+  const double size =
+    options.cube_size > 0.0 ? options.cube_size : options.cube_size_factor * smallest * perLength;
+  const double spacing = perLength / 1.3;
+  return size > 0.0 ? cubes * spacing * spacing * spacing / (size * size * size) : 0.0;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMarchingCorrectorsDescribeSmoothingLength(
+  const mcor_input& input, const mcor_statistics& statistics)
+{
+  std::string text = Text(statistics.smoothing_length_min);
+  if (statistics.smoothing_length_max > statistics.smoothing_length_min)
+  {
+    text += " to " + Text(statistics.smoothing_length_max);
+  }
+  const bool isRadius = input.smoothing_length_is_support_radius != 0;
+  if (input.estimate_smoothing_length)
+  {
+    return text + " (estimated)";
+  }
+  return text + (input.smoothing_length.data ? " (" + Name(input.smoothing_length) : " (given") +
+    (isRadius ? ", support radius)" : ")");
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMarchingCorrectorsDescribeVolume(const mcor_input& input)
+{
+  if (input.has_volume)
+  {
+    return Name(input.volume);
+  }
+  if (input.has_mass)
+  {
+    return Name(input.mass) + " / " +
+      (input.has_density ? Name(input.density) : "density summed from it");
+  }
+  return "computed from the positions";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMarchingCorrectorsDescribeIsoValues(const mcor_options& options)
+{
+  std::string text;
+  for (int i = 0; i < options.iso_count; ++i)
+  {
+    text += (i ? ", " : "") + Text(options.iso_values[i]);
+  }
+  return text;
+}

@@ -1,0 +1,390 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHAlgorithm.h"
+
+#include "mcor.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
+#include "vtkDataObjectTypes.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkPointSet.h"
+#include "vtkSPHAlgorithmInternals.h"
+#include "vtkSPHBlocks.h"
+#include "vtkSPHParticles.h"
+#include "vtkVersionMacros.h"
+
+#include <cstdlib>
+
+// These are handed to the core as they are.
+static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
+    static_cast<int>(vtkSPHAlgorithm::QUADRATIC) == MCOR_QUADRATIC &&
+    static_cast<int>(vtkSPHAlgorithm::M_PRIME_4) == MCOR_M_PRIME_4 &&
+    static_cast<int>(vtkSPHAlgorithm::QUINTIC_SPLINE) == MCOR_QUINTIC_SPLINE &&
+    static_cast<int>(vtkSPHAlgorithm::WENDLAND_C2) == MCOR_WENDLAND_C2 &&
+    static_cast<int>(vtkSPHAlgorithm::WENDLAND_C2) + 1 == MCOR_SPH_KERNEL_COUNT,
+  "the filter's numbers are the core's");
+
+//------------------------------------------------------------------------------
+// The context is created by the first run: constructing the filter must not touch OpenCL.
+vtkSPHAlgorithm::vtkSPHAlgorithm()
+  : RunStatistics(vtkSmartPointer<vtkFieldData>::New())
+  , Internals(new vtkInternals)
+{
+}
+
+vtkSPHAlgorithm::~vtkSPHAlgorithm() = default;
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::SetKernelByName(const char* name)
+{
+  const int kernel = name ? mcor_find_sph_kernel(name) : -1;
+  if (kernel >= 0)
+  {
+    this->SetKernel(kernel);
+  }
+  return kernel >= 0;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSPHAlgorithm::GetKernelName() const
+{
+  return mcor_sph_kernel_name(static_cast<mcor_sph_kernel>(this->Kernel));
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::AddExcludedArray(const std::string& name)
+{
+  this->ExcludedArrays.push_back(name);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::ClearExcludedArrays()
+{
+  this->ExcludedArrays.clear();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHAlgorithm::GetNumberOfExcludedArrays() const
+{
+  return static_cast<int>(this->ExcludedArrays.size());
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
+{
+  return i >= 0 && i < this->GetNumberOfExcludedArrays()
+    ? this->ExcludedArrays[static_cast<size_t>(i)].c_str()
+    : nullptr;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHAlgorithm::ListDevices()
+{
+  char* text = nullptr;
+  mcor_list_devices(&text);
+  const std::string result = text ? text : "";
+  std::free(text);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
+{
+  return this->RunStatistics;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::ReleaseDeviceMemory()
+{
+  this->Internals->Release();
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHAlgorithm::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->RequestDataObject(inputVector, outputVector);
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+//------------------------------------------------------------------------------
+// Of the class that suits the input, or blocks of those as the input has.
+int vtkSPHAlgorithm::RequestDataObject(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (!input)
+  {
+    return 0;
+  }
+  const bool blocks = vtkDataObjectTree::SafeDownCast(input) != nullptr;
+  const std::string name =
+    blocks ? input->GetClassName() : this->GetOutputClassName(input->GetClassName());
+  if (!output || name != output->GetClassName())
+  {
+    auto made = vtkSmartPointer<vtkDataObject>::Take(
+      blocks ? input->NewInstance() : vtkDataObjectTypes::NewDataObject(name.c_str()));
+    outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::IsAborted()
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230101)
+  return this->CheckAbort();
+#else
+  return this->GetAbortExecute() != 0;
+#endif
+}
+
+//------------------------------------------------------------------------------
+// Superclasses would report an error for a second array that was never asked for.
+vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
+{
+  vtkSPHRequest request;
+  vtkInformationVector* all = this->GetInformation()->Get(INPUT_ARRAYS_TO_PROCESS());
+  if (!all || index >= all->GetNumberOfInformationObjects())
+  {
+    return request;
+  }
+  vtkInformation* info = all->GetInformationObject(index);
+  const char* name = info->Get(vtkDataObject::FIELD_NAME());
+  request.Name = name ? name : "";
+  if (!request.Name.empty() || info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+  {
+    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    request.Array = this->GetInputAbstractArrayToProcess(index, particles, association);
+    request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  }
+  return request;
+}
+
+//------------------------------------------------------------------------------
+// The sentences of all blocks are kept, one a line.
+void vtkSPHAlgorithm::Fail(const std::string& message)
+{
+  const std::string sentence = this->BlockName + message;
+  this->ErrorMessage += (this->ErrorMessage.empty() ? "" : "\n") + sentence;
+  vtkErrorMacro(<< sentence);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::Warn(const std::string& message)
+{
+  vtkWarningMacro(<< this->BlockName << message);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::WarnOfNoFluid(
+  const vtkSPHParticlesChoice& choice, const std::string& consequence)
+{
+  vtkWarningMacro(<< this->BlockName << "No particle has " << choice.FluidArrayName << " = "
+                  << choice.FluidValue << ", so there is no fluid and " << consequence << ".");
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
+{
+  if (!message.empty() && this->Warned.insert(kind).second)
+  {
+    vtkWarningMacro(<< this->BlockName << message);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
+{
+  mcor_set_default_options(&options);
+  options.sph_kernel = static_cast<mcor_sph_kernel>(this->Kernel);
+  options.h_scale = this->HScaleFactor;
+  options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
+  options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::FillChoice(vtkSPHParticlesChoice& choice) const
+{
+  choice.SmoothingLengthArrayName = this->SmoothingLengthArrayName;
+  choice.SmoothingLength = this->SmoothingLength;
+  choice.EstimateSmoothingLength = this->EstimateSmoothingLength != 0;
+  choice.SmoothingLengthIsSupportRadius = this->SmoothingLengthIsSupportRadius != 0;
+  choice.VolumeArrayName = this->VolumeArrayName;
+  choice.MassArrayName = this->MassArrayName;
+  choice.DensityArrayName = this->DensityArrayName;
+  choice.Mass = this->Mass;
+  choice.Density = this->Density;
+  choice.DetectArrays = this->DetectArrays != 0;
+  choice.FluidArrayName = this->FluidArrayName;
+  choice.FluidValue = this->FluidValue;
+  choice.IgnoreSolids = this->IgnoreSolids != 0;
+  choice.Kernel = this->Kernel;
+  choice.ExcludedArrays = this->ExcludedArrays;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHAlgorithm::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  this->ErrorMessage.clear();
+  this->BlockName.clear();
+  this->Warned.clear();
+  this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
+  this->Internals->BeginRun();
+  auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (blocks)
+  {
+    this->ProcessBlocks(blocks, vtkDataObjectTree::SafeDownCast(output));
+  }
+  else
+  {
+    this->Process(vtkDataObject::GetData(inputVector[0]), output);
+  }
+  this->Internals->EndRun();
+  return blocks || this->ErrorMessage.empty() ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+// A block that fails leaves its place empty, and the others as they are.
+void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
+{
+  output->CopyStructure(input);
+  const std::vector<std::string> names = vtkSPHNameBlocks(input);
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(input->NewTreeIterator());
+  iterator->InitTraversal();
+  this->WarnOnce(WARN_WALL_BLOCK, vtkSPHFindWalls(names));
+  const double share = 1.0 / static_cast<double>(names.size());
+  for (size_t i = 0; i < names.size(); ++i, iterator->GoToNextItem())
+  {
+    this->SetProgressShiftScale(static_cast<double>(i) * share, share);
+    this->BlockName = names[i] + ": ";
+    vtkDataObject* block = iterator->GetCurrentDataObject();
+    auto made = vtkSmartPointer<vtkDataObject>::Take(
+      vtkDataObjectTypes::NewDataObject(this->GetOutputClassName(block->GetClassName())));
+    made->GetFieldData()->PassData(block->GetFieldData());
+    this->Process(block, made);
+    output->SetDataSetFrom(iterator, made);
+  }
+  this->SetProgressShiftScale(0.0, 1.0);
+  if (this->IsAborted())
+  {
+    output->CopyStructure(input); // not some blocks of a result
+  }
+}
+
+//------------------------------------------------------------------------------
+// What an observer of the progress may change is read before the run.
+bool vtkSPHAlgorithm::CallCore(
+  vtkSPHParticles& particles, mcor_options& options, const std::function<int(mcor_context*)>& call)
+{
+  const bool keep = this->KeepDeviceData != 0;
+  const std::string lacking = this->Internals->Prepare(this->Device);
+  if (!lacking.empty())
+  {
+    this->Fail(lacking);
+    return false;
+  }
+  if (keep)
+  {
+    this->Internals->SetVersions(particles);
+  }
+  options.progress_user = this;
+  options.progress = [](void* user, double fraction, const char* phase)
+  {
+    auto* filter = static_cast<vtkSPHAlgorithm*>(user);
+    filter->SetProgressText(phase);
+    filter->UpdateProgress(fraction);
+    return filter->IsAborted() ? 1 : 0;
+  };
+  mcor_context* context = this->Internals->Context;
+  const auto status = static_cast<mcor_status>(call(context));
+  if (!keep)
+  {
+    mcor_release_memory(context);
+  }
+  if (status != MCOR_OK)
+  {
+    const std::string message = mcor_last_error(context);
+    this->Internals->Forget(status);
+    if (status != MCOR_CANCELLED)
+    {
+      this->Fail(message);
+    }
+  }
+  return status == MCOR_OK;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
+{
+  const auto nameOf = [](vtkDataArray* array)
+  { return std::string(array && array->GetName() ? array->GetName() : ""); };
+  this->UsedSmoothingLengthArrayName = nameOf(particles ? particles->SmoothingLength : nullptr);
+  this->UsedVolumeArrayName = nameOf(particles ? particles->Volume : nullptr);
+  this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
+  this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  const auto printName = [&](const char* label, const std::string& name)
+  { os << indent << label << ": " << (name.empty() ? "(none)" : name) << "\n"; };
+  printName("Smoothing Length Array Name", this->SmoothingLengthArrayName);
+  os << indent << "Smoothing Length: " << this->SmoothingLength << "\n";
+  os << indent << "Estimate Smoothing Length: " << this->EstimateSmoothingLength << "\n";
+  os << indent << "Smoothing Length Is Support Radius: " << this->SmoothingLengthIsSupportRadius
+     << "\n";
+  printName("Volume Array Name", this->VolumeArrayName);
+  printName("Mass Array Name", this->MassArrayName);
+  printName("Density Array Name", this->DensityArrayName);
+  os << indent << "Mass: " << this->Mass << "\n";
+  os << indent << "Density: " << this->Density << "\n";
+  os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
+  printName("Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
+  printName("Used Volume Array Name", this->UsedVolumeArrayName);
+  printName("Used Mass Array Name", this->UsedMassArrayName);
+  printName("Used Density Array Name", this->UsedDensityArrayName);
+  os << indent << "Kernel: " << this->GetKernelName() << "\n";
+  os << indent << "H Scale Factor: " << this->HScaleFactor << "\n";
+  printName("Fluid Array Name", this->FluidArrayName);
+  os << indent << "Fluid Value: " << this->FluidValue << "\n";
+  os << indent << "Ignore Solids: " << this->IgnoreSolids << "\n";
+  for (const std::string& name : this->ExcludedArrays)
+  {
+    printName("Excluded Array", name);
+  }
+  os << indent << "Precision: " << this->Precision << "\n";
+  printName("Device", this->Device);
+  os << indent << "Device Memory Limit: " << this->DeviceMemoryLimit << " MiB\n";
+  os << indent << "Keep Device Data: " << this->KeepDeviceData << "\n";
+  printName("Error Message", this->ErrorMessage);
+}

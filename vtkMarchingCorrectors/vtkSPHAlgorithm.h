@@ -1,0 +1,385 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHAlgorithm
+ * @brief   superclass of the filters that evaluate the field of SPH particles
+ *
+ * What these filters share: how the particles are described (smoothing length, volume or mass and
+ * density, kernel, which of them are fluid), the OpenCL device that does the work, and what is told
+ * of a run.
+ *
+ * Smoothing lengths, volumes, masses and densities are point arrays, found by their usual names
+ * (in this order; case, blanks, "_" and "-" do not matter) unless they are named, given as a
+ * constant or DetectArrays is off:
+ *
+ *     smoothing length   SmoothingLength SmoothingLengths hsml h
+ *     volume             Volume Volumes ParticleVolume vol
+ *     mass               Mass Masses ParticleMass m
+ *     density            Density Densities ParticleDensity rho
+ *
+ * The volume of a particle is the volume array; else mass / density; else, with masses alone, m_j
+ * over the mass density that they sum up to; else 1 / sum_k W(x_j - x_k, h_j). What was chosen is
+ * retrievable (GetUsedSmoothingLengthArrayName() and its kin). In place of any array name,
+ * "(automatic)" and "(none)" mean the same as an empty one.
+ *
+ * All lengths are in the unit of the point coordinates (L below).
+ *
+ * Composite data give composite data: each block is worked on by itself, in its place. A block that
+ * fails leaves its place empty; the error names it.
+ *
+ * @sa
+ * vtkMarchingCorrectors
+ */
+
+#ifndef vtkSPHAlgorithm_h
+#define vtkSPHAlgorithm_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // For members
+
+#include <functional> // For the call of the core
+#include <memory>     // For the device state
+#include <set>
+#include <string> // For members
+#include <vector> // For members
+
+class vtkDataObjectTree;
+class vtkFieldData;
+class vtkPointSet;
+class vtkSPHParticles;
+struct mcor_context;
+struct mcor_options;
+struct vtkSPHParticlesChoice;
+struct vtkSPHRequest;
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm : public vtkPolyDataAlgorithm
+{
+public:
+  vtkAbstractTypeMacro(vtkSPHAlgorithm, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum KernelType
+  {
+    CUBIC_SPLINE = 0,   ///< M4, support radius 2 h
+    QUADRATIC = 1,      ///< support radius 2 h
+    M_PRIME_4 = 2,      ///< M'4 as a tensor product, support 2 h along each axis
+    QUINTIC_SPLINE = 3, ///< M6, support radius 3 h
+    WENDLAND_C2 = 4     ///< support radius 2 h
+  };
+
+  ///@{
+  /**
+   * The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name.
+   */
+  vtkSetStdStringFromCharMacro(SmoothingLengthArrayName);
+  vtkGetCharFromStdStringMacro(SmoothingLengthArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * One smoothing length for all particles, unit L. 0 (the default): use the array. If the points
+   * have no smoothing length at all, set this, or EstimateSmoothingLength.
+   */
+  vtkSetMacro(SmoothingLength, double);
+  vtkGetMacro(SmoothingLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Estimate one smoothing length for all particles: 1.3 times their median spacing. For positions
+   * without further data. Goes before array and constant. Off by default. The estimated value is
+   * the "SmoothingLengthRange" of the output field data.
+   */
+  vtkSetMacro(EstimateSmoothingLength, vtkTypeBool);
+  vtkGetMacro(EstimateSmoothingLength, vtkTypeBool);
+  vtkBooleanMacro(EstimateSmoothingLength, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * The array or constant holds the support radius of the kernel (where it becomes 0) instead of
+   * the smoothing length. Off by default.
+   */
+  vtkSetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
+  vtkGetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
+  vtkBooleanMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
+   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses
+   * and densities may have any units that give volumes in L^3; a density is used with masses only.
+   */
+  vtkSetStdStringFromCharMacro(VolumeArrayName);
+  vtkGetCharFromStdStringMacro(VolumeArrayName);
+  vtkSetStdStringFromCharMacro(MassArrayName);
+  vtkGetCharFromStdStringMacro(MassArrayName);
+  vtkSetStdStringFromCharMacro(DensityArrayName);
+  vtkGetCharFromStdStringMacro(DensityArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * One mass (or density) for all particles. 0 (the default): use the array.
+   */
+  vtkSetMacro(Mass, double);
+  vtkGetMacro(Mass, double);
+  vtkSetMacro(Density, double);
+  vtkGetMacro(Density, double);
+  ///@}
+
+  ///@{
+  /**
+   * Find smoothing length, volume, mass and density arrays by their usual names. On by default.
+   */
+  vtkSetMacro(DetectArrays, vtkTypeBool);
+  vtkGetMacro(DetectArrays, vtkTypeBool);
+  vtkBooleanMacro(DetectArrays, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * The arrays used by the last run; empty where none was: a constant, or computed.
+   */
+  vtkGetCharFromStdStringMacro(UsedSmoothingLengthArrayName);
+  vtkGetCharFromStdStringMacro(UsedVolumeArrayName);
+  vtkGetCharFromStdStringMacro(UsedMassArrayName);
+  vtkGetCharFromStdStringMacro(UsedDensityArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation.
+   */
+  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, WENDLAND_C2);
+  vtkGetMacro(Kernel, int);
+  void SetKernelToCubicSpline() { this->SetKernel(CUBIC_SPLINE); }
+  void SetKernelToQuadratic() { this->SetKernel(QUADRATIC); }
+  void SetKernelToMPrime4() { this->SetKernel(M_PRIME_4); }
+  void SetKernelToQuinticSpline() { this->SetKernel(QUINTIC_SPLINE); }
+  void SetKernelToWendlandC2() { this->SetKernel(WENDLAND_C2); }
+  ///@}
+
+  ///@{
+  /**
+   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic" or "wendland". Returns false,
+   * and changes nothing, if there is no such kernel.
+   */
+  bool SetKernelByName(const char* name);
+  const char* GetKernelName() const;
+  ///@}
+
+  ///@{
+  /**
+   * The kernels use this factor times the smoothing length; volumes do not change. No unit, > 0,
+   * 1 by default. Less than 1 gives less smoothing.
+   */
+  vtkSetMacro(HScaleFactor, double);
+  vtkGetMacro(HScaleFactor, double);
+  ///@}
+
+  ///@{
+  /**
+   * The point array and the value in it that mark fluid particles; all others are solid. The field
+   * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
+   * default.
+   */
+  vtkSetStdStringFromCharMacro(FluidArrayName);
+  vtkGetCharFromStdStringMacro(FluidArrayName);
+  vtkSetMacro(FluidValue, double);
+  vtkGetMacro(FluidValue, double);
+  ///@}
+
+  ///@{
+  /**
+   * Leave solid particles out of the weight sum used for trimming too. Off by default: they count
+   * there, so that the surface reaches the wall.
+   */
+  vtkSetMacro(IgnoreSolids, vtkTypeBool);
+  vtkGetMacro(IgnoreSolids, vtkTypeBool);
+  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Point arrays that are not interpolated, by name. None by default.
+   */
+  void AddExcludedArray(const std::string& name);
+  void ClearExcludedArrays();
+  int GetNumberOfExcludedArrays() const;
+  const char* GetExcludedArray(int i) const;
+  ///@}
+
+  ///@{
+  /**
+   * Precision of the field evaluation on the device: vtkAlgorithm::SINGLE_PRECISION (the default)
+   * or DOUBLE_PRECISION, which some devices lack.
+   */
+  vtkSetClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
+  vtkGetMacro(Precision, int);
+  ///@}
+
+  ///@{
+  /**
+   * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
+   * Empty (the default): PoCL, else the first one.
+   */
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  /**
+   * The sentence that says why the last run failed; empty if it did not. It is also reported as a
+   * VTK error. For composite data, one line for each block that failed, which it names.
+   */
+  vtkGetCharFromStdStringMacro(ErrorMessage);
+
+  /**
+   * What the last update cost, one array each: "Seconds" (one component per phase, one for building
+   * the OpenCL program, and the total, by name), "DeviceBytesPeak", "ParticlesInReach" (of the box),
+   * "Bricks", "NodesEvaluated" (those kept from earlier updates counted), "MarchRounds"; and what
+   * warnings go by: "MedianNeighbors" and "MedianSpacing" (distance of the nearest particle), both of
+   * fluid particles, of the last block. Empty where nothing ran. The next update makes another field
+   * data and leaves this one as it is.
+   */
+  vtkFieldData* GetRunStatistics();
+
+  /**
+   * The OpenCL devices at hand, one line each: "number: device (platform)". Empty if there is none.
+   */
+  static std::string ListDevices();
+
+  /**
+   * Drop what is kept on the device between runs. The next run takes as long as the first.
+   */
+  void ReleaseDeviceMemory();
+
+  ///@{
+  /**
+   * Most device memory in use and kept between updates by this filter, in MiB; each filter has
+   * memory of its own. 0, the default, means all that there is. An update that would need more
+   * fails with a sentence that says how much.
+   */
+  vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(DeviceMemoryLimit, int);
+  ///@}
+
+  ///@{
+  /**
+   * Keep on the device what the next update may reuse: the search grid and the node values. On by
+   * default. Off, everything is given back as soon as an update does not need it any more: for one
+   * that is the only one.
+   */
+  vtkSetMacro(KeepDeviceData, vtkTypeBool);
+  vtkGetMacro(KeepDeviceData, vtkTypeBool);
+  vtkBooleanMacro(KeepDeviceData, vtkTypeBool);
+  ///@}
+
+protected:
+  vtkSPHAlgorithm();
+  ~vtkSPHAlgorithm() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  /**
+   * The name of the class that Process() makes of a data object of this class, which is no
+   * composite one.
+   */
+  virtual const char* GetOutputClassName(const char* inputClassName) = 0;
+
+  /**
+   * Does the work, for the whole input or one of its blocks.
+   */
+  virtual void Process(vtkDataObject* input, vtkDataObject* output) = 0;
+
+  /**
+   * Reports an error, naming the block, and keeps its sentence.
+   */
+  void Fail(const std::string& message);
+
+  /**
+   * Reports a warning, naming the block.
+   */
+  void Warn(const std::string& message);
+
+  /**
+   * Says that no particle is fluid.
+   */
+  void WarnOfNoFluid(const vtkSPHParticlesChoice& choice, const std::string& consequence);
+
+  /**
+   * Warns, naming the block: once in a run of each kind, however many blocks there are. Kinds are
+   * those of the core (mcor_warning) and these.
+   */
+  void WarnOnce(int kind, const std::string& message);
+  enum
+  {
+    WARN_TYPE_ARRAY = 100, ///< an array that tells fluid from solids is not used
+    WARN_WALL_BLOCK        ///< walls in a block of their own
+  };
+
+  /**
+   * The array chosen by SetInputArrayToProcess(index, ...).
+   */
+  vtkSPHRequest FindRequest(int index, vtkPointSet* particles);
+
+  /**
+   * Calls the core: `call` gets a context for the device and returns the core's status. False if
+   * that failed, which is reported, or was cancelled.
+   */
+  bool CallCore(vtkSPHParticles& particles, mcor_options& options,
+    const std::function<int(mcor_context*)>& call);
+
+  void FillChoice(vtkSPHParticlesChoice& choice) const;
+  void FillOptions(mcor_options& options) const;
+  void SetUsedNames(const vtkSPHParticles* particles);
+  bool IsAborted();
+
+  std::string SmoothingLengthArrayName;
+  double SmoothingLength = 0.0;
+  vtkTypeBool EstimateSmoothingLength = 0;
+  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
+  std::string VolumeArrayName;
+  std::string MassArrayName;
+  std::string DensityArrayName;
+  double Mass = 0.0;
+  double Density = 0.0;
+  vtkTypeBool DetectArrays = 1;
+  std::string UsedSmoothingLengthArrayName;
+  std::string UsedVolumeArrayName;
+  std::string UsedMassArrayName;
+  std::string UsedDensityArrayName;
+  int Kernel = CUBIC_SPLINE;
+  double HScaleFactor = 1.0;
+  std::string FluidArrayName;
+  double FluidValue = 0.0;
+  vtkTypeBool IgnoreSolids = 0;
+  std::vector<std::string> ExcludedArrays;
+  int Precision = SINGLE_PRECISION;
+  std::string Device;
+  int DeviceMemoryLimit = 0;
+  vtkTypeBool KeepDeviceData = 1;
+
+  std::string ErrorMessage;
+  std::set<int> Warned;  // kinds of warnings that this run has given
+  std::string BlockName; // begins the messages about a block of composite data
+  vtkSmartPointer<vtkFieldData> RunStatistics;
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+
+private:
+  vtkSPHAlgorithm(const vtkSPHAlgorithm&) = delete;
+  void operator=(const vtkSPHAlgorithm&) = delete;
+
+  int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
+};
+
+#endif

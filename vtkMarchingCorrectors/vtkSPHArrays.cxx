@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHArrays.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+namespace
+{
+/** Rounds in place: the surface is the largest thing at this time. */
+vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkIdType tuples)
+{
+  const vtkIdType count = values ? tuples * components : 0;
+  char* to = reinterpret_cast<char*>(values);
+  for (vtkIdType first = 0; first < count;)
+  {
+    std::array<float, 1024> rounded;
+    const vtkIdType n = std::min<vtkIdType>(count - first, rounded.size());
+    std::transform(values + first, values + first + n, rounded.begin(),
+      [](double value) { return static_cast<float>(value); });
+    std::memcpy(to + first * sizeof(float), rounded.data(), n * sizeof(float));
+    first += n;
+  }
+  void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
+  float* floats = static_cast<float*>(kept ? kept : values);
+  auto array = vtkSPHAdopt<vtkFloatArray>(floats, components, count > 0 ? tuples : 0);
+  values = count > 0 ? nullptr : values;
+  return array;
+}
+
+// One component per phase, building the program and the total; 0 so far.
+void AddSeconds(vtkFieldData* run)
+{
+  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
+  seconds->SetNumberOfComponents(MCOR_PHASE_COUNT + 2);
+  seconds->SetNumberOfTuples(1);
+  seconds->Fill(0.0);
+  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
+  {
+    seconds->SetComponentName(phase, mcor_phase_name(static_cast<mcor_phase>(phase)));
+  }
+  seconds->SetComponentName(MCOR_PHASE_COUNT, "program build");
+  seconds->SetComponentName(MCOR_PHASE_COUNT + 1, "total");
+  vtkSPHAddArray(run, "Seconds", seconds);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
+  double*& values, int components, vtkIdType tuples, bool asFloat)
+{
+  if (asFloat)
+  {
+    return RoundToFloat(values, components, tuples);
+  }
+  return vtkSPHAdopt<vtkDoubleArray>(values, components, tuples);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddArray(
+  vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array)
+{
+  array->SetName(name);
+  data->AddArray(array);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkSPHAddArray(data, name, array);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddCount(
+  vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values)
+{
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkSPHAddArray(data, name, array);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text)
+{
+  auto array = vtkSmartPointer<vtkStringArray>::New();
+  array->InsertNextValue(text);
+  vtkSPHAddArray(data, name, array);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
+{
+  if (run->GetNumberOfArrays() == 0)
+  {
+    AddSeconds(run);
+  }
+  vtkDataArray* seconds = run->GetArray("Seconds");
+  const auto addSeconds = [seconds](int component, double value)
+  { seconds->SetComponent(0, component, seconds->GetComponent(0, component) + value); };
+  double total = s.build_seconds;
+  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
+  {
+    addSeconds(phase, s.seconds[phase]);
+    total += s.seconds[phase];
+  }
+  addSeconds(MCOR_PHASE_COUNT, s.build_seconds);
+  addSeconds(MCOR_PHASE_COUNT + 1, total);
+  const auto count = [run](const char* name)
+  {
+    vtkDataArray* array = run->GetArray(name);
+    return array ? static_cast<std::int64_t>(array->GetComponent(0, 0)) : 0;
+  };
+  vtkSPHAddCount(run, "ParticlesInReach", { count("ParticlesInReach") + s.particles_in_reach });
+  vtkSPHAddCount(run, "Bricks", { count("Bricks") + s.bricks });
+  vtkSPHAddCount(run, "NodesEvaluated", { count("NodesEvaluated") + s.nodes_evaluated });
+  vtkSPHAddCount(run, "MarchRounds", { count("MarchRounds") + s.march_rounds });
+  vtkSPHAddCount(
+    run, "DeviceBytesPeak", { std::max(count("DeviceBytesPeak"), s.device_bytes_peak) });
+  vtkSPHAddReal(run, "MedianNeighbors", { s.neighbours_median });
+  vtkSPHAddReal(run, "MedianSpacing", { s.spacing_median });
+}

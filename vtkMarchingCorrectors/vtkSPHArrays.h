@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: VTK arrays made of what the core returns.
+ */
+#ifndef vtkSPHArrays_h
+#define vtkSPHArrays_h
+
+#include "mcor.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+
+/** Hands a malloc'ed buffer over to a VTK array. */
+template <typename ArrayT, typename ValueT>
+vtkSmartPointer<ArrayT> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfComponents(components);
+  if (values && tuples > 0)
+  {
+    array->SetArray(values, tuples * components, 0, ArrayT::VTK_DATA_ARRAY_FREE);
+    values = nullptr;
+  }
+  return array;
+}
+
+/** malloc'ed double values as an array of either precision; no second copy of them is made. */
+vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
+  double*& values, int components, vtkIdType tuples, bool asFloat);
+
+void vtkSPHAddArray(
+  vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array);
+void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values);
+void vtkSPHAddCount(
+  vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values);
+void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
+
+/** Adds what a call of the core cost to what calls before it did: not the same for each run. */
+void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
+
+#endif

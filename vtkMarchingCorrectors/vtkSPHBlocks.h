@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: blocks of composite data, what to call them in messages, and all their
+ * particles as one set.
+ */
+#ifndef vtkSPHBlocks_h
+#define vtkSPHBlocks_h
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataObjectTree;
+class vtkPointSet;
+
+/**
+ * "Block 'NAME', index N" of each block that is there, in the order of their iteration: the name of
+ * the block, or of what it is a partition of, if there is one, and the flat index that ParaView
+ * shows.
+ */
+std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree);
+
+/**
+ * The points of all blocks that are point sets, one block after the other, with the point arrays
+ * that all of them have: same name, type and number of components.
+ */
+vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree);
+
+/**
+ * A sentence where the name of a block, but not those of all, tells of walls: blocks do not see each
+ * other. Empty otherwise.
+ */
+std::string vtkSPHFindWalls(const std::vector<std::string>& names);
+
+#endif

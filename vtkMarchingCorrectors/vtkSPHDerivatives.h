@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHDerivatives
+ * @brief   gradients of SPH particle arrays, vorticity, Q-criterion, lambda2
+ *
+ * vtkSPHDerivatives adds to SPH particles, at each particle, the SPH gradient of one of their point
+ * arrays, and of a vector with three components what is made of its gradient. The array is chosen
+ * with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name); the active scalars are the
+ * default. The particles are described as for vtkMarchingCorrectors, see vtkSPHAlgorithm.
+ *
+ *     standard            G_i = sum_j V_j (A_j - A_i) grad W(x_i - x_j, s h_j)
+ *     corrected (default) M_i^-1 G_i,  M_i = sum_j V_j grad W(x_i - x_j, s h_j) (x_j - x_i)^T
+ *
+ * The corrected form is exact for a linear A, whatever the order of the particles and also at the
+ * end of the fluid, wherever M_i can be inverted; where it cannot, as in spray, the standard form is
+ * taken.
+ *
+ * The output is the input and these point arrays; those made of J, the gradient of a vector, with
+ * J = S + O, S symmetric and O antisymmetric:
+ *
+ *     Gradients            3 values per component: d/dx, d/dy, d/dz of the first, then the next
+ *     GradientsCorrected   1 where the corrected form was taken, 0 where the standard one
+ *     Divergence           tr J
+ *     Vorticity            curl
+ *     Q-criterion          (tr(J)^2 - tr(J J)) / 2, as in vtkGradientFilter
+ *     Lambda2              the middle eigenvalue of S S + O O; below 0 in the core of a vortex
+ *     StrainRate           S, nine values
+ *
+ * They are float where the input array is, else double. Sums are over fluid particles; solid
+ * particles have zeros. Arrays of the input with these names are replaced.
+ *
+ * Composite data give composite data: each block that is a point set is worked on by itself.
+ *
+ * @warning
+ * Every piece or block is worked on by itself, so that gradients at a cut are those at an end of the
+ * fluid.
+ *
+ * @sa
+ * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe vtkGradientFilter
+ */
+
+#ifndef vtkSPHDerivatives_h
+#define vtkSPHDerivatives_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHAlgorithm.h"
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHDerivatives : public vtkSPHAlgorithm
+{
+public:
+  static vtkSPHDerivatives* New();
+  vtkTypeMacro(vtkSPHDerivatives, vtkSPHAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The particles with the new arrays, of the class of the input.
+   */
+  vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
+
+  ///@{
+  /**
+   * Take the corrected form of the gradient. On by default.
+   */
+  vtkSetMacro(CorrectGradients, vtkTypeBool);
+  vtkGetMacro(CorrectGradients, vtkTypeBool);
+  vtkBooleanMacro(CorrectGradients, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Add the gradient of the array, unit of the array / L. On by default.
+   */
+  vtkSetMacro(ComputeGradient, vtkTypeBool);
+  vtkGetMacro(ComputeGradient, vtkTypeBool);
+  vtkBooleanMacro(ComputeGradient, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * The name of the gradient's array, "Gradients" by default: for those who need the gradients of
+   * several arrays. That of the array that marks the corrected ones is this and "Corrected".
+   */
+  vtkSetStdStringFromCharMacro(ResultArrayName);
+  vtkGetCharFromStdStringMacro(ResultArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * Add what is made of the gradient of a vector; for other arrays these do nothing. All are on by
+   * default, but the strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
+   */
+  vtkSetMacro(ComputeDivergence, vtkTypeBool);
+  vtkGetMacro(ComputeDivergence, vtkTypeBool);
+  vtkBooleanMacro(ComputeDivergence, vtkTypeBool);
+  vtkSetMacro(ComputeVorticity, vtkTypeBool);
+  vtkGetMacro(ComputeVorticity, vtkTypeBool);
+  vtkBooleanMacro(ComputeVorticity, vtkTypeBool);
+  vtkSetMacro(ComputeQCriterion, vtkTypeBool);
+  vtkGetMacro(ComputeQCriterion, vtkTypeBool);
+  vtkBooleanMacro(ComputeQCriterion, vtkTypeBool);
+  vtkSetMacro(ComputeLambda2, vtkTypeBool);
+  vtkGetMacro(ComputeLambda2, vtkTypeBool);
+  vtkBooleanMacro(ComputeLambda2, vtkTypeBool);
+  vtkSetMacro(ComputeStrainRate, vtkTypeBool);
+  vtkGetMacro(ComputeStrainRate, vtkTypeBool);
+  vtkBooleanMacro(ComputeStrainRate, vtkTypeBool);
+  ///@}
+
+protected:
+  vtkSPHDerivatives();
+  ~vtkSPHDerivatives() override;
+
+  const char* GetOutputClassName(const char* inputClassName) override;
+  void Process(vtkDataObject* input, vtkDataObject* output) override;
+
+  vtkTypeBool CorrectGradients = 1;
+  vtkTypeBool ComputeGradient = 1;
+  std::string ResultArrayName = "Gradients";
+  vtkTypeBool ComputeDivergence = 1;
+  vtkTypeBool ComputeVorticity = 1;
+  vtkTypeBool ComputeQCriterion = 1;
+  vtkTypeBool ComputeLambda2 = 1;
+  vtkTypeBool ComputeStrainRate = 0;
+
+private:
+  vtkSPHDerivatives(const vtkSPHDerivatives&) = delete;
+  void operator=(const vtkSPHDerivatives&) = delete;
+
+  struct vtkWanted;
+  vtkWanted ListWanted() const;
+  void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
+};
+
+#endif

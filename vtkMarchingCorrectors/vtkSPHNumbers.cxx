@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHNumbers.h"
+
+#include "vtkArrayDispatch.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
+#include "vtkSMPTools.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+namespace
+{
+const vtkIdType Grain = 8192; // particles that are worth a thread
+
+using Numbers = std::vector<std::int64_t>;
+using Partners = std::vector<vtkIdType>;
+
+std::string NameOf(vtkDataArray* array)
+{
+  return array->GetName() ? array->GetName() : "";
+}
+
+/** False, and `bad`, the first particle whose number is not a whole one. */
+bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
+{
+  numbers.resize(static_cast<size_t>(array->GetNumberOfTuples()));
+  const bool isReal = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+  std::atomic<vtkIdType> first(std::numeric_limits<vtkIdType>::max());
+  const auto read = [&](auto* typed)
+  {
+    vtkSMPTools::For(0, typed->GetNumberOfValues(), Grain,
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        vtkIdType i = begin;
+        for (const auto value : vtk::DataArrayValueRange(typed, begin, end))
+        {
+          // Beyond 2^53 the floating point numbers are not all whole numbers that once were there.
+          const double real = static_cast<double>(value);
+          if (isReal && !(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
+          {
+            vtkIdType known = first;
+            while (i < known && !first.compare_exchange_weak(known, i))
+            {
+            }
+          }
+          else
+          {
+            numbers[static_cast<size_t>(i)] = static_cast<std::int64_t>(value);
+          }
+          ++i;
+        }
+      });
+  };
+  if (!vtkArrayDispatch::Dispatch::Execute(array, read))
+  {
+    read(array);
+  }
+  bad = first;
+  return bad == std::numeric_limits<vtkIdType>::max();
+}
+
+/** Whether both steps have the same numbers in one ascending order. */
+bool IsSameOrder(const Numbers& a, const Numbers& b)
+{
+  return a == b &&
+    std::adjacent_find(a.begin(), a.end(), std::greater_equal<std::int64_t>()) == a.end();
+}
+
+std::string TellTwins(
+  vtkDataArray* array, const std::string& set, vtkIdType one, vtkIdType other, std::int64_t number)
+{
+  return "Particles " + std::to_string(one) + " and " + std::to_string(other) + " in " + set +
+    " have the same number, " + std::to_string(number) + ", so that they cannot be told apart: '" +
+    NameOf(array) + "' does not number the particles.";
+}
+
+using Entry = std::pair<std::int64_t, vtkIdType>;
+
+std::vector<Entry> Sorted(const Numbers& numbers)
+{
+  std::vector<Entry> sorted(numbers.size());
+  for (size_t i = 0; i < numbers.size(); ++i)
+  {
+    sorted[i] = { numbers[i], static_cast<vtkIdType>(i) };
+  }
+  vtkSMPTools::Sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+Partners Search(const Numbers& numbers, const std::vector<Entry>& sorted)
+{
+  Partners partners(numbers.size());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(numbers.size()), Grain,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        const std::int64_t number = numbers[static_cast<size_t>(i)];
+        const auto found = std::lower_bound(sorted.begin(), sorted.end(), Entry(number, 0));
+        partners[static_cast<size_t>(i)] =
+          found != sorted.end() && found->first == number ? found->second : -1;
+      }
+    });
+  return partners;
+}
+
+/** The other way round; false, and the two, where two particles have the same partner. */
+bool Invert(const Partners& partners, Partners& inverse, Entry& twins)
+{
+  for (size_t i = 0; i < partners.size(); ++i)
+  {
+    if (partners[i] < 0)
+    {
+      continue;
+    }
+    vtkIdType& mine = inverse[static_cast<size_t>(partners[i])];
+    if (mine >= 0)
+    {
+      twins = { mine, static_cast<vtkIdType>(i) };
+      return false;
+    }
+    mine = static_cast<vtkIdType>(i);
+  }
+  return true;
+}
+}
+
+//------------------------------------------------------------------------------
+// The second set's numbers, sorted, are searched for each of the first's.
+std::string vtkSPHMatchNumbers(const std::array<vtkDataArray*, 2>& arrays,
+  const std::array<std::string, 2>& sets, const std::array<std::vector<vtkIdType>*, 2>& partners)
+{
+  Numbers numbers[2];
+  for (size_t k = 0; k < 2; ++k)
+  {
+    vtkIdType bad = 0;
+    if (!ReadNumbers(arrays[k], numbers[k], bad))
+    {
+      std::ostringstream sentence;
+      sentence << "The number '" << NameOf(arrays[k]) << "' of particle " << bad << " in "
+               << sets[k] << " is " << arrays[k]->GetComponent(bad, 0)
+               << "; particles have whole numbers.";
+      return sentence.str();
+    }
+  }
+  if (IsSameOrder(numbers[0], numbers[1]))
+  {
+    partners[0]->resize(numbers[0].size());
+    std::iota(partners[0]->begin(), partners[0]->end(), 0);
+    *partners[1] = *partners[0];
+    return "";
+  }
+  const std::vector<Entry> sorted = Sorted(numbers[1]);
+  const auto same = std::adjacent_find(sorted.begin(), sorted.end(),
+    [](const Entry& a, const Entry& b) { return a.first == b.first; });
+  if (same != sorted.end())
+  {
+    return TellTwins(arrays[1], sets[1], same->second, (same + 1)->second, same->first);
+  }
+  *partners[0] = Search(numbers[0], sorted);
+  partners[1]->assign(numbers[1].size(), -1);
+  Entry twins;
+  if (!Invert(*partners[0], *partners[1], twins))
+  {
+    return TellTwins(
+      arrays[0], sets[0], twins.first, twins.second, numbers[0][static_cast<size_t>(twins.second)]);
+  }
+  return "";
+}

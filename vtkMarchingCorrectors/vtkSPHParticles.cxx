@@ -1,0 +1,491 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHParticles.h"
+
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkMarchingCorrectorsValues.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <sstream>
+
+namespace
+{
+bool IsReal(vtkAbstractArray* array)
+{
+  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+}
+
+std::uint64_t BitsOf(double value)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return bits;
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHParticles::SignObject(std::vector<std::uint64_t>& signature, vtkObject* object)
+{
+  signature.push_back(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(object)));
+  signature.push_back(object ? object->GetMTime() : 0);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::Quote(const std::string& name)
+{
+  return "'" + name + "'";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::RealName(const std::string& name)
+{
+  return name == "(automatic)" || name == "(none)" ? std::string() : name;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::NameOf(vtkAbstractArray* array)
+{
+  return array->GetName() ? array->GetName() : "";
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::Contains(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+//------------------------------------------------------------------------------
+vtkSPHParticles::vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+  : Description(choice)
+  , Points(points)
+{
+  this->Core.count = this->Points->GetNumberOfPoints();
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::CollectParticles()
+{
+  this->Core.positions = this->View(this->Points->GetPoints()->GetData());
+  this->Core.positions.name = nullptr; // VTK's "Points" says no more than "position"
+  if (!this->CollectSmoothingLength() || !this->CollectVolume() || !this->CollectSolids())
+  {
+    return false;
+  }
+  this->Sign();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::CollectSmoothingLength()
+{
+  this->Core.smoothing_length_is_support_radius =
+    this->Description.SmoothingLengthIsSupportRadius ? 1 : 0;
+  this->Core.estimate_smoothing_length = this->Description.EstimateSmoothingLength ? 1 : 0;
+  if (this->Core.estimate_smoothing_length)
+  {
+    return true;
+  }
+  int given = 0;
+  if (!this->CollectQuantity("smoothing length", this->Description.SmoothingLengthArrayName,
+        this->Description.SmoothingLength, MCOR_SMOOTHING_LENGTH, this->SmoothingLength,
+        this->Core.smoothing_length, given))
+  {
+    return false;
+  }
+  if (!given)
+  {
+    this->Error = "The particles have no smoothing length: no point array has one of its usual "
+                  "names (SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask "
+                  "for an estimate. " +
+      (this->FindLayout() == "DualSPHysics"
+          ? std::string("DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ")
+          : std::string()) +
+      this->ListPointArrays();
+  }
+  return given != 0;
+}
+
+//------------------------------------------------------------------------------
+// An array or constant that was set goes before detection: with a mass set, a volume array that
+// happens to be there is not used.
+bool vtkSPHParticles::CollectVolume()
+{
+  const vtkSPHParticlesChoice& f = this->Description;
+  const bool massOrDensitySet = !RealName(f.MassArrayName).empty() ||
+    !RealName(f.DensityArrayName).empty() || f.Mass != 0.0 || f.Density != 0.0;
+  if (!this->CollectQuantity("volume", f.VolumeArrayName, 0.0,
+        massOrDensitySet ? MCOR_QUANTITY_COUNT : MCOR_VOLUME, this->Volume, this->Core.volume,
+        this->Core.has_volume))
+  {
+    return false;
+  }
+  if (this->Core.has_volume)
+  {
+    return true;
+  }
+  if (!this->CollectQuantity("mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass,
+        this->Core.mass, this->Core.has_mass) ||
+    !this->CollectQuantity("density", f.DensityArrayName, f.Density, MCOR_DENSITY, this->Density,
+      this->Core.density, this->Core.has_density))
+  {
+    return false;
+  }
+  if (!this->Core.has_mass)
+  {
+    // A density alone says nothing of volumes, and is not to be reported as used.
+    this->Density = nullptr;
+    this->Core.density = {};
+    this->Core.has_density = 0;
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// A constant goes before a name, a name before the usual names. `given` stays 0 if there is
+// nothing.
+bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string& setName,
+  double constant, mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core,
+  int& given)
+{
+  const std::string name = RealName(setName);
+  if (constant != 0.0)
+  {
+    core.constant = constant;
+    given = 1;
+    return true;
+  }
+  if (!name.empty())
+  {
+    array = this->Find(role, name);
+    if (!array)
+    {
+      return false;
+    }
+    if (!this->HasOneComponent(role, array))
+    {
+      return false;
+    }
+  }
+  else if (this->Description.DetectArrays)
+  {
+    array = this->Detect(quantity);
+  }
+  if (array)
+  {
+    core = this->View(array);
+    given = 1;
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::CollectSolids()
+{
+  this->FluidCount = static_cast<vtkIdType>(this->Core.count);
+  this->Core.ignore_solids = this->Description.IgnoreSolids ? 1 : 0;
+  const std::string name = RealName(this->Description.FluidArrayName);
+  if (name.empty())
+  {
+    return true;
+  }
+  this->Fluid = this->Find("fluid", name);
+  if (!this->Fluid || !this->HasOneComponent("fluid", this->Fluid))
+  {
+    return false;
+  }
+  this->Solid.resize(static_cast<size_t>(this->Core.count));
+  this->FluidCount =
+    vtkMarchingCorrectorsMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
+  this->Core.solid = this->Solid.data();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// An array of one value, or of many, tells nothing of that sort.
+std::string vtkSPHParticles::DescribeUnusedType()
+{
+  vtkDataArray* type = this->Fluid ? nullptr : this->Detect(MCOR_PARTICLE_TYPE);
+  const std::map<double, vtkIdType> counts =
+    type ? vtkMarchingCorrectorsCountValues(type, 8) : std::map<double, vtkIdType>();
+  if (counts.size() < 2)
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text << "Point array " << Quote(NameOf(type))
+       << " is not used, all particles count as fluid: it has";
+  const char* between = " ";
+  for (const auto& count : counts)
+  {
+    text << between << count.second << " x " << count.first;
+    between = ", ";
+  }
+  text << ". If it tells fluid from walls, name it and the fluid's value.";
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+// Ghost marks would hide triangles.
+bool vtkSPHParticles::IsCarried(
+  vtkAbstractArray* array, const std::vector<std::string>& taken) const
+{
+  const std::string name = NameOf(array);
+  return !name.empty() && !Contains(taken, name) &&
+    name != vtkDataSetAttributes::GhostArrayName() &&
+    !Contains(this->Description.ExcludedArrays, name) &&
+    array->GetNumberOfTuples() == this->Core.count;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
+{
+  vtkPointData* pointData = this->Points->GetPointData();
+  const int count = pointData->GetNumberOfArrays();
+  for (int i = 0; i < count; ++i)
+  {
+    vtkAbstractArray* array = pointData->GetAbstractArray(i);
+    if (!this->IsCarried(array, taken))
+    {
+      continue;
+    }
+    const vtkSPHAttribute attribute = { array, NameOf(array), array->GetNumberOfComponents() };
+    vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
+    if (numbers && IsReal(numbers))
+    {
+      this->Interpolated.push_back(attribute);
+      this->Attributes.push_back(this->View(numbers));
+    }
+    else
+    {
+      this->FromNearest.push_back(attribute);
+    }
+  }
+  const vtkSmartPointer<vtkDataArray> velocity = this->JoinVelocity();
+  if (velocity && this->IsCarried(velocity, taken))
+  {
+    this->Interpolated.push_back({ velocity, NameOf(velocity), 3 });
+    this->Attributes.push_back(this->View(velocity));
+  }
+  this->Core.attributes = this->Attributes.data();
+  this->Core.attribute_count = static_cast<int>(this->Attributes.size());
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
+{
+  if (RealName(request.Name).empty() && !request.Array)
+  {
+    this->Error = "No array was chosen: choose a point array. " + this->ListPointArrays();
+    return false;
+  }
+  if (!request.OnPoints)
+  {
+    this->Error = "The array " + Quote(request.Name) +
+      " is not a point array; SPH particles are points. " + this->ListPointArrays();
+    return false;
+  }
+  vtkDataArray* array = this->Check("derivatives", request.Name, request.Array);
+  if (!array)
+  {
+    return false;
+  }
+  this->Interpolated.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
+  this->Attributes.push_back(this->View(array));
+  this->Core.attributes = this->Attributes.data();
+  this->Core.attribute_count = 1;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// The data set's own time is part of it: users change arrays in place and tell the data set.
+void vtkSPHParticles::Sign()
+{
+  std::vector<std::uint64_t>& particles = this->ParticlesSignature;
+  SignObject(particles, this->Points);
+  SignObject(particles, this->Points->GetPoints()->GetData());
+  SignObject(particles, this->SmoothingLength);
+  SignObject(particles, this->Volume);
+  SignObject(particles, this->Mass);
+  SignObject(particles, this->Density);
+  SignObject(particles, this->Fluid);
+  particles.push_back(BitsOf(this->Description.FluidValue));
+  particles.push_back(BitsOf(this->Core.smoothing_length.constant));
+  particles.push_back(BitsOf(this->Core.mass.constant));
+  particles.push_back(BitsOf(this->Core.density.constant));
+  for (const int flag : { this->Core.smoothing_length_is_support_radius,
+         this->Core.estimate_smoothing_length, this->Core.ignore_solids, this->Core.has_volume,
+         this->Core.has_mass, this->Core.has_density, this->Description.Kernel })
+  {
+    particles.push_back(static_cast<std::uint64_t>(flag));
+  }
+}
+
+//------------------------------------------------------------------------------
+// float and double arrays are used where they lie, all others as a copy in double.
+mcor_array vtkSPHParticles::View(vtkDataArray* array)
+{
+  mcor_array view = {};
+  this->Names.push_back(NameOf(array));
+  view.name = array->GetName() ? this->Names.back().c_str() : nullptr;
+  view.components = array->GetNumberOfComponents();
+  if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array))
+  {
+    view.type = MCOR_FLOAT32;
+    view.data = floats->GetPointer(0);
+    this->Viewed.push_back(array);
+    return view;
+  }
+  vtkSmartPointer<vtkDataArray> doubles = array;
+  if (!vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    doubles = vtkMarchingCorrectorsCopyAsDouble(array);
+  }
+  view.type = MCOR_FLOAT64;
+  view.data = doubles->GetVoidPointer(0);
+  this->Viewed.push_back(doubles);
+  return view;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkSPHParticles::Find(const std::string& role, const std::string& name)
+{
+  return this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkSPHParticles::Check(
+  const std::string& role, const std::string& name, vtkAbstractArray* array)
+{
+  if (!array)
+  {
+    this->Error = "There is no point array " + Quote(name) + " for the " + role + ". " +
+      this->ListPointArrays();
+    return nullptr;
+  }
+  vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
+  if (!numbers)
+  {
+    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " does not hold numbers.";
+    return nullptr;
+  }
+  if (numbers->GetNumberOfTuples() != this->Core.count || numbers->GetNumberOfComponents() < 1)
+  {
+    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " has " +
+      std::to_string(numbers->GetNumberOfTuples()) + " values for " +
+      std::to_string(this->Core.count) + " points.";
+    return nullptr;
+  }
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::HasOneComponent(const std::string& role, vtkDataArray* array)
+{
+  const int components = array->GetNumberOfComponents();
+  if (components != 1)
+  {
+    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " has " +
+      std::to_string(components) + " components; it must have one.";
+  }
+  return components == 1;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkSPHParticles::Detect(mcor_quantity quantity)
+{
+  vtkPointData* pointData = this->Points->GetPointData();
+  vtkDataArray* found = nullptr;
+  int best = -1;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = pointData->GetArray(i);
+    const int rank = array ? mcor_name_rank(quantity, array->GetName()) : -1;
+    if (rank >= 0 && (!found || rank < best) && array->GetNumberOfComponents() == 1 &&
+      array->GetNumberOfTuples() == this->Core.count)
+    {
+      found = array;
+      best = rank;
+    }
+  }
+  return found;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::FindLayout() const
+{
+  std::string names;
+  vtkPointData* pointData = this->Points->GetPointData();
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    names += NameOf(pointData->GetAbstractArray(i)) + "\n";
+  }
+  return mcor_find_layout(names.c_str());
+}
+
+//------------------------------------------------------------------------------
+// As float only where all are.
+vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
+{
+  vtkPointData* pointData = this->Points->GetPointData();
+  vtkDataArray* const parts[] = { pointData->GetArray("vx"), pointData->GetArray("vy"),
+    pointData->GetArray("vz") };
+  bool isFloat = true;
+  for (vtkDataArray* part : parts)
+  {
+    if (!part || !IsReal(part) || part->GetNumberOfComponents() != 1 ||
+      part->GetNumberOfTuples() != this->Core.count)
+    {
+      return nullptr;
+    }
+    isFloat = isFloat && part->GetDataType() == VTK_FLOAT;
+  }
+  if (pointData->HasArray("Velocity"))
+  {
+    return nullptr;
+  }
+  vtkSmartPointer<vtkDataArray> joined;
+  joined.TakeReference(vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  joined->SetName("Velocity");
+  joined->SetNumberOfComponents(3);
+  joined->SetNumberOfTuples(this->Core.count);
+  for (int component = 0; component < 3; ++component)
+  {
+    joined->CopyComponent(component, parts[component], 0);
+  }
+  return joined;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::ListPointArrays() const
+{
+  vtkPointData* pointData = this->Points->GetPointData();
+  std::string list;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    list += (i ? ", " : "") + NameOf(pointData->GetAbstractArray(i));
+  }
+  return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkSPHParticles::ListLeftOut(
+  const std::int64_t* notFinite, const std::string& place) const
+{
+  std::vector<std::string> sentences;
+  for (size_t i = 0; notFinite && i < this->Interpolated.size(); ++i)
+  {
+    if (notFinite[i] >= 0)
+    {
+      sentences.push_back("The point array " + Quote(this->Interpolated[i].Name) +
+        " is NaN or infinite at particle " + std::to_string(notFinite[i]) +
+        " and was left out of " + place + ". Correct its values, or exclude it.");
+    }
+  }
+  return sentences;
+}

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: finds the point arrays that describe the particles, and those to be
+ * interpolated, and views them as the core's input. Holds all that it points to.
+ */
+#ifndef vtkSPHParticles_h
+#define vtkSPHParticles_h
+
+#include "mcor.h"
+#include "vtkAbstractArray.h"
+#include "vtkDataArray.h"
+#include "vtkPointSet.h"
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+/**
+ * A point array asked for by SetInputArrayToProcess: the array if there is one, and the name asked
+ * for, empty if none was.
+ */
+struct vtkSPHRequest
+{
+  vtkSmartPointer<vtkAbstractArray> Array;
+  std::string Name;
+  bool OnPoints = true;
+};
+
+/**
+ * What the user chose about the particles, copied: an observer may change the filter while it runs.
+ */
+struct vtkSPHParticlesChoice
+{
+  std::string SmoothingLengthArrayName;
+  double SmoothingLength = 0.0;
+  bool EstimateSmoothingLength = false;
+  bool SmoothingLengthIsSupportRadius = false;
+  std::string VolumeArrayName;
+  std::string MassArrayName;
+  std::string DensityArrayName;
+  double Mass = 0.0;
+  double Density = 0.0;
+  bool DetectArrays = true;
+  std::string FluidArrayName;
+  double FluidValue = 0.0;
+  bool IgnoreSolids = false;
+  int Kernel = MCOR_CUBIC_SPLINE;
+  std::vector<std::string> ExcludedArrays;
+};
+
+/**
+ * A point array to be interpolated, as it was when the run began.
+ */
+struct vtkSPHAttribute
+{
+  vtkSmartPointer<vtkAbstractArray> Array;
+  std::string Name;
+  int Components;
+};
+
+class vtkSPHParticles
+{
+public:
+  vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
+
+  /**
+   * Fills what describes the particles. False if something is missing or not usable; Error then says
+   * what.
+   */
+  bool CollectParticles();
+
+  /**
+   * Lists the arrays to interpolate: all but those excluded and those whose names are taken by what
+   * is computed.
+   */
+  void CollectAttributes(const std::vector<std::string>& taken);
+
+  /**
+   * Makes the array asked for the only one of the core's attributes, whatever its type. False if it
+   * is not usable; Error then says why.
+   */
+  bool CollectArray(const vtkSPHRequest& request);
+
+  /**
+   * One sentence for each array that the core left out: notFinite[i] is the particle at which number
+   * i of the interpolated ones is not finite, or negative. `place`: what it was left out of.
+   */
+  std::vector<std::string> ListLeftOut(
+    const std::int64_t* notFinite, const std::string& place) const;
+
+  /**
+   * The solver whose names the point arrays have, see mcor_find_layout.
+   */
+  std::string FindLayout() const;
+
+  /**
+   * The point arrays vx, vy and vz as one vector, "Velocity"; nothing where they are not there, or
+   * such an array is.
+   */
+  vtkSmartPointer<vtkDataArray> JoinVelocity() const;
+
+  /**
+   * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else empty.
+   */
+  std::string DescribeUnusedType();
+
+  const vtkSPHParticlesChoice Description;
+  mcor_input Core = {};
+  std::string Error;
+
+  vtkSmartPointer<vtkDataArray> SmoothingLength;
+  vtkSmartPointer<vtkDataArray> Volume;
+  vtkSmartPointer<vtkDataArray> Mass;
+  vtkSmartPointer<vtkDataArray> Density;
+  vtkSmartPointer<vtkDataArray> Fluid;
+  vtkIdType FluidCount = 0;
+
+  std::vector<vtkSPHAttribute> Interpolated;     // in the order of Core.attributes
+  std::vector<vtkSPHAttribute> FromNearest;      // identifiers, integers, strings
+  std::vector<std::uint64_t> ParticlesSignature; // equal signatures: same particles
+  std::vector<std::uint64_t> ScalarSignature;    // the same for the core's scalar, empty if none
+
+protected:
+  static std::string Quote(const std::string& name);
+  /** What lists of arrays show in place of an array, as in ParaView's panel, is no name. */
+  static std::string RealName(const std::string& name);
+  static std::string NameOf(vtkAbstractArray* array);
+  static bool Contains(const std::vector<std::string>& names, const std::string& name);
+  /** VTK's modification times are unique in a process: object and time identify a state. */
+  static void SignObject(std::vector<std::uint64_t>& signature, vtkObject* object);
+
+  mcor_array View(vtkDataArray* array);
+  vtkDataArray* Check(const std::string& role, const std::string& name, vtkAbstractArray* array);
+  std::string ListPointArrays() const;
+
+  vtkSmartPointer<vtkPointSet> Points;
+
+private:
+  bool CollectSmoothingLength();
+  bool CollectVolume();
+  bool CollectSolids();
+  bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
+  void Sign();
+
+  vtkDataArray* Find(const std::string& role, const std::string& name);
+  vtkDataArray* Detect(mcor_quantity quantity);
+  bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
+    mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core, int& given);
+  bool HasOneComponent(const std::string& role, vtkDataArray* array);
+
+  std::vector<vtkSmartPointer<vtkDataArray>> Viewed; // held while the core reads them
+  std::deque<std::string> Names;                     // of these, for the core's messages
+  std::vector<std::uint8_t> Solid;
+  std::vector<mcor_array> Attributes;
+};
+
+#endif

@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHProbe.h"
+
+#include "mcor.h"
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSMPTools.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHBlocks.h"
+#include "vtkSPHParticles.h"
+#include "vtkSPHSamples.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace
+{
+/** Points that the core gets at a time. */
+constexpr vtkIdType ChunkSize = 1 << 20;
+
+/** The points of a data set, some at a time, as the core reads them. */
+class PointReader
+{
+public:
+  explicit PointReader(vtkDataSet* data)
+    : Data(data)
+  {
+    auto* set = vtkPointSet::SafeDownCast(data);
+    this->Stored = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+  }
+
+  /** Valid until the next call. */
+  mcor_array View(vtkIdType first, vtkIdType count)
+  {
+    mcor_array view = {};
+    view.components = 3;
+    if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(this->Stored))
+    {
+      view.type = MCOR_FLOAT32;
+      view.data = floats->GetPointer(3 * first);
+      return view;
+    }
+    view.type = MCOR_FLOAT64;
+    if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(this->Stored))
+    {
+      view.data = doubles->GetPointer(3 * first);
+      return view;
+    }
+    if (count > this->Room)
+    {
+      this->Copied.reset(new double[static_cast<size_t>(3 * count)]);
+      this->Room = count;
+    }
+    double* to = this->Copied.get();
+    vtkSMPTools::For(0, count,
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType i = begin; i < end; ++i)
+        {
+          this->Data->GetPoint(first + i, to + 3 * i);
+        }
+      });
+    view.data = to;
+    return view;
+  }
+
+private:
+  vtkDataSet* Data;
+  vtkDataArray* Stored;
+  std::unique_ptr<double[]> Copied; // not a vector, which would write zeros first
+  vtkIdType Room = 0;
+};
+
+/** Progress of one chunk as part of that of the run. */
+struct ChunkProgress
+{
+  int (*Report)(void* user, double fraction, const char* phase);
+  void* User;
+  double Begin;
+  double Share;
+
+  static int Run(void* user, double fraction, const char* phase)
+  {
+    const auto* chunk = static_cast<ChunkProgress*>(user);
+    return chunk->Report(chunk->User, chunk->Begin + fraction * chunk->Share, phase);
+  }
+};
+
+/** A version that no kept run has: without it, each chunk would make the search grid anew. */
+constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
+
+mcor_status ProbeChunks(mcor_context* context, const mcor_input& particles, mcor_options options,
+  vtkDataSet* points, vtkSPHSamples& results, vtkFieldData* statistics)
+{
+  const vtkIdType total = points->GetNumberOfPoints();
+  mcor_input input = particles;
+  if (input.particles_version == 0)
+  {
+    input.particles_version = input.scalar_version = VersionOfOneRun;
+  }
+  PointReader reader(points);
+  ChunkProgress progress = { options.progress, options.progress_user, 0.0, 0.0 };
+  options.progress = ChunkProgress::Run;
+  options.progress_user = &progress;
+  for (vtkIdType first = 0; first < total; first += ChunkSize)
+  {
+    const vtkIdType count = std::min(ChunkSize, total - first);
+    progress.Begin = static_cast<double>(first) / static_cast<double>(total);
+    progress.Share = static_cast<double>(count) / static_cast<double>(total);
+    const mcor_array view = reader.View(first, count);
+    mcor_samples samples = {};
+    const mcor_status status = mcor_probe(context, &input, &options, &view, count, &samples);
+    if (status != MCOR_OK)
+    {
+      return status;
+    }
+    results.Put(first, samples);
+    vtkSPHAddRunStatistics(statistics, samples.statistics);
+    mcor_free_samples(&samples);
+  }
+  return MCOR_OK;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkStandardNewMacro(vtkSPHProbe);
+
+//------------------------------------------------------------------------------
+vtkSPHProbe::vtkSPHProbe()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+vtkSPHProbe::~vtkSPHProbe() = default;
+
+//------------------------------------------------------------------------------
+vtkDataObject* vtkSPHProbe::GetSource()
+{
+  return this->GetNumberOfInputConnections(1) > 0 ? this->GetInputDataObject(1, 0) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 1)
+  {
+    return this->Superclass::FillInputPortInformation(port, info);
+  }
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
+{
+  return inputClassName;
+}
+
+//------------------------------------------------------------------------------
+// Each piece of the points needs all particles.
+int vtkSPHProbe::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* particles = inputVector[1]->GetInformationObject(0);
+  if (particles)
+  {
+    particles->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+    particles->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    particles->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    if (particles->Has(Pipeline::WHOLE_EXTENT()))
+    {
+      int extent[6];
+      particles->Get(Pipeline::WHOLE_EXTENT(), extent);
+      particles->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHProbe::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  auto* blocks = vtkDataObjectTree::GetData(inputVector[1]);
+  this->Particles = blocks ? vtkSPHJoinBlocks(blocks)
+                           : vtkSmartPointer<vtkPointSet>(vtkPointSet::GetData(inputVector[1]));
+  const int done = this->Superclass::RequestData(request, inputVector, outputVector);
+  this->Particles = nullptr;
+  return done;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
+{
+  auto* points = vtkDataSet::SafeDownCast(data);
+  this->SetUsedNames(nullptr);
+  if (data && !points)
+  {
+    this->Warn(std::string("A ") + data->GetClassName() + " has no points to probe at.");
+    return;
+  }
+  if (!points || !this->Particles || this->IsAborted())
+  {
+    return;
+  }
+  vtkSPHParticlesChoice choice;
+  this->FillChoice(choice);
+  vtkSPHParticles input(choice, this->Particles);
+  if (this->Particles->GetNumberOfPoints() > 0)
+  {
+    const bool usable = input.CollectParticles();
+    this->SetUsedNames(&input);
+    if (!usable)
+    {
+      this->Fail(input.Error);
+      return;
+    }
+    if (input.FluidCount == 0)
+    {
+      this->WarnOfNoFluid(choice, "no point is valid");
+    }
+    if (this->InterpolateAttributes)
+    {
+      input.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
+    }
+  }
+  this->Probe(input, points, vtkDataSet::SafeDownCast(output));
+}
+
+//------------------------------------------------------------------------------
+// What an observer of the progress may change is read before the run.
+void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output)
+{
+  mcor_options options;
+  this->FillOptions(options);
+  options.field = this->ShepardNormalization ? MCOR_SHEPARD : MCOR_SUM;
+  options.node_threshold = this->WeightThreshold;
+  options.gradients = this->ComputeGradients;
+  vtkSPHSamples samples(input, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints());
+  vtkFieldData* statistics = this->RunStatistics;
+  if (input.FluidCount > 0 && points->GetNumberOfPoints() > 0 &&
+    !this->CallCore(input, options,
+      [&](mcor_context* context)
+      { return ProbeChunks(context, input.Core, options, points, samples, statistics); }))
+  {
+    return;
+  }
+  for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
+  {
+    this->Warn(sentence);
+  }
+  output->ShallowCopy(points);
+  samples.AddTo(output->GetPointData());
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHProbe::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Shepard Normalization: " << this->ShepardNormalization << "\n";
+  os << indent << "Weight Threshold: " << this->WeightThreshold << "\n";
+  os << indent << "Interpolate Attributes: " << this->InterpolateAttributes << "\n";
+  os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
+  os << indent << "Valid Point Mask Array Name: " << this->ValidPointMaskArrayName << "\n";
+}

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHProbe
+ * @brief   the field of SPH particles at the points of any data set
+ *
+ * vtkSPHProbe evaluates the SPH field of particles at given points: those of a plane, a line, an
+ * image, a mesh. Its ports are those of vtkProbeFilter: the points come in at port 0, the particles
+ * at port 1, the "source". The particles are described as for vtkMarchingCorrectors, see
+ * vtkSPHAlgorithm; each has its own smoothing length.
+ *
+ *     Shepard (default)   sum_j V_j A_j W(x - x_j, s h_j) / sum_j V_j W(x - x_j, s h_j)
+ *     sum                 sum_j V_j A_j W(x - x_j, s h_j)       (ShepardNormalizationOff)
+ *
+ * The output is the data set of port 0, its own arrays included, with
+ *
+ *     one array for each float or double point array of the particles, of its name, its type
+ *     Weight                sum_j V_j W(x - x_j, s h_j): about 1 in the fluid, 0 far from it
+ *     vtkValidPointMask     1 where the weight is not below WeightThreshold, else 0
+ *     NAME_Gradient         of each of these arrays and of Weight, if ComputeGradients is on: 3
+ *                           values per component: d/dx, d/dy, d/dz of the first, then the next
+ *
+ * Where a point is not valid, the arrays, but Weight, are 0. Arrays that were there under these
+ * names are replaced. Arrays of other types, such as identifiers, are left out, as are those named
+ * by AddExcludedArray(); one that is NaN or infinite at a fluid particle is left out with a warning.
+ * Only fluid particles count.
+ *
+ * The value at a point does not depend on the other points, on their order or on that of the
+ * particles. Points are treated some at a time, so that little memory is needed beside that of the
+ * output; points out of all particles' reach cost next to nothing.
+ *
+ * Composite data at port 0 give composite data. Particles in several blocks are taken together, with
+ * the arrays that all blocks have.
+ *
+ * @sa
+ * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHDerivatives vtkSPHInterpolator vtkProbeFilter
+ */
+
+#ifndef vtkSPHProbe_h
+#define vtkSPHProbe_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHAlgorithm.h"
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHProbe : public vtkSPHAlgorithm
+{
+public:
+  static vtkSPHProbe* New();
+  vtkTypeMacro(vtkSPHProbe, vtkSPHAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The data set of port 0 with the new arrays, of its class.
+   */
+  vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
+
+  ///@{
+  /**
+   * The particles, port 1: a point set, or blocks of them.
+   */
+  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetSourceData(vtkDataObject* source) { this->SetInputDataObject(1, source); }
+  vtkDataObject* GetSource();
+  ///@}
+
+  ///@{
+  /**
+   * Divide the SPH sums by the sum of the weights (Shepard). On by default.
+   */
+  vtkSetMacro(ShepardNormalization, vtkTypeBool);
+  vtkGetMacro(ShepardNormalization, vtkTypeBool);
+  vtkBooleanMacro(ShepardNormalization, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Points with a lower weight are not valid. No unit, 0.1 by default.
+   */
+  vtkSetClampMacro(WeightThreshold, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(WeightThreshold, double);
+  ///@}
+
+  ///@{
+  /**
+   * Add the particles' arrays; off, Weight and the mask alone. On by default.
+   */
+  vtkSetMacro(InterpolateAttributes, vtkTypeBool);
+  vtkGetMacro(InterpolateAttributes, vtkTypeBool);
+  vtkBooleanMacro(InterpolateAttributes, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Add the gradients, unit of the array / L. Off by default.
+   */
+  vtkSetMacro(ComputeGradients, vtkTypeBool);
+  vtkGetMacro(ComputeGradients, vtkTypeBool);
+  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * The name of the mask of valid points, "vtkValidPointMask" by default.
+   */
+  vtkSetStdStringFromCharMacro(ValidPointMaskArrayName);
+  vtkGetCharFromStdStringMacro(ValidPointMaskArrayName);
+  ///@}
+
+protected:
+  vtkSPHProbe();
+  ~vtkSPHProbe() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  const char* GetOutputClassName(const char* inputClassName) override;
+  void Process(vtkDataObject* input, vtkDataObject* output) override;
+
+  vtkTypeBool ShepardNormalization = 1;
+  double WeightThreshold = 0.1;
+  vtkTypeBool InterpolateAttributes = 1;
+  vtkTypeBool ComputeGradients = 0;
+  std::string ValidPointMaskArrayName = "vtkValidPointMask";
+
+private:
+  vtkSPHProbe(const vtkSPHProbe&) = delete;
+  void operator=(const vtkSPHProbe&) = delete;
+
+  void Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output);
+
+  vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
+};
+
+#endif

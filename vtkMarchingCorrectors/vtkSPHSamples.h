@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: the arrays that vtkSPHProbe makes, filled some points at a time.
+ */
+#ifndef vtkSPHSamples_h
+#define vtkSPHSamples_h
+
+#include "mcor.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class vtkSPHParticles;
+
+class vtkSPHSamples
+{
+public:
+  /** Zeros at `count` points for the interpolated arrays of the particles and their weight. */
+  vtkSPHSamples(const vtkSPHParticles& particles, const mcor_options& options,
+    const std::string& maskName, vtkIdType count);
+
+  /** Takes over what the core found at the points from `first` on. */
+  void Put(vtkIdType first, const mcor_samples& samples);
+
+  /** Without those that the core left out. */
+  void AddTo(vtkFieldData* data) const;
+
+  std::vector<std::int64_t> NotFinite; // of the interpolated arrays, as in mcor_samples
+
+private:
+  /** An array of the output, and the one of its gradient, if there is one. */
+  struct Pair
+  {
+    vtkSmartPointer<vtkDataArray> Values, Gradient;
+  };
+
+  Pair Make(const std::string& name, int components, bool asFloat, bool gradient) const;
+
+  const vtkIdType Count;
+  std::vector<Pair> Arrays; // in the order of the core's attributes
+  Pair Weight;
+  vtkNew<vtkCharArray> Mask; // as in vtkProbeFilter
+};
+
+#endif

@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHTemporalInterpolator.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkSPHBlocks.h"
+#include "vtkSPHTemporalPair.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <sstream>
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+class vtkSPHTemporalInterpolator::vtkInternals
+{
+public:
+  vtkDataObject* Find(double time) const
+  {
+    const auto found = this->Kept.find(time);
+    return found == this->Kept.end() ? nullptr : found->second.Get();
+  }
+
+  void Keep(double time, vtkDataObject* data)
+  {
+    vtkSmartPointer<vtkDataObject>& kept = this->Kept[time];
+    kept.TakeReference(data->NewInstance());
+    kept->ShallowCopy(data);
+  }
+
+  /** The first step that is asked for and not kept; nullptr if there is none. */
+  const double* FirstLacking() const
+  {
+    const auto lacking = std::find_if(
+      this->Times.begin(), this->Times.end(), [this](double time) { return !this->Find(time); });
+    return lacking == this->Times.end() ? nullptr : &*lacking;
+  }
+
+  void ForgetOthers()
+  {
+    for (auto step = this->Kept.begin(); step != this->Kept.end();)
+    {
+      const bool used =
+        std::find(this->Times.begin(), this->Times.end(), step->first) != this->Times.end();
+      step = used ? std::next(step) : this->Kept.erase(step);
+    }
+  }
+
+  double Time = 0.0;                                     // asked for
+  std::vector<double> Times;                             // of its step, or of the two around it
+  std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
+  std::vector<vtkSPHTemporalPair> Pairs;                 // one for each block
+};
+
+namespace
+{
+/** Times that differ by less than this share of their step's length are the same: 3 * 0.1 is 0.3. */
+const double SameTime = 1e-9;
+
+std::vector<double> TimesOf(vtkInformation* info)
+{
+  const double* times = info->Get(Pipeline::TIME_STEPS());
+  return times ? std::vector<double>(times, times + info->Length(Pipeline::TIME_STEPS()))
+               : std::vector<double>();
+}
+
+/** The stored time, or the two around it. */
+std::vector<double> StepsAround(const std::vector<double>& times, double time)
+{
+  const auto after = std::lower_bound(times.begin(), times.end(), time);
+  if (after == times.begin() || after == times.end())
+  {
+    return { after == times.end() ? times.back() : times.front() };
+  }
+  const double begin = *(after - 1), end = *after, tolerance = SameTime * (end - begin);
+  if (end - time <= tolerance || time - begin <= tolerance)
+  {
+    return { end - time <= tolerance ? end : begin };
+  }
+  return { begin, end };
+}
+}
+
+//------------------------------------------------------------------------------
+vtkStandardNewMacro(vtkSPHTemporalInterpolator);
+
+//------------------------------------------------------------------------------
+vtkSPHTemporalInterpolator::vtkSPHTemporalInterpolator()
+  : Internals(new vtkInternals)
+{
+  this->SetNumberOfInputPorts(1);
+  this->SetNumberOfOutputPorts(1);
+}
+
+vtkSPHTemporalInterpolator::~vtkSPHTemporalInterpolator() = default;
+
+//------------------------------------------------------------------------------
+int vtkSPHTemporalInterpolator::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHTemporalInterpolator::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkPolyData* vtkSPHTemporalInterpolator::GetOutput()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHTemporalInterpolator::SetInputData(vtkDataObject* particles)
+{
+  this->SetInputDataInternal(0, particles);
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHTemporalInterpolator::Fail(const std::string& message)
+{
+  const std::string sentence = this->BlockName + message;
+  this->ErrorMessage += (this->ErrorMessage.empty() ? "" : "\n") + sentence;
+  vtkErrorMacro(<< sentence);
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation *input = inputVector[0]->GetInformationObject(0),
+                 *output = outputVector->GetInformationObject(0);
+  if (request->Has(Pipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->RequestDataObject(input, output);
+  }
+  if (request->Has(Pipeline::REQUEST_INFORMATION()))
+  {
+    this->Internals->Kept.clear(); // something changed upstream
+    return this->RequestInformation(input, output);
+  }
+  if (request->Has(Pipeline::REQUEST_UPDATE_EXTENT()))
+  {
+    return this->RequestUpdateExtent(input, output);
+  }
+  if (request->Has(Pipeline::REQUEST_DATA()))
+  {
+    return this->RequestData(input, output);
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+//------------------------------------------------------------------------------
+// A poly data, or blocks of them as the input has.
+int vtkSPHTemporalInterpolator::RequestDataObject(vtkInformation* input, vtkInformation* output)
+{
+  auto* blocks = vtkDataObjectTree::GetData(input);
+  vtkDataObject* old = vtkDataObject::GetData(output);
+  if (!old || !old->IsA(blocks ? blocks->GetClassName() : "vtkPolyData"))
+  {
+    auto made = vtkSmartPointer<vtkDataObject>::Take(
+      blocks ? static_cast<vtkDataObject*>(blocks->NewInstance()) : vtkPolyData::New());
+    output->Set(vtkDataObject::DATA_OBJECT(), made);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHTemporalInterpolator::RequestInformation(vtkInformation* input, vtkInformation* output)
+{
+  const std::vector<double> stored = TimesOf(input);
+  if (stored.empty())
+  {
+    return 1; // one set of particles, which is passed on
+  }
+  std::vector<double> offered;
+  for (size_t i = 0; i + 1 < stored.size(); ++i)
+  {
+    for (int k = 0; k < this->ResampleFactor; ++k)
+    {
+      offered.push_back(stored[i] + (stored[i + 1] - stored[i]) * k / this->ResampleFactor);
+    }
+  }
+  offered.push_back(stored.back());
+  const double range[2] = { stored.front(), stored.back() };
+  output->Set(Pipeline::TIME_STEPS(), offered.data(), static_cast<int>(offered.size()));
+  output->Set(Pipeline::TIME_RANGE(), range, 2);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+// Upstream is asked for the first step that is not kept, or, where all are, for nothing new.
+int vtkSPHTemporalInterpolator::RequestUpdateExtent(vtkInformation* input, vtkInformation* output)
+{
+  const std::vector<double> stored = TimesOf(input);
+  vtkInternals& steps = *this->Internals;
+  steps.Time = output->Has(Pipeline::UPDATE_TIME_STEP()) ? output->Get(Pipeline::UPDATE_TIME_STEP())
+    : stored.empty()                                     ? 0.0
+                                                         : stored.front();
+  if (stored.empty())
+  {
+    steps.Times.clear();
+    return 1;
+  }
+  steps.Times = StepsAround(stored, steps.Time);
+  if (const double* lacking = steps.FirstLacking())
+  {
+    input->Set(Pipeline::UPDATE_TIME_STEP(), *lacking);
+  }
+  else
+  {
+    input->Remove(Pipeline::UPDATE_TIME_STEP());
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+// Not by CONTINUE_EXECUTING: with that VTK's pipeline goes round for ever where the second step
+// cannot be read.
+bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
+{
+  vtkInternals& steps = *this->Internals;
+  if (const double* asked = steps.FirstLacking())
+  {
+    steps.Keep(*asked, vtkDataObject::GetData(input));
+  }
+  steps.ForgetOthers();
+  if (const double* lacking = steps.FirstLacking())
+  {
+    vtkAlgorithmOutput* from = this->GetInputConnection(0, 0);
+    vtkNew<vtkInformation> wanted;
+    wanted->CopyEntry(input, Pipeline::UPDATE_PIECE_NUMBER());
+    wanted->CopyEntry(input, Pipeline::UPDATE_NUMBER_OF_PIECES());
+    wanted->CopyEntry(input, Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
+    wanted->Set(Pipeline::UPDATE_TIME_STEP(), *lacking);
+    vtkNew<vtkInformationVector> ports;
+    ports->SetInformationObject(from->GetIndex(), wanted);
+    if (!from->GetProducer()->Update(from->GetIndex(), ports))
+    {
+      std::ostringstream sentence;
+      sentence << "The step at time " << *lacking << " could not be read.";
+      return this->Fail(sentence.str()) != 0;
+    }
+    steps.Keep(*lacking, from->GetProducer()->GetOutputDataObject(from->GetIndex()));
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformation* output)
+{
+  this->ErrorMessage.clear();
+  this->BlockName.clear();
+  this->UsedIdArrayName.clear();
+  this->UsedVelocityArrayName.clear();
+  vtkInternals& steps = *this->Internals;
+  if (!(this->TimeScale > 0.0 && std::isfinite(this->TimeScale)))
+  {
+    return this->Fail("The time scale must be greater than 0.");
+  }
+  if (!this->FetchSteps(input))
+  {
+    return 0;
+  }
+  const bool isTimed = !steps.Times.empty();
+  vtkDataObject* first = isTimed ? steps.Find(steps.Times.front()) : vtkDataObject::GetData(input);
+  vtkDataObject* second = isTimed ? steps.Find(steps.Times.back()) : first;
+  vtkDataObject* to = vtkDataObject::GetData(output);
+  auto* blocks = vtkDataObjectTree::SafeDownCast(to);
+  const bool good = blocks ? this->FillBlocks(vtkDataObjectTree::SafeDownCast(first),
+                               vtkDataObjectTree::SafeDownCast(second), blocks)
+                           : this->Fill(0, first, second, vtkPolyData::SafeDownCast(to));
+  if (isTimed)
+  {
+    to->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), steps.Time);
+  }
+  return good ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHTemporalInterpolator::FillBlocks(
+  vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output)
+{
+  if (!first || !second)
+  {
+    return this->Fail("Only one of two steps has blocks.") != 0;
+  }
+  output->CopyStructure(first);
+  const std::vector<std::string> names = vtkSPHNameBlocks(first);
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(first->NewTreeIterator());
+  iterator->InitTraversal();
+  bool good = true;
+  for (size_t i = 0; i < names.size(); ++i, iterator->GoToNextItem())
+  {
+    this->BlockName = names[i] + ": ";
+    vtkNew<vtkPolyData> particles;
+    good =
+      this->Fill(i, iterator->GetCurrentDataObject(), second->GetDataSet(iterator), particles) &&
+      good;
+    output->SetDataSetFrom(iterator, particles);
+  }
+  this->BlockName.clear();
+  return good;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHTemporalInterpolator::Fill(
+  size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output)
+{
+  vtkPointSet* sets[2] = { vtkPointSet::SafeDownCast(first), vtkPointSet::SafeDownCast(second) };
+  if (!output || !sets[0] || !sets[1])
+  {
+    return this->Fail("It does not hold points in all steps.") != 0;
+  }
+  const std::vector<double>& times = this->Internals->Times;
+  if (times.size() < 2)
+  {
+    vtkSPHTemporalCopy(sets[0], output);
+    return true;
+  }
+  if (this->Internals->Pairs.size() <= block)
+  {
+    this->Internals->Pairs.resize(block + 1);
+  }
+  vtkSPHTemporalPair& pair = this->Internals->Pairs[block];
+  const vtkSPHTemporalChoice choice = { this->IdArrayName, this->VelocityArrayName,
+    this->UseVelocities != 0, this->TimeScale, { times[0], times[1] } };
+  const bool matched = pair.Match(sets[0], sets[1], choice);
+  this->UsedIdArrayName = pair.IdName;
+  this->UsedVelocityArrayName = pair.VelocityName;
+  if (!matched)
+  {
+    return this->Fail(pair.Error) != 0;
+  }
+  for (const std::string& warning : pair.Warnings)
+  {
+    vtkWarningMacro(<< this->BlockName << warning);
+  }
+  pair.Interpolate(this->Internals->Time, output);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Id Array Name: " << this->IdArrayName << "\n";
+  os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
+  os << indent << "Use Velocities: " << this->UseVelocities << "\n";
+  os << indent << "Used Id Array Name: " << this->UsedIdArrayName << "\n";
+  os << indent << "Used Velocity Array Name: " << this->UsedVelocityArrayName << "\n";
+  os << indent << "Time Scale: " << this->TimeScale << "\n";
+  os << indent << "Resample Factor: " << this->ResampleFactor << "\n";
+  os << indent << "Error Message: " << this->ErrorMessage << "\n";
+}

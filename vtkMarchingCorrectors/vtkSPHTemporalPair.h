@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: the same particles at two times, and between them.
+ */
+#ifndef vtkSPHTemporalPair_h
+#define vtkSPHTemporalPair_h
+
+#include "vtkDataArray.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/** What the user chose, and the times of the two steps, the second one later. */
+struct vtkSPHTemporalChoice
+{
+  std::string IdArrayName;
+  std::string VelocityArrayName;
+  bool UseVelocities = true;
+  double TimeScale = 1.0;
+  double Times[2] = { 0.0, 1.0 };
+};
+
+/** The points and point arrays alone; a vertex for each point where the set has cells. */
+void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output);
+
+class vtkSPHTemporalPair
+{
+public:
+  /**
+   * Matches the particles of two steps; what is known of the same two stays. False if they cannot be
+   * matched; Error then says why.
+   */
+  bool Match(vtkPointSet* first, vtkPointSet* second, const vtkSPHTemporalChoice& choice);
+
+  /** The particles at a time between the steps, after a Match(). */
+  void Interpolate(double time, vtkPolyData* output) const;
+
+  std::string Error;
+  std::vector<std::string> Warnings; // of the last Match(), none where nothing was new
+  std::string IdName, VelocityName;  // of the arrays used
+
+private:
+  struct Step
+  {
+    vtkSmartPointer<vtkPointSet> Particles;
+    vtkSmartPointer<vtkDataArray> Ids, Velocities; // none: not used
+    double Time = 0.0;
+    std::vector<vtkIdType> Partners; // of each particle in the other step; -1: it has none
+  };
+
+  void MatchNothing();
+  bool FindIds(const std::string& name);
+  bool FindVelocities(const vtkSPHTemporalChoice& choice);
+  vtkDataArray* Find(const std::string& role, const std::string& name, int components, int step);
+  void CheckVelocities();
+  void WarnOfLostArrays();
+  bool IsInBoth(vtkAbstractArray* array) const;
+  void InterpolatePositions(double s, double time, vtkPolyData* output) const;
+  void InterpolateArrays(double s, vtkPolyData* output) const;
+  std::string NameOfStep(int step) const;
+
+  Step Steps[2];
+  double TimeScale = 1.0;
+  bool FollowsVelocities = false;
+  std::vector<std::uint64_t> Signature; // of what was matched
+};
+
+#endif

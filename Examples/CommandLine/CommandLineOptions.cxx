@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CommandLineOptions.h"
 
+#include "CollectionFile.h"
 #include "ParticleFile.h"
 #include "SafeText.h"
 #include "SurfaceFile.h"
@@ -100,6 +101,62 @@ std::vector<double> ToNumbers(const std::string& option, const std::string& text
   return values;
 }
 
+double ToShare(const std::string& option, const std::string& text)
+{
+  const double number = ToNumber(option, text);
+  if (!(number > 0.0 && number < 1.0))
+  {
+    throw UsageError(option + " needs a number above 0 and below 1, not '" + text + "'");
+  }
+  return number;
+}
+
+/// A side may be open: inf, or -inf.
+std::vector<double> ToBox(const std::string& option, const std::string& text)
+{
+  std::vector<double> box;
+  std::istringstream stream(text + ",");
+  for (std::string item; std::getline(stream, item, ',');)
+  {
+    const bool open = item == "inf" || item == "-inf";
+    const double infinity = std::numeric_limits<double>::infinity();
+    box.push_back(!open ? ToNumber(option, item) : item[0] == '-' ? -infinity : infinity);
+  }
+  if (box.size() != 6)
+  {
+    throw UsageError(option + " needs six numbers, x0,x1,y0,y1,z0,z1, not '" + text + "'");
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    if (!(box[2 * a] < box[2 * a + 1]))
+    {
+      throw UsageError(
+        option + " needs the lower number first along " + "xyz"[a] + ", not '" + text + "'");
+    }
+  }
+  return box;
+}
+
+std::vector<double> ToPeriod(const std::string& option, const std::string& text)
+{
+  const std::vector<double> period = ToNumbers(option, text);
+  if (period.size() != 3 && period.size() != 6)
+  {
+    throw UsageError(
+      option + " needs three lengths, or six bounds x0,x1,y0,y1,z0,z1, not '" + text + "'");
+  }
+  const std::size_t step = period.size() / 3;
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    if (period[step * a + step - 1] < (step == 1 ? 0.0 : period[2 * a]))
+    {
+      throw UsageError(
+        option + " needs a period of 0 or more along " + "xyz"[a] + ", not '" + text + "'");
+    }
+  }
+  return period;
+}
+
 std::vector<std::string> ToNames(const std::string& option, const std::string& text)
 {
   std::vector<std::string> names;
@@ -159,6 +216,10 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.IsoValues = ToNumbers(n, v); } },
     { "--free-surface", "", "contour the weight sum; needs no scalar",
       [](Options& o, Text, Text) { o.FreeSurface = true; } },
+    { "--derive", "NAME", "add Gradients of this array; of a vector also Vorticity, Lambda2, ...",
+      [](Options& o, Text, Text v) { o.Derive = Printable(v); } },
+    { "--probe", "POINTS_FILE", "no surface: the field at these points; OUTPUT is their data set",
+      [](Options& o, Text, Text v) { o.Probe = v; } },
     { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum",
       [](Options& o, Text n, Text v) {
         o.Field = ToChoice(n, v, { "shepard", "sum" });
@@ -167,6 +228,10 @@ const std::vector<Option>& AllOptions()
     { "", "", "The particles (arrays are found by their usual names if not given)", {} },
     { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or from the spacing",
       [](Options& o, Text n, Text v) { o.SmoothingLength = ToQuantity(n, v); } },
+    { "--dp", "D", "particle distance of DualSPHysics: smoothing length coefh x sqrt(3) x D",
+      [](Options& o, Text n, Text v) { o.ParticleDistance = ToPositive(n, v); } },
+    { "--coefh", "C", "its coefficient (default 1)",
+      [](Options& o, Text n, Text v) { o.CoefH = ToPositive(n, v); } },
     { "--support-radius", "", "these are the support radius, not the smoothing length",
       [](Options& o, Text, Text) { o.SupportRadius = true; } },
     { "--volume", "NAME", "array of particle volumes",
@@ -176,10 +241,13 @@ const std::vector<Option>& AllOptions()
     { "--density", "NAME|VALUE", "array of densities, or one value",
       [](Options& o, Text n, Text v) { o.Density = ToQuantity(n, v); } },
     { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
-    { "--solids", "weight|ignore", "solids count in the trimming weight (default), or not at all",
+    { "--solids", "weight|ignore|wall",
+      "count in the weight that trims (default), not at all, or end the surface",
       [](Options& o, Text n, Text v) {
-        o.IgnoreSolids = ToChoice(n, v, { "weight", "ignore" }) == "ignore";
+        o.Solids = ToChoice(n, v, { "weight", "ignore", "wall" });
       } },
+    { "--wall-share", "S", "with --solids wall: their share of the weight there (default 0.5)",
+      [](Options& o, Text n, Text v) { o.WallShare = ToShare(n, v); } },
 
     { "", "", "The method", {} },
     { "--kernel", "NAME", "cubic (default), quadratic, mprime4, quintic or wendland",
@@ -192,6 +260,10 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.CubeFactor = ToPositive(n, v); } },
     { "--cube-size", "D", "cube size itself, in the unit of the positions",
       [](Options& o, Text n, Text v) { o.CubeSize = ToPositive(n, v); } },
+    { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
+      [](Options& o, Text n, Text v) { o.Box = ToBox(n, v); } },
+    { "--periodic", "LX,LY,LZ|BOUNDS", "particles repeat; lengths (0: open), or x0,x1,y0,y1,z0,z1",
+      [](Options& o, Text n, Text v) { o.Periodic = ToPeriod(n, v); } },
     { "--seeds", "pairs|complete", "the paper's seeds, or such that nothing is missed (default)",
       [](Options& o, Text n, Text v) {
         o.Seeds = ToChoice(n, v, { "pairs", "complete" });
@@ -231,6 +303,15 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) {
         o.OutputPrecision = ToChoice(n, v, { "single", "double", "input" });
       } },
+    { "--times", "T[,T...]", "of a film: at these times, stored ones or between two steps",
+      [](Options& o, Text n, Text v)
+      {
+        o.Times = ToNumbers(n, v);
+        std::sort(o.Times.begin(), o.Times.end());
+        o.Times.erase(std::unique(o.Times.begin(), o.Times.end()), o.Times.end());
+      } },
+    { "--time-step", "DT", "of a film: time from each INPUT to the next (default 1)",
+      [](Options& o, Text n, Text v) { o.TimeStep = ToPositive(n, v); } },
     { "--stats", "FILE.json", "write the statistics of the run",
       [](Options& o, Text, Text v) { o.StatisticsFile = v; } },
     { "--screenshot", "FILE.png", "write a picture of the surface (may need a display)",
@@ -258,17 +339,79 @@ bool EndsWith(const std::string& text, const std::string& end)
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/// What a probe has no use for.
+void CheckProbe(const CommandLineOptions& options)
+{
+  if (options.Inputs.size() > 1 || IsCollectionFile(options.Inputs.front()) ||
+    !options.Times.empty() || options.TimeStep != 1.0)
+  {
+    throw UsageError("--probe takes one INPUT of one time");
+  }
+  const std::pair<bool, const char*> others[] = { { !options.Scalar.empty(), "--scalar" },
+    { !options.IsoValues.empty(), "--iso" }, { options.FreeSurface, "--free-surface" },
+    { !options.StatisticsFile.empty(), "--stats" },
+    { !options.PictureFile.empty(), "--screenshot" }, { options.Repeat > 1, "--repeat" } };
+  for (const auto& other : others)
+  {
+    if (other.first)
+    {
+      throw UsageError(std::string("--probe makes no surface; leave out ") + other.second);
+    }
+  }
+}
+
+/// What the film's options are for, and what it has no use for.
+void CheckFilm(const CommandLineOptions& options)
+{
+  const bool isListed = IsCollectionFile(options.Inputs.front());
+  if (!IsFilm(options))
+  {
+    if (!options.Times.empty() || options.TimeStep != 1.0)
+    {
+      throw UsageError(std::string(options.Times.empty() ? "--time-step" : "--times") +
+        " is for films, whose output is a .pvd file");
+    }
+    return;
+  }
+  if (!IsCollectionFile(options.Output))
+  {
+    throw UsageError("the output of several steps is a .pvd file, not '" + options.Output + "'");
+  }
+  for (const std::string& input : options.Inputs)
+  {
+    if (options.Inputs.size() > 1 && IsCollectionFile(input))
+    {
+      throw UsageError("a .pvd file is the only input; it lists the steps");
+    }
+  }
+  if (isListed && options.TimeStep != 1.0)
+  {
+    throw UsageError("--time-step is for a list of particle files; a .pvd file has times");
+  }
+  if (!options.PictureFile.empty() || options.Repeat > 1)
+  {
+    throw UsageError(std::string(options.Repeat > 1 ? "--repeat" : "--screenshot") +
+      " is for one surface, not for a film");
+  }
+}
+
 /// What can be said without looking at the input.
 void Check(const CommandLineOptions& options)
 {
-  if (options.Output.empty())
+  if (options.Inputs.empty())
   {
     throw UsageError("needs INPUT and OUTPUT");
   }
-  if (!IsSurfaceFile(options.Output))
+  if (!options.Probe.empty())
   {
-    throw UsageError(
-      "the output is a " + SurfaceFileEndings() + " file, not '" + options.Output + "'");
+    CheckProbe(options);
+    return;
+  }
+  CheckFilm(options);
+  if (!IsFilm(options) && !IsSurfaceFile(options.Output))
+  {
+    throw UsageError("the output is a " + SurfaceFileEndings() +
+      " file, or .pvd for a film, not '" + options.Output + "'");
   }
   if (!options.PictureFile.empty() && !EndsWith(options.PictureFile, ".png"))
   {
@@ -339,6 +482,12 @@ public:
         this->TakeFile(word);
       }
     }
+    if (this->Files.size() > 1)
+    {
+      this->Options.Output = this->Files.back();
+      this->Files.pop_back();
+      this->Options.Inputs = this->Files;
+    }
     return this->Options;
   }
 
@@ -381,15 +530,12 @@ private:
     {
       throw UsageError("'" + word + "' is not the name of a file");
     }
-    if (!this->Options.Output.empty())
-    {
-      throw UsageError("does not know what to do with '" + word + "'");
-    }
-    (this->Options.Input.empty() ? this->Options.Input : this->Options.Output) = word;
+    this->Files.push_back(word);
   }
 
   const std::vector<std::string> Words;
   std::size_t Next = 0;
+  std::vector<std::string> Files;
   bool OptionsEnded = false;
   std::set<std::string> Given; ///< options with a value
   CommandLineOptions Options;
@@ -408,12 +554,24 @@ bool ParseNumber(const std::string& text, double& value)
 }
 
 //------------------------------------------------------------------------------
+bool IsFilm(const CommandLineOptions& options)
+{
+  return options.Probe.empty() &&
+    (options.Inputs.size() > 1 || IsCollectionFile(options.Output) ||
+      (!options.Inputs.empty() && IsCollectionFile(options.Inputs.front())));
+}
+
+//------------------------------------------------------------------------------
 std::string CommandLineHelp()
 {
   std::ostringstream help;
-  help << "usage: marching-correctors INPUT OUTPUT [options]\n\n"
+  help << "usage: marching-correctors INPUT OUTPUT [options]\n"
+          "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
+          "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n\n"
           "Extracts an isosurface from SPH particles. INPUT is a "
-       << ParticleFileEndings() << " file, OUTPUT a " << SurfaceFileEndings() << " file.\n";
+       << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
+       << " file. With OUTPUT.pvd a film: one surface for each step,\n"
+          "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ...\n";
   for (const Option& option : AllOptions())
   {
     if (option.Name[0] == '\0')

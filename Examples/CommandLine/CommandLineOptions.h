@@ -11,14 +11,18 @@
 /// are spelled as ReadParticles() spells them.
 struct CommandLineOptions
 {
-  std::string Input;
+  std::vector<std::string> Inputs;
   std::string Output;
+  std::vector<double> Times; ///< of a film, ascending; empty: all that are stored
+  double TimeStep = 1.0;     ///< between the steps of a film of particle files
 
   std::string Scalar;
   bool Magnitude = true;
   int Component = 0; ///< used where Magnitude is false
   std::vector<double> IsoValues;
   bool FreeSurface = false;
+  std::string Probe;  ///< file of points where the field is evaluated instead
+  std::string Derive; ///< array whose gradient, and what is made of it, the particles get
 
   /// A quantity is an array name or one value for all particles; the input decides which of the two
   /// a text such as "2" is.
@@ -29,7 +33,10 @@ struct CommandLineOptions
   std::string Density;
   std::string FluidArray;
   double FluidValue = 0.0;
-  bool IgnoreSolids = false;
+  double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
+  double CoefH = 1.0;
+  std::string Solids = "weight";
+  double WallShare = 0.5;
 
   std::string Kernel = "cubic";
   std::string Field = "shepard";
@@ -38,7 +45,9 @@ struct CommandLineOptions
   std::string Precision = "single";
   double HScale = 1.0;
   double CubeFactor = 0.5;
-  double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
+  double CubeSize = 0.0;        ///< 0: CubeFactor times the smallest smoothing length
+  std::vector<double> Box;      ///< x0, x1, y0, y1, z0, z1; empty: all
+  std::vector<double> Periodic; ///< three lengths, or bounds like those of Box; empty: open
   bool Preview = false;
   double NodeThreshold = 0.1;
   std::string Boundary = "weight";
@@ -60,6 +69,9 @@ struct CommandLineOptions
   bool Help = false;
   bool Version = false;
 };
+
+/// Whether there are surfaces of several times, listed in a .pvd file.
+bool IsFilm(const CommandLineOptions& options);
 
 /// Wrong usage; what() is one sentence.
 class UsageError : public std::runtime_error

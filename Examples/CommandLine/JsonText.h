@@ -14,6 +14,12 @@
 class JsonText
 {
 public:
+  /// At depth 0 a text of its own, else what Raw() puts into another one at that depth.
+  explicit JsonText(std::size_t depth = 0)
+    : Depth(depth)
+  {
+  }
+
   /// An object. The key is empty for the outermost one and for elements of a list.
   void Begin(const std::string& key) { this->Open(key, "{"); }
   void End() { this->Close("}"); }
@@ -41,6 +47,12 @@ public:
       this->Text += (i ? ", " : "") + Formatted(numbers[i]);
     }
     this->Text += "]";
+  }
+
+  void Raw(const std::string& values)
+  {
+    this->Text += (this->First ? "" : ",") + values;
+    this->First = false;
   }
 
   const std::string& Get() const { return this->Text; }
@@ -92,7 +104,7 @@ private:
   }
 
   std::string Text;
-  std::size_t Depth = 0;
+  std::size_t Depth;
   bool First = true;
 };
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 
@@ -310,20 +311,28 @@ private:
 }
 
 //------------------------------------------------------------------------------
-void CheckOutputs(const std::string& input, const std::vector<std::string>& outputs)
+void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
 {
-  const Target source = Other(input, -1);
-  std::vector<Target> found;
+  std::set<Identity> sources, found;
+  Identity identity;
+  for (const std::string& input : inputs)
+  {
+    const Target source = Other(input, -1);
+    if (source.Exists && Identify(source, identity))
+    {
+      sources.insert(identity);
+    }
+  }
   for (const std::string& output : outputs)
   {
     const Target target = Find(output);
-    if (source.Exists && IsSame(target, source))
+    if (Identify(target, identity))
     {
-      throw std::invalid_argument(output + " would overwrite the input");
-    }
-    for (const Target& other : found)
-    {
-      if (IsSame(target, other))
+      if (sources.count(identity))
+      {
+        throw std::invalid_argument(output + " would overwrite the input");
+      }
+      if (!found.insert(identity).second)
       {
         throw std::invalid_argument(output + " would be written twice");
       }
@@ -335,7 +344,6 @@ void CheckOutputs(const std::string& input, const std::vector<std::string>& outp
         throw std::invalid_argument(output + " would be written twice: what is printed goes there");
       }
     }
-    found.push_back(target);
   }
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 /// Says before the work what would prevent writing after it. Throws std::invalid_argument if an
-/// output is the same file as the input or another output, by whatever name or link;
+/// output is the same file as an input or another output, by whatever name or link;
 /// std::runtime_error if one cannot be written.
-void CheckOutputs(const std::string& input, const std::vector<std::string>& outputs);
+void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
 /// Writes a file, completely or not at all: under a fresh name beside it first, which then takes its
 /// place. A symbolic link is followed, and the file that it leads to replaced; mode, owner and group

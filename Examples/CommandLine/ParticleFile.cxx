@@ -2,21 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleFile.h"
 
+#include "CollectionFile.h"
 #include "FileFormat.h"
 #include "MessageCapture.h"
+#include "ParticleParts.h"
 #include "ReadingLimits.h"
 #include "SafeText.h"
 
 #include "vtkAbstractArray.h"
+#include "vtkCellData.h"
 #include "vtkDataObject.h"
 #include "vtkGenericDataObjectReader.h"
+#ifdef MCOR_HAS_VTKHDF
+#include "vtkHDFReader.h"
+#endif
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
+#include "vtkVersion.h"
+#include "vtkVersionMacros.h"
 #include "vtkXMLDataParser.h"
+#include "vtkXMLImageDataReader.h"
 #include "vtkXMLPolyDataReader.h"
+#include "vtkXMLRectilinearGridReader.h"
+#include "vtkXMLStructuredGridReader.h"
 #include "vtkXMLUnstructuredGridReader.h"
 
 #include <cerrno>
@@ -116,6 +127,36 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file)
   return reader->GetOutput();
 }
 
+/// What its reader does not say where it cannot read a good file.
+std::string HintFor(const std::string& file)
+{
+  const std::string ending = fs::path(file).extension().string();
+  return ending == ".vtkhdf" && VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
+    ? std::string(" (VTK ") + vtkVersion::GetVTKVersion() +
+      " reads unstructured grids, no poly data)"
+    : "";
+}
+
+#ifdef MCOR_HAS_VTKHDF
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file)
+{
+  vtkNew<vtkHDFReader> reader;
+  reader->SetFileName(file.c_str());
+  if (!reader->CanReadFile(file.c_str()))
+  {
+    throw std::runtime_error(
+      file + " cannot be read: its reader does not know what it holds" + HintFor(file));
+  }
+  reader->Update();
+  return reader->GetOutputDataObject(0);
+}
+#else
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file)
+{
+  throw std::runtime_error(file + " cannot be read: this VTK was built without its reader");
+}
+#endif
+
 template <typename ReaderT>
 vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
 {
@@ -123,16 +164,31 @@ vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
   return ReadXml(reader, file);
 }
 
-/// Every format that is read; all that is known of one stands here.
+/// Every format that is read; all that is known of one stands here. Without a function: a list of
+/// files that hold parts of the particles.
 using Reader = std::function<vtkSmartPointer<vtkDataObject>(const std::string& file)>;
 const std::vector<FileFormat<Reader>> Formats = {
+  { ".vtp", ReadXmlWith<vtkXMLPolyDataReader> },
+  { ".vtu", ReadXmlWith<vtkXMLUnstructuredGridReader> },
+  { ".pvtp", {} },
+  { ".pvtu", {} },
+  { ".vtkhdf", ReadHdf },
+  { ".vtk", ReadLegacy },
+};
+
+/// The same of data sets of any class.
+const std::vector<FileFormat<Reader>> DataFormats = {
+  { ".vti", ReadXmlWith<vtkXMLImageDataReader> },
+  { ".vtr", ReadXmlWith<vtkXMLRectilinearGridReader> },
+  { ".vts", ReadXmlWith<vtkXMLStructuredGridReader> },
   { ".vtp", ReadXmlWith<vtkXMLPolyDataReader> },
   { ".vtu", ReadXmlWith<vtkXMLUnstructuredGridReader> },
   { ".vtk", ReadLegacy },
 };
 
 /// VTK's readers seek in the file, so it must be a regular one.
-void CheckReadable(const std::string& file)
+void CheckReadable(
+  const std::string& file, const std::vector<FileFormat<Reader>>& formats = Formats)
 {
   std::error_code error;
   if (fs::is_directory(file, error))
@@ -147,20 +203,21 @@ void CheckReadable(const std::string& file)
   {
     throw std::runtime_error(file + " cannot be read: " + std::strerror(errno));
   }
-  if (!FindFormat(Formats, file))
+  if (!FindFormat(formats, file))
   {
-    throw std::runtime_error(file + " is not a " + ParticleFileEndings() + " file");
+    throw std::runtime_error(file + " is not a " + ListEndings(formats) + " file");
   }
 }
 
 /// VTK's reader at work. Its exceptions are those of the standard library where it asks for memory
 /// by sizes that a damaged file gave it.
-vtkSmartPointer<vtkDataObject> ReadWithinLimits(const std::string& file)
+vtkSmartPointer<vtkDataObject> ReadWithinLimits(
+  const std::string& file, const std::vector<FileFormat<Reader>>& formats = Formats)
 {
   const ReadingLimits limits(file);
   try
   {
-    return FindFormat(Formats, file)->Process(file);
+    return FindFormat(formats, file)->Process(file);
   }
   catch (const std::bad_alloc&)
   {
@@ -187,6 +244,22 @@ void MakePrintable(vtkAbstractArray* array)
   }
 }
 
+/// The arrays of one kind, of this many elements. Throws std::runtime_error.
+void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
+{
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    MakePrintable(array);
+    if (array->GetNumberOfTuples() != count)
+    {
+      throw std::runtime_error(file + " cannot be read: its array '" + array->GetName() + "' has " +
+        std::to_string(array->GetNumberOfTuples()) + " entries for " + std::to_string(count) +
+        kind);
+    }
+  }
+}
+
 /// The points' arrays alone, all that is used of the data: no cells (one per particle, for nothing),
 /// and nothing that was not checked.
 vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet* data)
@@ -194,19 +267,44 @@ vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet*
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->SetPoints(data->GetPoints());
   vtkPointData* arrays = data->GetPointData();
+  CheckArrays(file, arrays, data->GetNumberOfPoints(), " points");
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
-    vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    MakePrintable(array);
-    if (array->GetNumberOfTuples() != data->GetNumberOfPoints())
-    {
-      throw std::runtime_error(file + " cannot be read: its array '" + array->GetName() + "' has " +
-        std::to_string(array->GetNumberOfTuples()) + " entries for " +
-        std::to_string(data->GetNumberOfPoints()) + " points");
-    }
-    particles->GetPointData()->AddArray(array);
+    particles->GetPointData()->AddArray(arrays->GetAbstractArray(i));
   }
   return particles;
+}
+
+/// Throws std::runtime_error; may have no points.
+vtkSmartPointer<vtkPointSet> ReadFile(const std::string& file, MessageCapture* messages)
+{
+  CheckReadable(file);
+  messages->Clear();
+  vtkSmartPointer<vtkDataObject> data = ReadWithinLimits(file);
+  // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
+  if (!messages->GetErrors().empty())
+  {
+    throw std::runtime_error(
+      file + " cannot be read: " + messages->GetErrors().front() + HintFor(file));
+  }
+  vtkPointSet* points = vtkPointSet::SafeDownCast(data);
+  if (!points)
+  {
+    throw std::runtime_error(file + " holds " +
+      (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
+      ", not particles (poly data or an unstructured grid)");
+  }
+  if (points->GetNumberOfPoints() == 0)
+  {
+    return vtkSmartPointer<vtkPolyData>::New();
+  }
+  return TakeParticles(file, points);
+}
+
+bool IsList(const std::string& file)
+{
+  const auto* format = FindFormat(Formats, file);
+  return format && !format->Process;
 }
 
 }
@@ -220,24 +318,55 @@ std::string ParticleFileEndings()
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages)
 {
-  CheckReadable(file);
+  return ReadParticles(std::vector<std::string>{ file }, messages);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> ReadParticles(
+  const std::vector<std::string>& files, MessageCapture* messages)
+{
+  std::vector<vtkSmartPointer<vtkPointSet>> parts;
+  for (const std::string& file : files)
+  {
+    CheckReadable(file);
+    for (const std::string& part :
+      IsList(file) ? ReadPieces(file, messages) : std::vector<std::string>{ file })
+    {
+      if (IsList(file) && IsList(part))
+      {
+        throw std::runtime_error(file + " cannot be read: its piece " + part + " is a list itself");
+      }
+      vtkSmartPointer<vtkPointSet> points = ReadFile(part, messages);
+      if (points->GetNumberOfPoints() > 0)
+      {
+        parts.push_back(points);
+      }
+    }
+  }
+  if (parts.empty())
+  {
+    throw std::runtime_error(files.front() + " holds no points");
+  }
+  const bool isWhole = files.size() == 1 && !IsList(files.front());
+  return isWhole ? parts.front() : JoinParts(parts);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)
+{
+  CheckReadable(file, DataFormats);
   messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadWithinLimits(file);
-  // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
+  vtkSmartPointer<vtkDataObject> data = ReadWithinLimits(file, DataFormats);
   if (!messages->GetErrors().empty())
   {
     throw std::runtime_error(file + " cannot be read: " + messages->GetErrors().front());
   }
-  vtkPointSet* points = vtkPointSet::SafeDownCast(data);
-  if (!points)
-  {
-    throw std::runtime_error(file + " holds " +
-      (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
-      ", not particles (poly data or an unstructured grid)");
-  }
-  if (!points->GetPoints() || points->GetNumberOfPoints() == 0)
+  vtkDataSet* set = vtkDataSet::SafeDownCast(data);
+  if (!set || set->GetNumberOfPoints() == 0)
   {
     throw std::runtime_error(file + " holds no points");
   }
-  return TakeParticles(file, points);
+  CheckArrays(file, set->GetPointData(), set->GetNumberOfPoints(), " points");
+  CheckArrays(file, set->GetCellData(), set->GetNumberOfCells(), " cells");
+  return set;
 }

@@ -6,16 +6,26 @@
 #include "vtkSmartPointer.h"
 
 #include <string>
+#include <vector>
 
 class MessageCapture;
+class vtkDataSet;
 class vtkPointSet;
 
-/// ".vtp, .vtu or .vtk": the endings of the files that ReadParticles knows.
+/// ".vtp, .vtu, ... or .vtk": the endings of the files that ReadParticles knows.
 std::string ParticleFileEndings();
 
 /// Reads particles and their arrays. Throws std::runtime_error with one sentence if the file cannot
 /// be read, is damaged, or holds no points; where VTK's reader crashes over it, the process that
 /// supervises this one says so. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages);
+
+/// The same for files that each hold a part of the particles. Arrays that are not in all of them are
+/// left out, and so are particles that a part marks as another one's (vtkGhostType).
+vtkSmartPointer<vtkPointSet> ReadParticles(
+  const std::vector<std::string>& files, MessageCapture* messages);
+
+/// Reads a data set of any class, with the same care; as it is, but for names.
+vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages);
 
 #endif

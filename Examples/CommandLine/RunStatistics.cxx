@@ -10,6 +10,7 @@
 #include "vtkStringArray.h"
 #include "vtkVersion.h"
 
+#include <algorithm>
 #include <cctype>
 #include <iomanip>
 #include <sstream>
@@ -23,15 +24,16 @@ const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArra
   "DensityArray" };
 const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
   "Mass", "Density", "IsoValues", "Field", "Kernel", "SeedMode", "Topology", "Precision",
-  "CubeSize", "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection",
-  "VertexThreshold", "Tolerance", "IterationLimit", "Preview" };
-const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "SmoothingLengthRange",
-  "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells", "SeedCells",
-  "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",
+  "CubeSize", "Box", "PeriodicBounds", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
+  "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview" };
+const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",
+  "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
+  "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",
   "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles",
   "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
   "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",
-  "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak" };
+  "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak",
+  "MedianNeighbors", "MedianSpacing" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {
@@ -186,6 +188,36 @@ void WriteSeconds(JsonText& json, vtkFieldData* run)
   }
   json.End();
 }
+
+void WriteSetting(JsonText& json, const CommandLineOptions& options, vtkFieldData* run)
+{
+  json.Value("device", Text(run, "Device"));
+  json.Value("platform", Text(run, "Platform"));
+  WriteGroup(json, run, "arrays", ArrayNames);
+  WriteGroup(json, run, "parameters", ParameterNames);
+  if (!options.FluidArray.empty())
+  {
+    json.Begin("fluid");
+    json.Value("array", options.FluidArray);
+    json.Value("value", options.FluidValue);
+    json.Value("solids", options.Solids);
+    if (options.Solids == "wall")
+    {
+      json.Value("wall_share", options.WallShare);
+    }
+    json.End();
+  }
+}
+
+void WriteList(JsonText& json, const char* key, const std::vector<std::string>& texts)
+{
+  json.BeginList(key);
+  for (const std::string& text : texts)
+  {
+    json.Value("", text);
+  }
+  json.EndList();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -228,27 +260,16 @@ std::string DescribeRun(vtkFieldData* run)
 //------------------------------------------------------------------------------
 std::string StatisticsAsJson(const CommandLineOptions& options,
   const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds,
-  double peakResidentBytes)
+  const std::vector<std::string>& warnings, double peakResidentBytes)
 {
   vtkFieldData* last = runs.back();
   JsonText json;
   json.Begin("");
   json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
   json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
-  json.Value("input", options.Input);
+  json.Value("input", options.Inputs.front());
   json.Value("output", options.Output);
-  json.Value("device", Text(last, "Device"));
-  json.Value("platform", Text(last, "Platform"));
-  WriteGroup(json, last, "arrays", ArrayNames);
-  WriteGroup(json, last, "parameters", ParameterNames);
-  if (!options.FluidArray.empty())
-  {
-    json.Begin("fluid");
-    json.Value("array", options.FluidArray);
-    json.Value("value", options.FluidValue);
-    json.Value("solids", std::string(options.IgnoreSolids ? "ignore" : "weight"));
-    json.End();
-  }
+  WriteSetting(json, options, last);
   WriteGroup(json, last, "statistics", StatisticNames);
   WriteSeconds(json, last);
   json.Value("wall_seconds", wallSeconds.back());
@@ -262,7 +283,70 @@ std::string StatisticsAsJson(const CommandLineOptions& options,
     json.End();
   }
   json.EndList();
+  json.BeginList("warnings");
+  for (const std::string& warning : warnings)
+  {
+    json.Value("", warning);
+  }
+  json.EndList();
   json.Value("peak_resident_bytes", peakResidentBytes);
+  json.End();
+  return json.Get() + "\n";
+}
+
+//------------------------------------------------------------------------------
+std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds)
+{
+  JsonText json(2);
+  json.Begin("");
+  json.Value("time", step.Time);
+  WriteList(json, "inputs", step.Inputs);
+  if (run)
+  {
+    json.Value("output", step.Output);
+    WriteSeconds(json, run);
+    WriteGroup(json, run, "statistics", StatisticNames);
+    json.Value("wall_seconds", wallSeconds);
+    json.Value("peak_resident_bytes", PeakResidentBytes());
+  }
+  else
+  {
+    json.Value("error", step.Error);
+  }
+  json.End();
+  return json.Get();
+}
+
+//------------------------------------------------------------------------------
+std::string SettingAsJson(const CommandLineOptions& options, vtkFieldData* run)
+{
+  JsonText json(1);
+  WriteSetting(json, options, run);
+  return json.Get();
+}
+
+//------------------------------------------------------------------------------
+std::string FilmAsJson(const CommandLineOptions& options, const std::vector<FilmStep>& steps)
+{
+  JsonText json;
+  json.Begin("");
+  json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
+  json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
+  WriteList(json, "inputs", options.Inputs);
+  json.Value("output", options.Output);
+  const auto last = std::find_if(
+    steps.rbegin(), steps.rend(), [](const FilmStep& step) { return !step.Setting.empty(); });
+  if (last != steps.rend())
+  {
+    json.Raw(last->Setting);
+  }
+  json.BeginList("steps");
+  for (const FilmStep& step : steps)
+  {
+    json.Raw(step.Statistics);
+  }
+  json.EndList();
+  json.Value("peak_resident_bytes", PeakResidentBytes());
   json.End();
   return json.Get() + "\n";
 }

@@ -21,7 +21,26 @@ std::string DescribeSeconds(vtkFieldData* run);
 /// entry per run: the time of the filter as a whole, with what VTK adds to the phases.
 std::string StatisticsAsJson(const CommandLineOptions& options,
   const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds,
-  double peakResidentBytes);
+  const std::vector<std::string>& warnings, double peakResidentBytes);
+
+/// What is said of one step of a film.
+struct FilmStep
+{
+  double Time = 0.0;
+  std::vector<std::string> Inputs; ///< the files of the step, or of the two steps around the time
+  std::string Output;
+  std::string Error;      ///< one sentence; empty: the surface was written
+  std::string Statistics; ///< as StepAsJson() gives it
+  std::string Setting;    ///< as SettingAsJson() gives it; empty where there was none
+};
+
+/// Of a step whose surface was written (run is not null), or that failed.
+std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds);
+
+/// Device, arrays and parameters of a run.
+std::string SettingAsJson(const CommandLineOptions& options, vtkFieldData* run);
+
+std::string FilmAsJson(const CommandLineOptions& options, const std::vector<FilmStep>& steps);
 
 /// The most memory that this process has had so far; 0 where the system does not tell.
 double PeakResidentBytes();

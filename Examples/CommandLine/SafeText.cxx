@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <iostream>
 
 namespace
 {
@@ -106,4 +107,21 @@ std::string QuotedForJson(const std::string& text)
     i += c.Bytes;
   }
   return quoted + "\"";
+}
+
+//------------------------------------------------------------------------------
+void Say(const std::string& sentence)
+{
+  std::cerr << "marching-correctors: " << Printable(sentence) << "\n";
+}
+
+//------------------------------------------------------------------------------
+std::string EscapedForXml(const std::string& text)
+{
+  std::string escaped;
+  for (const char c : text)
+  {
+    escaped += c == '"' ? "&quot;" : c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
+  }
+  return escaped;
 }

@@ -13,4 +13,11 @@ std::string Printable(const std::string& text);
 /// The text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
 
+/// Errors and warnings: one line on standard error after the program's name, whatever names and
+/// files have put into the sentence.
+void Say(const std::string& sentence);
+
+/// As it stands in the attribute of an XML element.
+std::string EscapedForXml(const std::string& text);
+
 #endif

@@ -30,6 +30,8 @@ struct SharedState
 {
   bool Finished = false; ///< the work has returned, and Status is its result
   int Status = 0;
+  int Part = -1;                      ///< of the work that is being done; below 0: none
+  char LastEnd[PATH_MAX + 1024] = ""; ///< what was said of the child before
   char Failure[PATH_MAX + 256] = "the run failed";
   char Hint[256] = "the OpenCL driver may be at fault, or memory ran out";
   char TemporaryFile[PATH_MAX] = "";
@@ -74,7 +76,7 @@ void SetHandlers(void (*handler)(int))
 }
 
 /// Runs in the child, and does not return.
-[[noreturn]] void Work(const std::function<int()>& work, pid_t parent)
+[[noreturn]] void Work(const std::function<int(int)>& work, int first, pid_t parent)
 {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -88,13 +90,13 @@ void SetHandlers(void (*handler)(int))
   // Writing fails then, which is told, where the signal would end the program in silence.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  Shared->Status = work();
+  Shared->Status = work(first);
   Shared->Finished = true;
   std::exit(Shared->Status);
 }
 
 /// Waits for the child's end, removes what it left, and returns what waitpid says of it.
-int WaitAndCleanUp(const std::function<void()>& cleanUp)
+int WaitAndCleanUp()
 {
   // Not yet gone while signals are still handed on: its number could be another process's soon.
   siginfo_t ignored;
@@ -112,7 +114,6 @@ int WaitAndCleanUp(const std::function<void()>& cleanUp)
   {
     std::remove(file.c_str());
   }
-  cleanUp();
   SetHandlers(SIG_DFL);
   return status;
 }
@@ -134,6 +135,18 @@ std::string Reason(int status)
   }
 }
 
+bool IsEndedBySignal(int status)
+{
+  for (const int number : EndingSignals)
+  {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == number)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// What the exit status of the program is, after a sentence where the child could not say one.
 int Report(int status)
 {
@@ -141,31 +154,37 @@ int Report(int status)
   {
     return Shared->Status; // even where a driver crashed later, when it was unloaded
   }
-  for (const int number : EndingSignals)
+  if (IsEndedBySignal(status))
   {
-    if (WIFSIGNALED(status) && WTERMSIG(status) == number)
-    {
-      raise(number); // so that a shell or a batch system sees how the program ended
-    }
+    raise(WTERMSIG(status)); // so that a shell or a batch system sees how the program ended
   }
-  const std::string hint = Get(Shared->Hint);
-  std::cerr << (isatty(STDERR_FILENO) ? "\r\033[K" : "") << "marching-correctors: "
-            << Printable(Get(Shared->Failure) + ": " + Reason(status) + "; " + hint) << "\n";
+  const std::string sentence =
+    Get(Shared->Failure) + ": " + Reason(status) + "; " + Get(Shared->Hint);
+  std::cerr << (isatty(STDERR_FILENO) ? "\r\033[K" : "");
+  Say(sentence);
+  Set(Shared->LastEnd, sentence);
   return 1;
 }
 
+/// Whether parts of the work are left that a new child can do.
+bool GoesOn(int status, int first)
+{
+  return !Shared->Finished && !IsEndedBySignal(status) && Shared->Part >= first;
 }
 
-//------------------------------------------------------------------------------
-int RunSupervised(const std::function<int()>& work, const std::function<void()>& cleanUp)
+/// As at the start, but for the sentence.
+void Reset()
 {
-  void* memory =
-    mmap(nullptr, sizeof(SharedState), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  const std::string sentence = Get(Shared->LastEnd);
+  *Shared = SharedState();
+  Set(Shared->LastEnd, sentence);
+}
+
+/// Whether there is a child; it does the work from part `first` on.
+bool StartChild(const std::function<int(int)>& work, int first)
+{
   const pid_t self = getpid();
-  std::cout.flush();
-  if (memory != MAP_FAILED)
   {
-    Shared = new (memory) SharedState;
     const SignalPause pause;
     Child = fork();
     if (Child > 0)
@@ -173,19 +192,59 @@ int RunSupervised(const std::function<int()>& work, const std::function<void()>&
       SetHandlers(HandOn);
     }
   }
-  if (memory == MAP_FAILED || Child < 0)
-  {
-    const int error = errno;
-    cleanUp();
-    std::cerr << "marching-correctors: no process could be started: " << std::strerror(error)
-              << "\n";
-    return 1;
-  }
   if (Child == 0)
   {
-    Work(work, self);
+    Work(work, first, self);
   }
-  return Report(WaitAndCleanUp(cleanUp));
+  return Child > 0;
+}
+
+}
+
+//------------------------------------------------------------------------------
+int RunSupervised(const std::function<int(int)>& work, const std::function<void()>& cleanUp)
+{
+  void* memory =
+    mmap(nullptr, sizeof(SharedState), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  std::cout.flush();
+  if (memory != MAP_FAILED)
+  {
+    Shared = new (memory) SharedState;
+  }
+  int first = 0;
+  while (memory != MAP_FAILED && StartChild(work, first))
+  {
+    const int status = WaitAndCleanUp();
+    const bool goesOn = GoesOn(status, first);
+    if (!goesOn)
+    {
+      const SignalPause pause;
+      cleanUp();
+    }
+    const int result = Report(status);
+    if (!goesOn)
+    {
+      return result;
+    }
+    first = Shared->Part + 1;
+    Reset();
+  }
+  const int error = errno;
+  cleanUp();
+  Say(std::string("no process could be started: ") + std::strerror(error));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void BeginPart(int part)
+{
+  Shared->Part = part;
+}
+
+//------------------------------------------------------------------------------
+std::string LastEnd()
+{
+  return Get(Shared->LastEnd);
 }
 
 //------------------------------------------------------------------------------

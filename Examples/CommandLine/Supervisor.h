@@ -11,8 +11,17 @@
 /// and graphics libraries can crash, abort, exit or use up all memory; none of that reaches this
 /// process, which then says in one sentence what happened, and removes a file half written. Signals
 /// sent to this process are handed on, and end both. Returns the exit status: what the work
-/// returned, or 1. `cleanUp` runs here when the child is gone, however it ended.
-int RunSupervised(const std::function<int()>& work, const std::function<void()>& cleanUp);
+/// returned, or 1. Where the work has parts (see BeginPart) and ended unexpectedly in one, it goes on
+/// in a new child: work(first) begins with part `first`, the one after it; at the start that is 0.
+/// `cleanUp` runs here when the last child is gone, however it ended.
+int RunSupervised(const std::function<int(int first)>& work, const std::function<void()>& cleanUp);
+
+/// A part of the work begins: from 0, each one higher than those before it. Below 0: what comes now
+/// belongs to no part.
+void BeginPart(int part);
+
+/// What was said of the unexpected end of the child before this one.
+std::string LastEnd();
 
 /// For as long as it lives, what is said if the work ends unexpectedly: "FAILURE: ...; HINT".
 class Activity

@@ -61,6 +61,7 @@ TemporaryCache::TemporaryCache()
   {
     this->Folder = name;
     setenv("POCL_CACHE_DIR", name.c_str(), 1);
+    setenv("MCOR_COMPILER", "", 1); // nobody else is to write there when it is removed
   }
 }
 

@@ -3,32 +3,32 @@
 
 // The command line program: particles from a file, surface to a file. See --help.
 #include "CommandLineOptions.h"
+#include "Film.h"
+#include "FilmRecord.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
+#include "ProbeRun.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
 #include "Supervisor.h"
 #include "SurfaceFile.h"
 #include "SurfacePicture.h"
+#include "SurfaceRun.h"
 #include "TemporaryCache.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkVersion.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -39,225 +39,6 @@ namespace
 {
 
 const char* const ProgramName = "marching-correctors";
-
-/// Errors and warnings: one line, whatever names and files have put into them.
-void Say(const std::string& sentence)
-{
-  std::cerr << ProgramName << ": " << Printable(sentence) << "\n";
-}
-
-bool ShowsProgress(const CommandLineOptions& options)
-{
-  return !options.Quiet && isatty(STDERR_FILENO);
-}
-
-void ShowProgress(vtkObject* caller, unsigned long, void*, void*)
-{
-  auto* filter = static_cast<vtkMarchingCorrectors*>(caller);
-  const char* phase = filter->GetProgressText();
-  std::fprintf(stderr, "\r\033[K%3.0f %% %s", 100.0 * filter->GetProgress(),
-    Printable(phase ? phase : "").c_str());
-  std::fflush(stderr);
-}
-
-/// True, and the value, where the text is a constant and not the name of an array of the input.
-bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
-{
-  return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
-}
-
-void SetParticles(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
-{
-  double value = 0.0;
-  if (options.SmoothingLength == "estimate" && !particles->GetPointData()->HasArray("estimate"))
-  {
-    filter->EstimateSmoothingLengthOn();
-  }
-  else if (IsConstant(options.SmoothingLength, particles, value))
-  {
-    filter->SetSmoothingLength(value);
-  }
-  else
-  {
-    filter->SetSmoothingLengthArrayName(options.SmoothingLength.c_str());
-  }
-  filter->SetSmoothingLengthIsSupportRadius(options.SupportRadius);
-  filter->SetVolumeArrayName(options.Volume.c_str());
-  if (IsConstant(options.Mass, particles, value))
-  {
-    filter->SetMass(value);
-  }
-  else
-  {
-    filter->SetMassArrayName(options.Mass.c_str());
-  }
-  if (IsConstant(options.Density, particles, value))
-  {
-    filter->SetDensity(value);
-  }
-  else
-  {
-    filter->SetDensityArrayName(options.Density.c_str());
-  }
-  filter->SetFluidArrayName(options.FluidArray.c_str());
-  filter->SetFluidValue(options.FluidValue);
-  filter->SetIgnoreSolids(options.IgnoreSolids);
-}
-
-void SetContour(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
-{
-  const int count = static_cast<int>(options.IsoValues.size());
-  filter->SetFreeSurface(options.FreeSurface);
-  if (options.FreeSurface)
-  {
-    if (count > 0)
-    {
-      filter->SetNumberOfFreeSurfaceValues(count);
-    }
-    for (int i = 0; i < count; ++i)
-    {
-      filter->SetFreeSurfaceValue(i, options.IsoValues[static_cast<std::size_t>(i)]);
-    }
-    return;
-  }
-  filter->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, options.Scalar.c_str());
-  filter->SetScalarComponent(
-    options.Magnitude ? static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) : options.Component);
-  filter->SetNumberOfContours(count);
-  for (int i = 0; i < count; ++i)
-  {
-    filter->SetValue(i, options.IsoValues[static_cast<std::size_t>(i)]);
-  }
-}
-
-void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
-{
-  filter->SetKernelByName(options.Kernel.c_str());
-  filter->SetShepardNormalization(options.Field == "shepard");
-  filter->SetSeedMode(
-    options.Seeds == "pairs" ? vtkMarchingCorrectors::PAIRS : vtkMarchingCorrectors::COMPLETE);
-  filter->SetTopology(options.Topology == "field" ? vtkMarchingCorrectors::TOPOLOGY_FIELD
-                                                  : vtkMarchingCorrectors::TOPOLOGY_TABLE);
-  filter->SetPrecision(options.Precision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
-                                                     : vtkAlgorithm::SINGLE_PRECISION);
-  filter->SetHScaleFactor(options.HScale);
-  filter->SetCubeSizeFactor(options.CubeFactor);
-  filter->SetCubeSize(options.CubeSize);
-  filter->SetPreview(options.Preview);
-  filter->SetNodeThreshold(options.NodeThreshold);
-  const bool eigenvalue = options.Boundary == "eigenvalue";
-  filter->SetBoundaryDetection(
-    eigenvalue ? vtkMarchingCorrectors::EIGENVALUE : vtkMarchingCorrectors::WEIGHT_SUM);
-  filter->SetVertexThreshold(options.VertexThreshold >= 0.0 ? options.VertexThreshold
-      : eigenvalue                                          ? 0.3
-                                                            : 0.5);
-  filter->SetComputeWeightSum(options.WeightSum);
-  filter->SetComputeBoundaryEigenvalue(options.BoundaryEigenvalue);
-  filter->SetComputeGradients(options.Gradients);
-  filter->SetOutputPointsPrecision(options.OutputPrecision == "single"
-      ? vtkAlgorithm::SINGLE_PRECISION
-      : options.OutputPrecision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
-                                            : vtkAlgorithm::DEFAULT_PRECISION);
-  filter->SetDevice(options.Device.c_str());
-  filter->SetDeviceMemoryLimit(options.MemoryLimit);
-  filter->KeepDeviceDataOff();
-}
-
-/// All arrays, none, or those that are named.
-void SetAttributes(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
-{
-  const std::vector<std::string>& names = options.AttributeNames;
-  vtkPointData* data = particles->GetPointData();
-  filter->SetInterpolateAttributes(options.Attributes);
-  for (const std::string& name : names)
-  {
-    if (!data->HasArray(name.c_str()))
-    {
-      throw std::runtime_error("there is no point array '" + name + "' to carry to the surface");
-    }
-  }
-  for (int i = 0; !names.empty() && i < data->GetNumberOfArrays(); ++i)
-  {
-    const char* name = data->GetArrayName(i);
-    if (name && std::find(names.begin(), names.end(), name) == names.end())
-    {
-      filter->AddExcludedArray(name);
-    }
-  }
-}
-
-struct Run
-{
-  vtkSmartPointer<vtkPolyData> Surface;
-  vtkNew<vtkFieldData> Statistics; // of the surface, and of what the run cost
-  double WallSeconds = 0.0;
-};
-
-/// One run, from scratch but for the program on the device. Throws std::runtime_error with the
-/// filter's sentence.
-Run Extract(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages)
-{
-  messages->Clear();
-  filter->Modified();
-  const auto start = std::chrono::steady_clock::now();
-  filter->Update();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (ShowsProgress(options))
-  {
-    std::fputs("\r\033[K", stderr);
-  }
-  const std::string error = filter->GetErrorMessage();
-  if (!error.empty() || !messages->GetErrors().empty())
-  {
-    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
-  }
-  Run run;
-  run.Surface = vtkSmartPointer<vtkPolyData>::New();
-  run.Surface->ShallowCopy(filter->GetOutput());
-  filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
-  run.Statistics->PassData(run.Surface->GetFieldData());
-  run.Statistics->PassData(filter->GetRunStatistics());
-  run.WallSeconds = elapsed.count();
-  return run;
-}
-
-void Warn(vtkPolyData* surface, MessageCapture* messages)
-{
-  if (surface->GetNumberOfCells() > 0)
-  {
-    for (const std::string& warning : messages->GetWarnings())
-    {
-      Say("warning: " + warning);
-    }
-    return;
-  }
-  std::string why;
-  if (!messages->GetWarnings().empty())
-  {
-    why = messages->GetWarnings().front();
-  }
-  else if (vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues"))
-  {
-    vtkDataArray* range = surface->GetFieldData()->GetArray("ScalarRange");
-    std::ostringstream stream;
-    stream << "no part of the field reaches the iso value";
-    if (values->GetNumberOfValues() == 1)
-    {
-      stream << " " << values->GetComponent(0, 0);
-    }
-    if (range)
-    {
-      stream << "; the particles have values from " << range->GetComponent(0, 0) << " to "
-             << range->GetComponent(0, 1);
-    }
-    why = stream.str();
-  }
-  Say("warning: the surface is empty" + (why.empty() ? "" : ": " + why));
-}
 
 void ListDevices()
 {
@@ -287,7 +68,7 @@ void CheckFiles(const CommandLineOptions& options)
   }
   try
   {
-    CheckOutputs(options.Input, outputs);
+    CheckOutputs(options.Inputs, outputs);
   }
   catch (const std::invalid_argument& error)
   {
@@ -295,30 +76,14 @@ void CheckFiles(const CommandLineOptions& options)
   }
 }
 
-void Execute(const CommandLineOptions& options)
+void MakeSurface(const CommandLineOptions& options, MessageCapture* messages)
 {
-  vtkNew<MessageCapture> messages;
-  vtkOutputWindow::SetInstance(messages);
-  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  if (options.ListDevices)
-  {
-    ListDevices();
-    return;
-  }
   CheckFiles(options);
-  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Input, messages);
+  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Inputs.front(), messages);
   vtkNew<vtkMarchingCorrectors> filter;
-  SetParticles(filter, options, particles);
-  SetContour(filter, options);
-  SetMethod(filter, options);
-  SetAttributes(filter, options, particles);
-  filter->SetInputData(particles);
-  if (ShowsProgress(options))
-  {
-    vtkNew<vtkCallbackCommand> observer;
-    observer->SetCallback(ShowProgress);
-    filter->AddObserver(vtkCommand::ProgressEvent, observer);
-  }
+  SetUpFilter(filter, options, particles);
+  std::string nothing;
+  ShowProgress(filter, options, &nothing);
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
   std::vector<double> wallSeconds;
   vtkSmartPointer<vtkPolyData> surface;
@@ -335,14 +100,18 @@ void Execute(const CommandLineOptions& options)
                 << std::flush;
     }
   }
-  Warn(surface, messages);
+  const std::vector<std::string> warnings = Warnings(surface, messages);
+  for (const std::string& warning : warnings)
+  {
+    Say("warning: " + warning);
+  }
   const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
   WriteSurface(options.Output, surface, messages);
   if (!options.StatisticsFile.empty())
   {
     std::cout.flush(); // the file may be /dev/stdout
-    WriteOutput(
-      options.StatisticsFile, StatisticsAsJson(options, runs, wallSeconds, peakResidentBytes));
+    WriteOutput(options.StatisticsFile,
+      StatisticsAsJson(options, runs, wallSeconds, warnings, peakResidentBytes));
   }
   if (!options.PictureFile.empty())
   {
@@ -350,12 +119,38 @@ void Execute(const CommandLineOptions& options)
   }
 }
 
-/// Exit status and sentence of what `run` throws, or of standard output that cannot be written.
-int Status(const std::function<void()>& run)
+/// From the part `first` of the work on. False if something failed, of which all was said.
+bool Execute(const CommandLineOptions& options, int first, FilmRecord* record)
 {
+  vtkNew<MessageCapture> messages;
+  vtkOutputWindow::SetInstance(messages);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  if (record)
+  {
+    return MakeFilm(options, first, *record, messages);
+  }
+  if (options.ListDevices)
+  {
+    ListDevices();
+  }
+  else if (!options.Probe.empty())
+  {
+    ProbePoints(options, messages);
+  }
+  else
+  {
+    MakeSurface(options, messages);
+  }
+  return true;
+}
+
+/// Exit status and sentence of what `run` throws, or of standard output that cannot be written.
+int Status(const std::function<bool()>& run)
+{
+  bool good = false;
   try
   {
-    run();
+    good = run();
     std::cout.flush();
     if (!std::cout)
     {
@@ -377,7 +172,7 @@ int Status(const std::function<void()>& run)
     Say(error.what());
     return 1;
   }
-  return 0;
+  return good ? 0 : 1;
 }
 
 /// A file opened by this program must not become its standard output, where that was closed.
@@ -397,6 +192,7 @@ int main(int argc, char* argv[])
 {
   OpenStandardStreams();
   CommandLineOptions options;
+  std::unique_ptr<FilmRecord> record;
   const int status = Status(
     [&]
     {
@@ -410,11 +206,18 @@ int main(int argc, char* argv[])
         std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
                   << ")\n";
       }
+      else if (!options.ListDevices && IsFilm(options))
+      {
+        record.reset(new FilmRecord); // here, for all processes that take part
+      }
+      return true;
     });
   if (status != 0 || options.Help || options.Version)
   {
     return status;
   }
   TemporaryCache cache;
-  return RunSupervised([&] { return Status([&] { Execute(options); }); }, [&] { cache.Remove(); });
+  return RunSupervised([&](int first)
+    { return Status([&] { return Execute(options, first, record.get()); }); },
+    [&] { cache.Remove(); });
 }

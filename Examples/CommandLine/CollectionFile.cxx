@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CollectionFile.h"
+
+#include "CommandLineOptions.h"
+#include "MessageCapture.h"
+#include "ReadingLimits.h"
+#include "SafeText.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkXMLDataElement.h"
+#include "vtkXMLUtilities.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+std::string AttributeOf(vtkXMLDataElement* element, const char* name)
+{
+  const char* value = element->GetAttribute(name);
+  return value ? value : "";
+}
+
+[[noreturn]] void Fail(const std::string& file, const std::string& why)
+{
+  throw std::runtime_error(file + " cannot be read: " + why);
+}
+
+/// The element below the root of a VTK XML file that has this name.
+vtkSmartPointer<vtkXMLDataElement> ReadElement(
+  const std::string& file, const char* name, MessageCapture* messages)
+{
+  std::error_code error;
+  if (fs::is_directory(file, error))
+  {
+    Fail(file, "it is a directory");
+  }
+  if (!std::ifstream(file, std::ios::binary))
+  {
+    Fail(file, std::strerror(errno));
+  }
+  const ReadingLimits limits(file);
+  messages->Clear();
+  vtkSmartPointer<vtkXMLDataElement> root;
+  root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
+  if (!root || !messages->GetErrors().empty())
+  {
+    Fail(file,
+      messages->GetErrors().empty() ? "it is not XML, or damaged" : messages->GetErrors().front());
+  }
+  vtkXMLDataElement* found = root->FindNestedElementWithName(name);
+  if (!found)
+  {
+    Fail(file, std::string("it has no element ") + name);
+  }
+  return found;
+}
+
+std::string Resolved(const std::string& list, const std::string& file)
+{
+  return (fs::path(list).parent_path() / file).string(); // an absolute name stays as it is
+}
+
+}
+
+//------------------------------------------------------------------------------
+bool IsCollectionFile(const std::string& file)
+{
+  const std::string ending = ".pvd";
+  return file.size() > ending.size() &&
+    file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+//------------------------------------------------------------------------------
+std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapture* messages)
+{
+  const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection", messages);
+  std::vector<CollectionEntry> entries;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)
+  {
+    vtkXMLDataElement* element = list->GetNestedElement(i);
+    if (std::string(element->GetName()) != "DataSet")
+    {
+      continue;
+    }
+    const std::string time = AttributeOf(element, "timestep"), name = AttributeOf(element, "file");
+    double value = 0.0;
+    if (name.empty() || (!time.empty() && !ParseNumber(time, value)))
+    {
+      Fail(file,
+        name.empty() ? "entry " + std::to_string(i) + " names no file"
+                     : "the time of " + name + " is '" + time + "', not a number");
+    }
+    entries.push_back({ value, Resolved(file, name) });
+  }
+  if (entries.empty())
+  {
+    Fail(file, "it lists no files");
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+    [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
+  return entries;
+}
+
+//------------------------------------------------------------------------------
+std::string CollectionText(const std::vector<CollectionEntry>& entries)
+{
+  std::string text = "<?xml version=\"1.0\"?>\n"
+                     "<VTKFile type=\"Collection\" version=\"0.1\">\n"
+                     "  <Collection>\n";
+  for (const CollectionEntry& entry : entries)
+  {
+    char time[32];
+    const auto end = std::to_chars(time, time + sizeof(time), entry.Time);
+    text += "    <DataSet timestep=\"" + std::string(time, end.ptr) + "\" part=\"0\" file=\"" +
+      EscapedForXml(fs::path(entry.File).filename().string()) + "\"/>\n";
+  }
+  return text + "  </Collection>\n</VTKFile>\n";
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* messages)
+{
+  const bool isPolyData = file.back() == 'p';
+  const vtkSmartPointer<vtkXMLDataElement> list =
+    ReadElement(file, isPolyData ? "PPolyData" : "PUnstructuredGrid", messages);
+  std::vector<std::string> pieces;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)
+  {
+    vtkXMLDataElement* element = list->GetNestedElement(i);
+    const std::string name = AttributeOf(element, "Source");
+    if (std::string(element->GetName()) == "Piece" && !name.empty())
+    {
+      pieces.push_back(Resolved(file, name));
+    }
+  }
+  if (pieces.empty())
+  {
+    Fail(file, "it lists no pieces");
+  }
+  return pieces;
+}

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ParticleSteps_h
+#define ParticleSteps_h
+
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string>
+#include <vector>
+
+class MessageCapture;
+struct CommandLineOptions;
+
+/// The stored steps of a film, for VTK's pipeline: reads the particles of the time that is asked for.
+class ParticleSteps : public vtkPolyDataAlgorithm
+{
+public:
+  struct Step
+  {
+    double Time;
+    std::vector<std::string> Files; ///< parts of one set of particles
+  };
+
+  static ParticleSteps* New();
+  vtkTypeMacro(ParticleSteps, vtkPolyDataAlgorithm);
+
+  /// In the order of time; the messages must outlive this.
+  void SetSteps(const std::vector<Step>& steps, MessageCapture* messages);
+
+  /// Why the last step could not be read, one sentence; empty if it could.
+  const std::string& GetError() const { return this->Error; }
+  void ClearError() { this->Error.clear(); }
+
+protected:
+  ParticleSteps();
+  ~ParticleSteps() override;
+
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  ParticleSteps(const ParticleSteps&) = delete;
+  void operator=(const ParticleSteps&) = delete;
+
+  std::vector<Step> Steps;
+  MessageCapture* Messages = nullptr;
+  std::string Error;
+};
+
+/// The steps that the options name. Throws std::runtime_error with one sentence.
+std::vector<ParticleSteps::Step> ListSteps(
+  const CommandLineOptions& options, MessageCapture* messages);
+
+#endif

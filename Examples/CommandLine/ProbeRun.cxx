@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ProbeRun.h"
+
+#include "CommandLineOptions.h"
+#include "DataSetFile.h"
+#include "MessageCapture.h"
+#include "OutputFile.h"
+#include "ParticleFile.h"
+#include "SafeText.h"
+#include "SurfaceRun.h"
+
+#include "vtkCharArray.h"
+#include "vtkDataSet.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSPHProbe.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <stdexcept>
+
+namespace
+{
+
+void CheckFiles(const CommandLineOptions& options)
+{
+  try
+  {
+    CheckOutputs({ options.Inputs.front(), options.Probe }, { options.Output });
+  }
+  catch (const std::invalid_argument& error)
+  {
+    throw UsageError(error.what());
+  }
+}
+
+vtkIdType CountValid(vtkDataSet* data)
+{
+  auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray("vtkValidPointMask"));
+  const char* begin = mask->GetPointer(0);
+  return std::count(begin, begin + mask->GetNumberOfValues(), 1);
+}
+
+}
+
+//------------------------------------------------------------------------------
+void ProbePoints(const CommandLineOptions& options, MessageCapture* messages)
+{
+  CheckFiles(options);
+  vtkSmartPointer<vtkDataSet> points = ReadDataSet(options.Probe, messages);
+  CheckDataSetFile(options.Output, points);
+  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Inputs.front(), messages);
+  vtkNew<vtkSPHProbe> probe;
+  probe->SetInputData(points);
+  probe->SetSourceData(SetUpParticles(probe, options, particles));
+  probe->SetInterpolateAttributes(options.Attributes);
+  probe->SetShepardNormalization(options.Field == "shepard");
+  probe->SetWeightThreshold(options.NodeThreshold);
+  probe->SetComputeGradients(options.Gradients);
+  std::string nothing;
+  ShowProgress(probe, options, &nothing);
+  messages->Clear();
+  const auto start = std::chrono::steady_clock::now();
+  probe->Update();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  if (ShowsProgress(options))
+  {
+    std::fputs("\r\033[K", stderr);
+  }
+  const std::string error = probe->GetErrorMessage();
+  if (!error.empty() || !messages->GetErrors().empty())
+  {
+    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
+  }
+  for (const std::string& warning : messages->GetWarnings())
+  {
+    Say("warning: " + warning);
+  }
+  auto* output = vtkDataSet::SafeDownCast(probe->GetOutput());
+  if (!options.Quiet)
+  {
+    std::cout << "points      " << output->GetNumberOfPoints() << ", " << CountValid(output)
+              << " of them valid\nseconds     " << elapsed.count() << "\n";
+  }
+  WriteDataSet(options.Output, output, messages);
+}

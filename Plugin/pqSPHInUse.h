@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The group "In Use" of the filter's panel: shows the information properties of the group, which
+ * ParaView itself leaves out, as they were after the last update. A group must have another property,
+ * too: ParaView asks for its widget when it comes to that one.
+ */
+#ifndef pqSPHInUse_h
+#define pqSPHInUse_h
+
+#include "pqPropertyWidget.h"
+
+#include <QList>
+#include <QPair>
+
+class QLabel;
+class vtkSMProperty;
+class vtkSMPropertyGroup;
+
+class pqSPHInUse : public pqPropertyWidget
+{
+  Q_OBJECT
+
+public:
+  pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
+  ~pqSPHInUse() override = default;
+
+private Q_SLOTS:
+  void showValues();
+
+private: // NOLINT(readability-redundant-access-specifiers)
+  QList<QPair<vtkSMProperty*, QLabel*>> Rows;
+};
+
+#endif

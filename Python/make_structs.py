@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes what the Python package must know of the C sources, so that it stands there alone.
+
+    make_structs.py mcor.h FOLDER
+
+_structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of each
+field, and the types of the options. check_structs.c: that the C compiler
+lays the structures out alike. exports.map: the functions that the library shows.
+"""
+import ctypes
+import re
+import sys
+from pathlib import Path
+
+NUMBERS = {
+    "int": "c_int", "double": "c_double", "float": "c_float", "char": "c_char",
+    "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
+}
+HINTS = {"int": "Union[bool, int]", "double": "float", "int64_t": "int", "uint64_t": "int"}
+
+
+def fail(sentence):
+    sys.exit(f"make_structs.py: {sentence}")
+
+
+class Header:
+    """The enumerations, structures and functions of a header as simple as mcor.h."""
+
+    def __init__(self, text):
+        self.constants = {name: int(value) for name, value in
+                          re.findall(r"#define (\w+) \(?(-?\d+)\)?", text)}
+        self.version = re.search(r'#define MCOR_VERSION "([^"]+)"', text).group(1)
+        self.enums, self.structs = {}, {}
+        for body, name in re.findall(r"typedef enum \w+\s*\{(.*?)\}\s*(\w+);", text, re.S):
+            self.enums[name] = self.read_enum(without_comments(body))
+        for body, name in re.findall(r"typedef struct \w+\s*\{(.*?)\n  \}\s*(\w+);", text, re.S):
+            self.structs[name] = self.read_struct(body)
+        self.functions = sorted(set(
+            re.findall(r"^  [\w \*]+?\b(mcor_\w+)\(", without_comments(text), re.M)))
+
+    def read_enum(self, body):
+        values, next_value = {}, 0
+        for item in filter(None, (part.strip() for part in body.split(","))):
+            name, _, value = (part.strip() for part in item.partition("="))
+            next_value = int(value) if value else next_value
+            values[name] = self.constants[name] = next_value
+            next_value += 1
+        return values
+
+    def read_struct(self, body):
+        """[(field, C type, pointers, array length, comment)]. A comment belongs to the declaration
+        on whose last line it begins, else to the one that follows."""
+        fields, before, end, behind = [], "", -1, []
+        for token in re.finditer(r"/\*(.*?)\*/|[^/;\s][^/;]*;", body, re.S):
+            if token.group(1) is None:
+                behind = self.read_fields(" ".join(token.group().rstrip(";").split()), before)
+                fields += behind
+                before, end = "", token.end()
+                continue
+            words = " ".join(re.sub(r"\n\s*\*", " ", token.group(1)).split())
+            if end >= 0 and "\n" not in body[end:token.start()]:
+                fields[-len(behind):] = [field[:4] + (" ".join([*field[4:], words]).strip(),)
+                                         for field in fields[-len(behind):]]
+            else:
+                before = words
+        return fields
+
+    def read_fields(self, declaration, comment):
+        callback = re.match(r"int \(\*(\w+)\)\(", declaration)
+        if callback:
+            return [(callback.group(1), "callback", 0, None, comment)]
+        base, rest = re.match(r"(?:const )?(\w+)(.*)", declaration).groups()
+        fields = []
+        for item in rest.split(","):
+            match = re.fullmatch(r"\s*(\**)\s*(\w+)(?:\[(\w+)\])?", item)
+            if not match or (base != "void" and base not in NUMBERS and base not in self.enums
+                             and base not in self.structs):
+                fail(f"cannot read '{declaration}'")
+            stars, name, length = match.groups()
+            if length:
+                length = int(length) if length.isdigit() else self.constants[length]
+            fields.append((name, base, len(stars), length, comment))
+        return fields
+
+    def ctype(self, base, pointers, length):
+        if base == "callback":
+            return "Progress"
+        if (base, pointers) in (("void", 1), ("char", 1)):
+            return "ctypes.c_void_p" if base == "void" else "ctypes.c_char_p"
+        kind = f"ctypes.{NUMBERS[base]}" if base in NUMBERS else \
+            "ctypes.c_int" if base in self.enums else base
+        for _ in range(pointers):
+            kind = f"ctypes.POINTER({kind})"
+        return f"{kind} * {length}" if length else kind
+
+
+def without_comments(text):
+    return re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
+
+
+def shape_of(struct, name, comment):
+    """"[count][3], unit L" is ("count", 3); "[attribute_count] -> [count][components]" is a list."""
+    match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
+    if not match:
+        fail(f"the comment on {struct}.{name} does not tell the shape of the array")
+    return tuple(int(part) if part.isdigit() else part
+                 for part in re.findall(r"->|\w+", match.group()))
+
+
+def python_module(header):
+    lines = ['"""Made by make_structs.py from mcor.h; not to be edited."""',
+             "import ctypes", "from typing import Sequence, TypedDict, Union", "", f"VERSION = {header.version!r}", "",
+             "Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_char_p)", ""]
+    for struct, fields in header.structs.items():
+        lines += ["", f"class {struct}(ctypes.Structure):", "    _fields_ = ["]
+        lines += [f'        ("{name}", {header.ctype(base, pointers, length)}),'
+                  for name, base, pointers, length, _ in fields]
+        lines += ["    ]", ""]
+    results = {struct: {name: shape_of(struct, name, comment)
+                        for name, _, pointers, _, comment in header.structs[struct] if pointers}
+               for struct in ("mcor_surface", "mcor_samples", "mcor_derivatives", "mcor_flow")}
+    kinds = {struct: {name: f"{base}[{length}]" if length else base
+                      for name, base, pointers, length, _ in header.structs[struct] if not pointers}
+             for struct in ("mcor_options", "mcor_input")}
+    comments = {struct: {name: comment for name, _, _, _, comment in fields}
+                for struct, fields in header.structs.items()}
+    lines += ["", "", "class Options(TypedDict, total=False):",
+              '    """The options of the core that are keywords, as mcor.h names them."""', ""]
+    for struct in ("mcor_options", "mcor_input"):
+        for name, base in kinds[struct].items():
+            hint = "Union[str, int]" if base in header.enums else "Sequence[float]" if "[" in base else \
+                HINTS.get(base)
+            if hint and not re.match(r"count$|\w+_count$|has_", name):
+                lines.append(f"    {name}: {hint}")
+    for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds),
+                         ("COMMENTS", comments)):
+        lines += ["", f"{label} = {value!r}"]
+    return "\n".join(lines) + "\n"
+
+
+def c_checks(module, header):
+    """Offsets as ctypes computes them."""
+    scope = {}
+    exec(compile(module, "_structs.py", "exec"), scope)  # what was just written
+    lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",
+             '#include "mcor.h"', "#include <stddef.h>", ""]
+    for struct, fields in header.structs.items():
+        lines.append(f'_Static_assert(sizeof({struct}) == {ctypes.sizeof(scope[struct])}, "{struct}");')
+        for name, *_ in fields:
+            offset = getattr(scope[struct], name).offset
+            lines.append(f'_Static_assert(offsetof({struct}, {name}) == {offset}, "{struct}.{name}");')
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    header = Header(Path(sys.argv[1]).read_text(encoding="utf-8"))
+    folder = Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    module = python_module(header)
+    (folder / "_structs.py").write_text(module, encoding="utf-8")
+    (folder / "check_structs.c").write_text(c_checks(module, header), encoding="utf-8")
+    exports = header.functions + ["mcor_opencl_set_driver", "mcor_opencl_use_driver"]
+    (folder / "exports.map").write_text(
+        "{ global: " + "; ".join(exports) + "; local: *; };\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,458 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""vtkMarchingCorrectors for VTK without our C++ class: the same properties, the same results.
+
+This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
+"""
+import ctypes
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import SimpleNamespace
+
+if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
+    # Loaded by ParaView, which knows no package. What else lies beside it must not be found with it.
+    _folder = Path(__file__).resolve().parent
+    _spec = spec_from_file_location("marchingcorrectors", _folder / "__init__.py",
+                                    submodule_search_locations=[str(_folder)])
+    sys.modules["marchingcorrectors"] = module_from_spec(_spec)
+    _spec.loader.exec_module(sys.modules["marchingcorrectors"])
+
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkObject, vtkOutputWindow
+from vtkmodules.vtkCommonDataModel import (vtkDataObject, vtkDataObjectTree, vtkDataSetAttributes, vtkFieldData,
+                                           vtkPartitionedDataSet, vtkPointSet, vtkPolyData)
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+from vtkmodules.vtkCommonMisc import vtkContourValues
+
+from marchingcorrectors import Cancelled, Context, DeviceError, Error
+from marchingcorrectors import _structs as c
+from marchingcorrectors._library import lib
+from marchingcorrectors._library import devices as list_devices
+from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of
+from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
+from marchingcorrectors._vtk_surface import (add_run_statistics, build_field_data, build_mesh, computed_arrays,
+                                             left_out)
+
+BIG = 2147483647
+# name: (default, type, lowest, highest). "flag" has NameOn() and NameOff().
+PROPERTIES = {
+    "ScalarComponent": (-1, "int", -BIG, BIG), "ShepardNormalization": (1, "flag"), "FreeSurface": (0, "flag"),
+    "SmoothingLengthArrayName": ("", "text"), "SmoothingLength": (0.0, "real"),
+    "EstimateSmoothingLength": (0, "flag"), "SmoothingLengthIsSupportRadius": (0, "flag"),
+    "VolumeArrayName": ("", "text"), "MassArrayName": ("", "text"), "DensityArrayName": ("", "text"),
+    "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"), "Kernel": (0, "int", 0, 4),
+    "HScaleFactor": (1.0, "real"), "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
+    "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
+    "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
+    "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
+    "WallShare": (0.5, "real"), "UseBox": (0, "flag"), "Trim": (1, "flag"),
+    "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
+    "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
+    "ComputeCorrectionLength": (0, "flag"), "ComputeResidual": (0, "flag"), "ComputeBoundaryFlag": (0, "flag"),
+    "InterpolateAttributes": (1, "flag"), "OutputPointsPrecision": (vtkAlgorithm.DEFAULT_PRECISION, "int", 0, 2),
+    "Precision": (0, "int", 0, 1), "Device": ("", "text"), "Tolerance": (1e-6, "real"),
+    "IterationLimit": (30, "int", 1, 255), "DeviceMemoryLimit": (0, "int", 0, BIG), "KeepDeviceData": (1, "flag"),
+}
+CONVERT = {"int": int, "flag": int, "real": float, "text": lambda text: text or ""}
+
+
+def with_properties(kind):
+    """SetX, GetX, XOn, XOff."""
+    for name, (_, sort, *limits) in PROPERTIES.items():
+        def set_it(self, value, name=name, sort=sort, limits=limits):
+            value = CONVERT[sort](value)
+            if limits:
+                value = min(max(value, limits[0]), limits[1])
+            if getattr(self, name) != value:
+                setattr(self, name, value)
+                self.Modified()
+
+        setattr(kind, "Set" + name, set_it)
+        setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
+        if sort == "flag":
+            setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
+            setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
+    for quantity in ("SmoothingLength", "Volume", "Mass", "Density"):
+        setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
+    for method, (name, value) in {"KernelToCubicSpline": ("Kernel", 0), "KernelToQuadratic": ("Kernel", 1),
+                                  "KernelToMPrime4": ("Kernel", 2), "KernelToQuinticSpline": ("Kernel", 3),
+                                  "KernelToWendlandC2": ("Kernel", 4), "SeedModeToComplete": ("SeedMode", 0),
+                                  "SeedModeToPairs": ("SeedMode", 1), "TopologyToTable": ("Topology", 0),
+                                  "TopologyToField": ("Topology", 1),
+                                  "BoundaryDetectionToWeightSum": ("BoundaryDetection", 0),
+                                  "BoundaryDetectionToEigenvalue": ("BoundaryDetection", 1),
+                                  "ScalarComponentToMagnitude": ("ScalarComponent", -1)}.items():
+        setattr(kind, "Set" + method, lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
+    return kind
+
+
+@with_properties
+class vtkMarchingCorrectors(Summary, Box, VTKPythonAlgorithmBase):
+    """An isosurface directly from SPH particles; see vtkMarchingCorrectors.h of the sources."""
+
+    CUBIC_SPLINE, QUADRATIC, M_PRIME_4, QUINTIC_SPLINE, WENDLAND_C2 = range(5)
+    COMPLETE, PAIRS = range(2)
+    TOPOLOGY_TABLE, TOPOLOGY_FIELD = range(2)
+    WEIGHT_SUM, EIGENVALUE = range(2)
+    SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL = range(3)
+    MAGNITUDE = -1
+
+    def __init__(self):
+        VTKPythonAlgorithmBase.__init__(self, nInputPorts=1, nOutputPorts=1, outputType="vtkDataObject")
+        for name, (default, *_) in PROPERTIES.items():
+            setattr(self, name, default)
+        self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
+        self.ContourValues.SetNumberOfContours(0)
+        self.FreeSurfaceValues.SetValue(0, 0.5)
+        self.EndAtSolids = 0
+        self.clear_summary()
+        self.ExcludedArrays, self.UsedNames = [], {}
+        self.ErrorMessage, self.BlockName = "", ""
+        self.RunStatistics = vtkFieldData()
+        self._context, self._context_device = None, None
+        self._signatures, self._versions = (None, None), [0, 0]
+        self.SetInputArrayToProcess(
+            0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
+
+    # -- as every poly data algorithm ---------------------------------------------------------------
+
+    def SetInputData(self, *arguments):
+        self.SetInputDataObject(*arguments)
+
+    def GetInput(self, port=0):
+        return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) else None
+
+    def GetOutput(self, port=0):
+        return self.GetOutputDataObject(port)
+
+    def FillInputPortInformation(self, port, info):
+        info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet")
+        info.Append(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree")
+        return 1
+
+    def RequestDataObject(self, request, inInfo, outInfo):
+        """A poly data, or blocks of them as the input has."""
+        data = self.GetInputData(inInfo, 0, 0)
+        info, blocks = outInfo.GetInformationObject(0), isinstance(data, vtkDataObjectTree)
+        output = info.Get(vtkDataObject.DATA_OBJECT())
+        if output is None or not output.IsA(data.GetClassName() if blocks else "vtkPolyData"):
+            info.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance() if blocks else vtkPolyData())
+        return 1
+
+    # -- properties that are more than a value ------------------------------------------------------
+
+    def SetValue(self, i, value):
+        self._contours(self.ContourValues.SetValue, i, value)
+
+    def GetValue(self, i):
+        return self.ContourValues.GetValue(i) if self.GetNumberOfContours() > 0 else 0.0
+
+    def GetValues(self, into=None):
+        values = [self.ContourValues.GetValue(i) for i in range(self.GetNumberOfContours())]
+        if into is None:
+            return tuple(values)
+        into[:len(values)] = values
+        return None
+
+    def SetNumberOfContours(self, number):
+        self._contours(self.ContourValues.SetNumberOfContours, number)
+
+    def GetNumberOfContours(self):
+        return self.ContourValues.GetNumberOfContours()
+
+    def GenerateValues(self, number, *ends):
+        first, last = ends if len(ends) == 2 else ends[0]
+        self._contours(self.ContourValues.GenerateValues, number, first, last)
+
+    def SetFreeSurfaceValue(self, *arguments):
+        if len(arguments) == 1:
+            self._contours(self.FreeSurfaceValues.SetNumberOfContours, 1)
+        self._contours(self.FreeSurfaceValues.SetValue, *((0,) * (len(arguments) == 1) + arguments))
+
+    def GetFreeSurfaceValue(self, i=0):
+        return self.FreeSurfaceValues.GetValue(i) if self.GetNumberOfFreeSurfaceValues() > 0 else 0.5
+
+    def SetNumberOfFreeSurfaceValues(self, number):
+        self._contours(self.FreeSurfaceValues.SetNumberOfContours, number)
+
+    def GetNumberOfFreeSurfaceValues(self):
+        return self.FreeSurfaceValues.GetNumberOfContours()
+
+    def _contours(self, change, *arguments):
+        before = self.ContourValues.GetMTime(), self.FreeSurfaceValues.GetMTime()
+        change(*arguments)
+        if before != (self.ContourValues.GetMTime(), self.FreeSurfaceValues.GetMTime()):
+            self.Modified()
+
+    def SetPanelComponent(self, component):
+        """ScalarComponent for ParaView's panel, where 3 stands for the magnitude."""
+        self.SetScalarComponent(-1 if component >= 3 else component)
+
+    def SetSolids(self, solids):
+        legal = min(max(int(solids), self.SOLIDS_WEIGHT), self.SOLIDS_WALL)
+        if legal != self.GetSolids():
+            self.IgnoreSolids, self.EndAtSolids = int(legal == self.SOLIDS_IGNORE), int(legal == self.SOLIDS_WALL)
+            self.Modified()
+
+    def GetSolids(self):
+        return self.SOLIDS_IGNORE if self.IgnoreSolids else self.SOLIDS_WALL if self.EndAtSolids else \
+            self.SOLIDS_WEIGHT
+
+    def SetKernelByName(self, name):
+        kernel = lib.mcor_find_sph_kernel((name or "").encode())
+        if kernel >= 0:
+            self.SetKernel(kernel)
+        return kernel >= 0
+
+    def GetKernelName(self):
+        return lib.mcor_sph_kernel_name(self.Kernel).decode()
+
+    def AddExcludedArray(self, name):
+        self.ExcludedArrays.append(name)
+        self.Modified()
+
+    def ClearExcludedArrays(self):
+        self.ExcludedArrays.clear()
+        self.Modified()
+
+    def GetNumberOfExcludedArrays(self):
+        return len(self.ExcludedArrays)
+
+    def GetExcludedArray(self, i):
+        return self.ExcludedArrays[i] if 0 <= i < len(self.ExcludedArrays) else None
+
+    def GetErrorMessage(self):
+        return self.ErrorMessage
+
+    def GetRunStatistics(self):
+        return self.RunStatistics
+
+    @staticmethod
+    def ListDevices():
+        return "".join(f"{i}: {device}\n" for i, device in enumerate(list_devices()))
+
+    def ReleaseDeviceMemory(self):
+        if self._context:
+            self._context.release_memory()
+
+    def __str__(self):
+        lines = [str(super().__str__()).rstrip()]
+        for name in PROPERTIES:
+            words = "".join(" " + letter if letter.isupper() else letter for letter in name).strip()
+            lines.append(f"  {words}: {getattr(self, name)}")
+        lines.append(f"  Solids: {self.GetSolids()}")
+        return "\n".join(lines) + "\n"
+
+    # -- a run --------------------------------------------------------------------------------------
+
+    def RequestData(self, request, inInfo, outInfo):
+        data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)
+        self.ErrorMessage, self.BlockName = "", ""
+        self.RunStatistics = vtkFieldData()
+        if isinstance(data, vtkDataObjectTree):
+            self._process_blocks(data, output)
+            return 1
+        self._process(data, output)
+        return 0 if self.ErrorMessage else 1
+
+    def _process_blocks(self, data, output):
+        """A block that fails leaves its place empty, and the others as they are."""
+        output.CopyStructure(data)
+        names, iterator = list(name_blocks(data)), data.NewTreeIterator()
+        iterator.InitTraversal()
+        for i, name in enumerate(names):
+            self.SetProgressShiftScale(i / len(names), 1 / len(names))
+            self.BlockName = name + ": "
+            block, made = iterator.GetCurrentDataObject(), vtkPolyData()
+            made.GetFieldData().PassData(block.GetFieldData())
+            self._process(block, made)
+            output.SetDataSetFrom(iterator, made)
+            iterator.GoToNextItem()
+        self.SetProgressShiftScale(0.0, 1.0)
+        if self._is_aborted():
+            output.CopyStructure(data)  # not some blocks of a surface
+
+    def _process(self, data, output):
+        if data is not None and not isinstance(data, vtkPointSet):
+            self._say(f"A {data.GetClassName()} has no points of its own, and so no surface.", "Warning")
+            return
+        self.UsedNames = {}
+        self.clear_summary()
+        if data is None or data.GetNumberOfPoints() == 0 or self._is_aborted():
+            return
+        choice = SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), EndAtSolids=self.EndAtSolids, Box=self.Box,
+                                 PeriodicBounds=self.PeriodicBounds,
+                                 **{name: getattr(self, name) for name in PROPERTIES})
+        options = self._options(choice)
+        particles = Particles(choice, data)
+        try:
+            particles.collect((Request(self, 0, data), Request(self, 1, data)), computed_arrays(options))
+        except Unusable as sentence:
+            self._fail(str(sentence))
+            return
+        finally:
+            self.UsedNames = {"".join(part.capitalize() for part in quantity.split("_")): name_of(array)
+                              for quantity, array in particles.used.items()}
+        if particles.solid is not None and particles.solid.all():
+            self._say(f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}, so there is no fluid and "
+                      "no surface.", "Warning")
+            return
+        self._extract(particles, options, output)
+
+    @staticmethod
+    def _options(choice):
+        options, fields = c.mcor_options(), c.ENUMS["mcor_field"]
+        lib.mcor_set_default_options(ctypes.byref(options))
+        options.sph_kernel, options.h_scale = choice.Kernel, choice.HScaleFactor
+        options.field = fields["MCOR_WEIGHT_SUM" if choice.FreeSurface else
+                               "MCOR_SHEPARD" if choice.ShepardNormalization else "MCOR_SUM"]
+        options.seeds = 0 if choice.FreeSurface else choice.SeedMode
+        options.topology = choice.Topology
+        options.boundary_detection = choice.BoundaryDetection if choice.Trim else 0
+        options.cube_size_factor, options.cube_size = choice.CubeSizeFactor, choice.CubeSize
+        options.has_box, options.box[:] = choice.UseBox, choice.Box
+        options.periodic[:] = choice.PeriodicBounds
+        options.node_threshold = choice.NodeThreshold
+        options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
+        options.wall_share = choice.WallShare if choice.EndAtSolids and (choice.Trim or choice.FreeSurface) else 0.0
+        options.preview, options.tolerance = choice.Preview, choice.Tolerance
+        options.iteration_limit = choice.IterationLimit
+        options.memory_limit = choice.DeviceMemoryLimit << 20
+        options.precision = choice.Precision
+        options.normals, options.gradients = choice.ComputeNormals, choice.ComputeGradients
+        options.weight_sum = choice.ComputeWeightSum
+        options.boundary_eigenvalue = choice.ComputeBoundaryEigenvalue
+        options.correction_length, options.residual = choice.ComputeCorrectionLength, choice.ComputeResidual
+        options.boundary_flag, options.iso_value = choice.ComputeBoundaryFlag, choice.ComputeScalars
+        return options
+
+    def _extract(self, particles, options, output):
+        choice, surface = particles.choice, c.mcor_surface()
+        arguments = particles.arguments()
+        arguments.options = options
+        values = self.FreeSurfaceValues if choice.FreeSurface else self.ContourValues
+        iso = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
+        arguments.set_iso_values(iso or [0.5 if choice.FreeSurface else particles.middle_of_range()])
+        options.nearest_particle = bool(particles.from_nearest)
+        self.EstimatedCells = estimate_cells(particles, options)
+        if self.EstimatedCells >= HUGE_CELLS:
+            self._say(f"The fluid fills about {self.EstimatedCells:g} cubes of the virtual grid, so this may take "
+                      "minutes and much memory. A larger cube size takes less; the run can be cancelled.", "Warning")
+        try:
+            self._call_core(particles, arguments, surface)
+            self.summarize(arguments, surface)
+            for sentence in left_out(surface, particles):
+                self._say(sentence, "Warning")
+            build_field_data(output.GetFieldData(), surface, particles, arguments)
+            add_run_statistics(self.RunStatistics, surface)
+            single = particles.positions.GetDataTypeAsString() == "float"
+            precision = choice.OutputPointsPrecision
+            build_mesh(surface, particles, output, as_float=precision == vtkAlgorithm.SINGLE_PRECISION
+                       or (precision == vtkAlgorithm.DEFAULT_PRECISION and single))
+        except Cancelled:
+            pass
+        except Error as sentence:
+            self._fail(str(sentence))
+        finally:
+            lib.mcor_free_surface(ctypes.byref(surface))
+
+    def _call_core(self, particles, arguments, surface):
+        choice = particles.choice
+        try:
+            if self._context is None or self._context_device != choice.Device:
+                self._signatures = (None, None)
+                self._context, self._context_device = Context(choice.Device or None), choice.Device
+            if choice.KeepDeviceData:
+                self._set_versions(particles, arguments)
+            self._context.run(lambda handle: lib.mcor_extract(
+                handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)),
+                arguments.options, self._report, lambda: lib.mcor_free_surface(ctypes.byref(surface)))
+        except BaseException as failure:
+            self._signatures = (None, None)
+            if isinstance(failure, DeviceError):
+                self._context = None
+            raise
+        finally:
+            if self._context and not choice.KeepDeviceData:
+                self._context.release_memory()
+
+    def _set_versions(self, particles, arguments):
+        """The scalar is kept in the order of the particles: new particles make a new scalar."""
+        before, now = self._signatures, particles.signatures()
+        self._versions[0] += before[0] != now[0]
+        self._versions[1] += before != now
+        self._signatures = now
+        arguments.input.particles_version, arguments.input.scalar_version = self._versions
+
+    def _report(self, fraction, phase):
+        self.SetProgressText(phase)
+        self.UpdateProgress(fraction)
+        return self._is_aborted()
+
+    def _is_aborted(self):
+        return bool(self.CheckAbort() if hasattr(self, "CheckAbort") else self.GetAbortExecute())
+
+    def _fail(self, sentence):
+        """The sentences of all blocks are kept, one a line."""
+        self.ErrorMessage += "\n" * bool(self.ErrorMessage) + self.BlockName + sentence
+        self._say(sentence, "Error")
+
+    def _say(self, sentence, kind):
+        if not vtkObject.GetGlobalWarningDisplay():
+            return
+        if self.HasObserver(kind + "Event"):
+            self.InvokeEvent(kind + "Event")
+        else:
+            show = getattr(vtkOutputWindow.GetInstance(), f"Display{kind}Text")
+            show(f"{kind.upper()}: vtkMarchingCorrectors: {self.BlockName}{sentence}\n\n")
+
+
+def name_blocks(tree):
+    """"Block 'name', index 2" of the leaves."""
+    iterator = tree.NewTreeIterator()
+    iterator.VisitOnlyLeavesOff()
+    whole, last = "", 0
+    iterator.InitTraversal()
+    while not iterator.IsDoneWithTraversal():
+        index, data = iterator.GetCurrentFlatIndex(), iterator.GetCurrentDataObject()
+        about = iterator.GetCurrentMetaData() if iterator.HasCurrentMetaData() else None
+        own = about.Get(vtkDataObjectTree.NAME()) if about else None
+        if isinstance(data, vtkPartitionedDataSet):  # its name is that of its partitions
+            whole, last = own or "", index + data.GetNumberOfPartitions()
+        elif not data.IsA("vtkCompositeDataSet"):
+            name = own or (whole if index <= last else "")
+            yield "Block " + (f"'{name}', " if name else "") + f"index {index}"
+        iterator.GoToNextItem()
+
+
+def paraview_plugin(kind):
+    """The panel is that of the C++ plugin: its XML, with the class put in place."""
+    from xml.etree import ElementTree
+
+    import marchingcorrectors
+
+    file = Path(marchingcorrectors.__file__).with_name("MarchingCorrectors.xml")
+    root = ElementTree.parse(file).getroot()
+    group = root.find("ProxyGroup[@name='filters']")
+    for other in list(root):
+        if other is not group:
+            root.remove(other)
+    for proxy in list(group):
+        if proxy.get("class") != "vtkMarchingCorrectors":
+            group.remove(proxy)
+            continue
+        proxy.set("class", f"{Path(__file__).stem}.vtkMarchingCorrectors")
+        proxy.set("si_class", "vtkSIPythonSourceProxy")
+        lacking = {thing.get("name") for thing in proxy if "command" in thing.attrib
+                   and not hasattr(kind, thing.get("command"))}
+        for parent in proxy.iter():
+            for thing in list(parent):
+                if thing.get("name") in lacking and (parent is proxy or thing.tag == "Property"):
+                    parent.remove(thing)
+    kind._pvsm_proxy_xml = ElementTree.tostring(root, encoding="unicode")
+
+
+paraview_plugin_name = "MarchingCorrectorsPython"
+if __name__ == Path(__file__).stem:  # not as a part of the package
+    paraview_plugin(vtkMarchingCorrectors)

@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Isosurfaces of SPH particles, exact with respect to the SPH field.
+
+    surface = marchingcorrectors.isosurface(positions, speed, iso=1.0, smoothing_length=h, volume=V)
+    surface.points, surface.triangles, surface.normals
+
+With PyVista: particles.sph.isosurface("Velocity", 1.0). With VTK: vtkMarchingCorrectors.
+"""
+from pkgutil import extend_path as _extend_path
+
+from ._context import Context
+from ._functions import (Derivatives, Samples, Surface, derivatives, flow, free_surface, isosurface,
+                         probe)
+from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
+                       devices)
+from ._structs import VERSION as __version__
+
+__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "InvalidArgument", "InvalidData",
+           "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow", "free_surface",
+           "isosurface", "probe"]
+
+# The C++ filter lies in a folder of the same name, where CMake installed it.
+__path__ = _extend_path(__path__, __name__)
+
+
+def __getattr__(name):
+    """VTK's classes when they are asked for: NumPy users need no VTK."""
+    if name == "vtkMarchingCorrectors" or name.startswith("vtkSPH"):
+        from ._vtk import find_class
+
+        return find_class(name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

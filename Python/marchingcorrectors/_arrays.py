@@ -1,0 +1,210 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""NumPy arrays to the core and back."""
+import ctypes
+
+import numpy as np
+
+from . import _structs as c
+from ._library import InvalidArgument, lib
+
+FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
+          np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
+OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"}}
+
+
+def is_real(array):
+    return array.dtype.kind == "f"
+
+
+def contiguous(values, role):
+    """float and double arrays that lie in one piece as they are, all others as a copy."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiub":
+        raise InvalidArgument(f"The {role} does not hold numbers, but {array.dtype}.")
+    if array.dtype not in FLOATS:
+        array = array.astype(np.float64)
+    return np.ascontiguousarray(array)
+
+
+class Arguments:
+    """Structures filled for one call. Keeps the arrays alive, which the core borrows."""
+
+    def __init__(self, positions):
+        self.kept = []
+        self.input, self.options = c.mcor_input(), c.mcor_options()
+        lib.mcor_set_default_options(ctypes.byref(self.options))
+        self.input.scalar_component = -1  # the magnitude
+        array = contiguous(positions, "array of positions")
+        self.count = self.input.count = len(array) if array.ndim else 0
+        if array.ndim != 2 or array.shape[1] != 3:
+            if array.size:
+                raise InvalidArgument(f"Positions have the shape (particles, 3), not {array.shape}.")
+            array = array.reshape(0, 3)
+        self.input.positions = self.view(array, None)
+
+    def view(self, array, name):
+        view = c.mcor_array()
+        view.type, view.components = FLOATS[array.dtype], 1 if array.ndim < 2 else array.shape[1]
+        view.data = array.ctypes.data if array.size else ctypes.addressof(self.something())
+        view.name = name.encode() if name else None
+        self.kept.append(array)
+        return view
+
+    def something(self):
+        """What an empty array points to: NULL would be a constant."""
+        self.kept.append(ctypes.create_string_buffer(32))
+        return self.kept[-1]
+
+    def per_particle(self, values, role, name=None, constant=False):
+        """An array of (particles,) or (particles, components), or one value for all of them."""
+        if constant and np.ndim(values) == 0:
+            view = c.mcor_array()
+            view.constant, view.name = float(values), (name or role).encode()
+            return view
+        array = contiguous(values, role)
+        if array.ndim not in (1, 2) or len(array) != self.count:
+            raise InvalidArgument(f"The {role} has the shape {array.shape}; for {self.count} particles it is "
+                                  f"({self.count},) or ({self.count}, components).")
+        return self.view(array, name or role)
+
+    def set_quantities(self, quantities):
+        for name, values in quantities.items():
+            if values is None:
+                continue
+            setattr(self.input, name, self.per_particle(values, name.replace("_", " "), constant=True))
+            if hasattr(self.input, "has_" + name):
+                setattr(self.input, "has_" + name, 1)
+
+    def set_solid(self, solid):
+        if solid is None:
+            return
+        marks = np.asarray(solid)
+        if marks.shape != (self.count,):
+            raise InvalidArgument(f"The marks of solid particles have the shape {marks.shape}; for "
+                                  f"{self.count} particles it is ({self.count},).")
+        if marks.dtype != np.uint8:
+            marks = marks != 0
+        marks = np.ascontiguousarray(marks).view(np.uint8)
+        self.kept.append(marks)
+        self.input.solid = marks.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
+
+    def set_attributes(self, attributes):
+        """{name: array}; returns the names in the order of the core's results."""
+        views = [self.per_particle(values, f"attribute '{name}'", str(name))
+                 for name, values in attributes.items()]
+        array = (c.mcor_array * max(len(views), 1))(*views)
+        self.kept.append(array)
+        self.input.attributes, self.input.attribute_count = array, len(views)
+        self.components = [(view.components, np.ndim(values) == 2)
+                           for view, values in zip(views, attributes.values())]
+        return list(attributes)
+
+    def set_iso_values(self, values):
+        values = np.ascontiguousarray(np.atleast_1d(np.asarray(values, dtype=np.float64)))
+        self.kept.append(values)
+        self.options.iso_values = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        self.options.iso_count = len(values)
+
+    def set_options(self, words):
+        """Options by their names in mcor.h."""
+        for name, value in words.items():
+            for struct, target in (("mcor_options", self.options), ("mcor_input", self.input)):
+                if name in c.KINDS[struct] and name in c.Options.__annotations__:
+                    set_option(target, name, c.KINDS[struct][name], value)
+                    break
+            else:
+                raise TypeError(f"There is no option '{name}'; there are {', '.join(c.Options.__annotations__)}.")
+
+
+def set_option(target, name, kind, value):
+    """An array (box) counts where it is given."""
+    if "[" not in kind:
+        setattr(target, name, number(name, kind, value))
+        return
+    if value is not None:
+        values = np.ravel(np.asarray(value, dtype=np.float64))
+        if len(values) != len(getattr(target, name)):
+            raise InvalidArgument(f"{name} has {len(getattr(target, name))} numbers, not {len(values)}.")
+        getattr(target, name)[:] = values.tolist()
+    if hasattr(target, "has_" + name):
+        setattr(target, "has_" + name, int(value is not None))
+
+
+def number(name, kind, value):
+    """An enumerator's word as its number: "wendland", "wendland_c2" and WENDLAND_C2 are the same."""
+    if name == "scalar_component" and value == "magnitude":
+        return -1
+    if kind not in c.ENUMS:
+        return float(value) if kind == "double" else int(value)
+    values = {k: v for k, v in c.ENUMS[kind].items() if not k.endswith("_COUNT")}
+    words = dict(zip(_words(list(values)), values.values()))
+    if isinstance(value, str):
+        word = value.lower().replace(" ", "_").replace("-", "_")
+        word = OTHER_WORDS.get(kind, {}).get(word, word)
+        if kind == "mcor_sph_kernel" and lib.mcor_find_sph_kernel(word.encode()) >= 0:
+            return lib.mcor_find_sph_kernel(word.encode())
+        if word not in words:
+            raise InvalidArgument(f"{name} is one of {', '.join(words)}, not '{value}'.")
+        return words[word]
+    if kind == "mcor_type" and not isinstance(value, (int, np.integer)):
+        return FLOATS.get(np.dtype(value), -1)
+    return int(value)
+
+
+def _words(names):
+    """MCOR_TOPOLOGY_TABLE, MCOR_TOPOLOGY_FIELD: table, field."""
+    parts = [name.lower().split("_")[1:] for name in names]
+    while all(len(part) > 1 for part in parts) and len({part[0] for part in parts}) == 1:
+        parts = [part[1:] for part in parts]
+    return ["_".join(part) for part in parts]
+
+
+def take(pointer, shape):
+    """A copy of the core's array that NumPy owns; None where there is none."""
+    if not pointer:
+        return None
+    size = int(np.prod(shape))
+    if size == 0:
+        return np.empty(shape, np.dtype(pointer._type_))
+    address = ctypes.addressof(pointer.contents)
+    return np.frombuffer((pointer._type_ * size).from_address(address), pointer._type_).reshape(shape).copy()
+
+
+def take_all(struct, result, sizes):
+    """The arrays of a result that stand by themselves, by name."""
+    arrays = {}
+    for name, shape in c.SHAPES[struct].items():
+        if "->" not in shape and shape[0] in sizes and name != "attribute_not_finite":
+            arrays[name] = take(getattr(result, name), tuple(sizes.get(part, part) for part in shape))
+    return arrays
+
+
+def take_each(pointers, names, components, count, more=()):
+    """One array per attribute; those that the core left out are missing."""
+    arrays = {}
+    for i, (name, (size, is_matrix)) in enumerate(zip(names, components)):
+        if pointers and pointers[i]:
+            arrays[name] = take(pointers[i], (count,) + ((size,) if is_matrix else ()) + more)
+    return arrays
+
+
+def left_out(result, names):
+    """{name: the first particle at which the attribute is not finite}."""
+    return {name: int(result.attribute_not_finite[i]) for i, name in enumerate(names)
+            if result.attribute_not_finite and result.attribute_not_finite[i] >= 0}
+
+
+def statistics(struct):
+    """mcor_statistics as a dict; "seconds" is a dict by phase."""
+    values = {}
+    for name, kind in struct._fields_:
+        value = getattr(struct, name)
+        if name == "seconds":
+            value = {lib.mcor_phase_name(i).decode(): seconds for i, seconds in enumerate(value)}
+        elif isinstance(value, bytes):
+            value = value.decode(errors="replace")
+        elif isinstance(value, ctypes.Array):
+            value = tuple(value)
+        values[name] = value
+    return values

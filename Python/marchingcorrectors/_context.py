@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contexts: a device with its compiled programs, and what it keeps between calls."""
+import ctypes
+import os
+import signal
+import threading
+
+from . import _structs as c
+from ._library import ERRORS, NO_DEVICE, DeviceError, Error, _list, lib, start
+
+
+class Context:
+    """An OpenCL device, its compiled programs, and what is kept on it between calls.
+
+    device: a number or part of a name as in `devices()`; None: the first one. Calls on one context
+    from several threads wait for each other; contexts of their own run side by side.
+
+    Particles that stay the same between calls can stay on the device: give them equal nonzero
+    numbers as `particles_version` (and `scalar_version`).
+    """
+
+    def __init__(self, device=None):
+        self._pid = os.getpid()
+        self._lock = threading.Lock()
+        self._handle = ctypes.c_void_p()
+        wanted = "" if device is None else str(device)
+        start(wanted)
+        if not _list():
+            raise DeviceError(NO_DEVICE)
+        # What the core prefers by itself need not be what the loader lists first.
+        status = lib.mcor_create_context((_pocl_number(wanted) or "0").encode(), ctypes.byref(self._handle))
+        if status:
+            sentence = self._sentence()
+            self.close()
+            raise ERRORS.get(status, Error)(sentence)
+
+    def _sentence(self):
+        return (lib.mcor_last_error(self._handle) if self._handle else b"").decode(errors="replace") \
+            or "Memory ran out."
+
+    def release_memory(self):
+        """Drops what is kept on the device between calls; compiled programs stay."""
+        with self._lock:
+            if self._handle:
+                lib.mcor_release_memory(self._handle)
+
+    def close(self):
+        """Gives the device back. Using the context afterwards is an error."""
+        # A forked child has the handle, but not the driver's threads.
+        if self._handle and self._pid == os.getpid():
+            with self._lock:
+                lib.mcor_free_context(self._handle)
+        self._handle = ctypes.c_void_p()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __del__(self):
+        if getattr(self, "_handle", None):
+            self.close()
+
+    def run(self, call, options, progress, free):
+        """call(handle) with the context to itself; raises what went wrong, the callback's exceptions
+        and KeyboardInterrupt included."""
+        start()
+        with self._lock, Watch(progress) as watch:
+            if not self._handle:
+                raise DeviceError("This context was closed; make another one.")
+            options.progress = watch.callback
+            try:
+                status = call(self._handle)
+            finally:
+                options.progress = c.Progress()
+            error = ERRORS.get(status, Error)(self._sentence()) if status else None
+        if watch.failure is not None or watch.interrupted:
+            free()
+            watch.raise_it()
+        if error:
+            raise error
+
+
+def _pocl_number(wanted):
+    """"pocl" is what people call it; its platform has another name."""
+    return "portable computing" if wanted.lower() == "pocl" else wanted
+
+
+class Watch:
+    """The callback between launches. In the main thread it also sees Ctrl-C: Python's own handler
+    would raise in a place where nobody can catch it, so that one of ours only takes note."""
+
+    def __init__(self, progress):
+        self.progress, self.failure, self.interrupted, self.before = progress, None, None, None
+        self.callback = c.Progress(self.report)
+
+    def __enter__(self):
+        if threading.current_thread() is threading.main_thread():
+            self.before = signal.getsignal(signal.SIGINT)
+            if callable(self.before):
+                signal.signal(signal.SIGINT, self.note)
+        return self
+
+    def __exit__(self, *_):
+        if callable(self.before):
+            signal.signal(signal.SIGINT, self.before)
+
+    def note(self, number, frame):
+        self.interrupted = (number, frame)
+
+    def report(self, _, fraction, phase):
+        if self.interrupted:
+            return 1
+        if self.progress is None:
+            return 0
+        try:
+            return 1 if self.progress(fraction, phase.decode()) else 0
+        except BaseException as failure:  # raised again where the call returns
+            self.failure = failure
+            return 1
+
+    def raise_it(self):
+        if self.failure is not None:
+            raise self.failure
+        self.before(*self.interrupted)
+        raise KeyboardInterrupt  # a handler that returns: the run has ended all the same
+
+
+_contexts = {}
+_contexts_lock = threading.Lock()
+
+
+def default_context(device):
+    """One per device, whose programs the next call finds compiled; it keeps nothing else."""
+    start()
+    key = "" if device is None else str(device)
+    with _contexts_lock:
+        if key not in _contexts:
+            _contexts[key] = Context(device)
+        return _contexts[key]

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The VTK classes: those of C++ where they were built, else the filter in Python."""
+from importlib import import_module
+from pathlib import Path
+
+
+def _is_from_pypi(vtkmodules):
+    """VTK's wheels bring no headers, so that no C++ class can have been built against one; a class
+    built against another VTK must not be loaded beside it."""
+    folder = Path(vtkmodules.__file__).resolve().parent.parent
+    return any(folder.glob("vtk-*.dist-info"))
+
+
+def find_class(name):
+    try:
+        import vtkmodules
+    except ImportError:
+        raise ImportError('VTK was not found: pip install "marching-correctors[vtk]", or '
+                          '"marching-correctors[pyvista]".') from None
+    package, module = import_module(__package__), None
+    built = any(list(Path(folder).glob("vtkMarchingCorrectors*.so")) for folder in package.__path__)
+    if built and not _is_from_pypi(vtkmodules):
+        try:
+            import vtkmodules.vtkCommonExecutionModel  # noqa: F401  superclasses come first
+
+            module = import_module(".vtkMarchingCorrectors", __package__)
+        except ImportError:
+            pass  # of another Python, or its VTK is gone
+    if module is None and name == "vtkMarchingCorrectors":
+        module = import_module(".MarchingCorrectorsFilter", __package__)
+    if module is None or not hasattr(module, name):
+        raise ImportError(f"{name} is there in C++ only: build the sources with CMake for this VTK.")
+    found = getattr(module, name)
+    setattr(package, name, found)  # in place of the module of this name, which importing left there
+    return found

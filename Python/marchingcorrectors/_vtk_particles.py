@@ -1,0 +1,265 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The particles of a VTK data set as arguments of the core, as vtkSPHParticles finds them in C++."""
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+from . import _structs as c
+from ._arrays import Arguments
+from ._library import lib
+
+GHOSTS = "vtkGhostType"
+QUANTITIES = {"smoothing_length": "MCOR_SMOOTHING_LENGTH", "volume": "MCOR_VOLUME", "mass": "MCOR_MASS",
+              "density": "MCOR_DENSITY"}
+
+
+class Unusable(Exception):
+    """The sentence that says what is missing or wrong."""
+
+
+def real_name(name):
+    """What lists of arrays show in place of an array, as in ParaView's panel, is no name."""
+    return "" if name in ("(automatic)", "(none)") else name
+
+
+def name_of(array):
+    return (array.GetName() if array is not None else None) or ""
+
+
+def is_real(array):
+    return array.GetDataTypeAsString() in ("float", "double")
+
+
+def to_numpy(array):
+    """float and double arrays where they lie, all others as a copy in double."""
+    if not isinstance(array, (vtkFloatArray, vtkDoubleArray)):
+        copy = vtkDoubleArray()
+        copy.DeepCopy(array)
+        array = copy
+    values = vtk_to_numpy(array)
+    return values.reshape(array.GetNumberOfTuples(), array.GetNumberOfComponents())
+
+
+def detect(data, count, quantity):
+    """The point array with the most usual name for a quantity. The core has the names."""
+    number = c.ENUMS["mcor_quantity"][QUANTITIES[quantity]]
+    best = None
+    for i in range(data.GetNumberOfArrays()):
+        array = data.GetArray(i)
+        if array is None or array.GetNumberOfComponents() != 1 or array.GetNumberOfTuples() != count:
+            continue
+        rank = lib.mcor_name_rank(number, name_of(array).encode())
+        if rank >= 0 and (best is None or rank < best[0]):
+            best = (rank, array)
+    return best[1] if best else None
+
+
+class Particles:
+    """Finds the arrays; raises Unusable. choice: the filter's properties, copied."""
+
+    def __init__(self, choice, points):
+        self.choice, self.points = choice, points
+        self.data, self.count = points.GetPointData(), points.GetNumberOfPoints()
+        self.positions = points.GetPoints().GetData()
+        self.scalar = self.dot = self.fluid = None
+        self.used = dict.fromkeys(QUANTITIES)  # arrays
+        self.values = {}  # arrays or constants for the core, by quantity
+        self.scalar_name, self.iso_value_name = "", "IsoValue"
+        self.interpolated, self.from_nearest = [], []
+        self.solid = None
+
+    def collect(self, requests, taken):
+        if not self.choice.FreeSurface:
+            self.collect_scalar(*requests)
+        self.collect_quantities()
+        self.collect_solids()
+        self.name_scalar(taken)
+        if self.choice.InterpolateAttributes:
+            self.collect_attributes(taken + [self.iso_value_name] * bool(self.choice.ComputeScalars))
+
+    # -- arrays -------------------------------------------------------------------------------------
+
+    def list_point_arrays(self):
+        names = [name_of(self.data.GetAbstractArray(i)) for i in range(self.data.GetNumberOfArrays())]
+        return f"Point arrays: {', '.join(names)}." if names else "The input has no point arrays."
+
+    def check(self, role, name, array):
+        if array is None:
+            raise Unusable(f"There is no point array '{name}' for the {role}. {self.list_point_arrays()}")
+        if not isinstance(array, vtkDataArray):
+            raise Unusable(f"The {role} array '{name_of(array)}' does not hold numbers.")
+        if array.GetNumberOfTuples() != self.count or array.GetNumberOfComponents() < 1:
+            raise Unusable(f"The {role} array '{name_of(array)}' has {array.GetNumberOfTuples()} values for "
+                           f"{self.count} points.")
+        return array
+
+    def find(self, role, name):
+        array = self.check(role, name, self.data.GetAbstractArray(name))
+        if array.GetNumberOfComponents() != 1:
+            raise Unusable(f"The {role} array '{name_of(array)}' has {array.GetNumberOfComponents()} components; "
+                           "it must have one.")
+        return array
+
+    def collect_scalar(self, scalar, dot):
+        if not scalar.name and scalar.array is None:
+            raise Unusable("No scalar to contour was chosen: choose a point array, or turn the free surface on. "
+                           + self.list_point_arrays())
+        if not scalar.on_points or not dot.on_points:
+            raise Unusable(f"The scalar '{dot.name if scalar.on_points else scalar.name}' is not a point array; "
+                           f"SPH particles are points. {self.list_point_arrays()}")
+        self.scalar = self.check("scalar", scalar.name, scalar.array)
+        components, component = self.scalar.GetNumberOfComponents(), self.choice.ScalarComponent
+        if real_name(dot.name):
+            self.dot = self.check("second vector of the dot product", dot.name, dot.array)
+            if self.dot.GetNumberOfComponents() != components:
+                raise Unusable("The dot product needs two arrays with the same number of components; "
+                               f"'{name_of(self.scalar)}' has {components}, '{name_of(self.dot)}' has "
+                               f"{self.dot.GetNumberOfComponents()}.")
+        elif components > 1 and component != -1 and not 0 <= component < components:
+            raise Unusable(f"The scalar '{name_of(self.scalar)}' has no component {component}; choose 0 to "
+                           f"{components - 1}, or -1 for the magnitude.")
+
+    def collect_quantities(self):
+        choice = self.choice
+        if not choice.EstimateSmoothingLength:
+            self.collect_quantity("smoothing_length", choice.SmoothingLengthArrayName, choice.SmoothingLength)
+            if "smoothing_length" not in self.values:
+                raise Unusable("The particles have no smoothing length: no point array has one of its usual names "
+                               "(SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask for an "
+                               f"estimate. {self.list_point_arrays()}")
+        mass_or_density_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName)
+                               or choice.Mass or choice.Density)
+        self.collect_quantity("volume", choice.VolumeArrayName, 0.0, may_detect=not mass_or_density_set)
+        if "volume" in self.values:
+            return
+        self.collect_quantity("mass", choice.MassArrayName, choice.Mass)
+        self.collect_quantity("density", choice.DensityArrayName, choice.Density)
+        if "mass" not in self.values:  # a density alone says nothing of volumes
+            self.values.pop("density", None)
+            self.used["density"] = None
+
+    def collect_quantity(self, quantity, set_name, constant, may_detect=True):
+        """A constant goes before a name, a name before the usual names."""
+        name = real_name(set_name)
+        if constant:
+            self.values[quantity] = constant
+            return
+        if name:
+            self.used[quantity] = self.find(quantity.replace("_", " "), name)
+        elif self.choice.DetectArrays and may_detect:
+            self.used[quantity] = detect(self.data, self.count, quantity)
+        if self.used[quantity] is not None:
+            self.values[quantity] = self.used[quantity]
+
+    def collect_solids(self):
+        name = real_name(self.choice.FluidArrayName)
+        if name:
+            self.fluid = self.find("fluid", name)
+            self.solid = to_numpy(self.fluid)[:, 0] != self.choice.FluidValue
+
+    def name_scalar(self, taken):
+        """Computed arrays keep their names, which users look for."""
+        if self.choice.FreeSurface:
+            return
+        self.scalar_name = name_of(self.scalar)
+        component = self.choice.ScalarComponent
+        if self.dot is not None:
+            self.scalar_name += "_Dot_" + name_of(self.dot)
+        elif self.scalar.GetNumberOfComponents() > 1:
+            label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
+            self.scalar_name += "_" + (label or str(component))
+        if self.scalar_name and self.scalar_name not in taken:
+            self.iso_value_name = self.scalar_name
+
+    def collect_attributes(self, taken):
+        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS}
+        for i in range(self.data.GetNumberOfArrays()):
+            array = self.data.GetAbstractArray(i)
+            if name_of(array) not in left and array.GetNumberOfTuples() == self.count:
+                real = isinstance(array, vtkDataArray) and is_real(array)
+                (self.interpolated if real else self.from_nearest).append(array)
+
+    # -- for the core -------------------------------------------------------------------------------
+
+    def arguments(self):
+        result = Arguments(to_numpy(self.positions))
+        result.set_solid(self.solid)
+        for quantity, value in self.values.items():
+            if isinstance(value, float):
+                result.set_quantities({quantity: value})
+                getattr(result.input, quantity).name = None  # it is no array's
+            else:
+                setattr(result.input, quantity, self.view(result, value))
+                if hasattr(result.input, "has_" + quantity):
+                    setattr(result.input, "has_" + quantity, 1)
+        if self.scalar is not None:
+            result.input.scalar = self.view(result, self.scalar)
+            several = self.scalar.GetNumberOfComponents() > 1
+            result.input.scalar_component = self.choice.ScalarComponent if several else 0
+        if self.dot is not None:
+            result.input.scalar_dot = self.view(result, self.dot)
+        views = [self.view(result, array) for array in self.interpolated]
+        array = (c.mcor_array * max(len(views), 1))(*views)
+        result.kept.append(array)
+        result.input.attributes, result.input.attribute_count = array, len(views)
+        result.input.smoothing_length_is_support_radius = bool(self.choice.SmoothingLengthIsSupportRadius)
+        result.input.estimate_smoothing_length = bool(self.choice.EstimateSmoothingLength)
+        result.input.ignore_solids = bool(self.choice.IgnoreSolids)
+        return result
+
+    @staticmethod
+    def view(arguments, array):
+        return arguments.view(to_numpy(array), name_of(array))
+
+    def signatures(self):
+        """What tells one state of particles and scalar from another. The data set's own time is part
+        of it: users change arrays in place and tell the data set."""
+
+        def sign(thing):
+            return None if thing is None else (thing.__this__, thing.GetMTime())
+
+        choice = self.choice
+        particles = [sign(thing) for thing in (self.points, self.positions, self.fluid, *self.used.values())]
+        particles += [choice.FluidValue, choice.SmoothingLength, choice.Mass, choice.Density, choice.Kernel,
+                      choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids]
+        return particles, [sign(self.scalar), sign(self.dot), choice.ScalarComponent]
+
+    def middle_of_range(self):
+        """Of the fluid's scalar, the 2 % lowest and highest values left out."""
+        values = to_numpy(self.scalar).astype(np.float64, copy=False)
+        if self.dot is not None:
+            values = sum(a * b for a, b in zip(values.T, to_numpy(self.dot).astype(np.float64).T))
+        elif values.shape[1] == 1 or self.choice.ScalarComponent >= 0:
+            values = values[:, max(self.choice.ScalarComponent, 0) if values.shape[1] > 1 else 0]
+        else:
+            values = np.sqrt(sum(column * column for column in values.T))
+        values = values[np.isfinite(values) & (True if self.solid is None else ~self.solid)]
+        if not len(values):
+            return 0.0
+        margin = len(values) // 50
+        values = np.partition(values, [margin, len(values) - 1 - margin])
+        return 0.5 * float(values[margin]) + 0.5 * float(values[-1 - margin])
+
+
+class Request:
+    """A point array asked for by SetInputArrayToProcess, and the name asked for."""
+
+    def __init__(self, algorithm, index, points):
+        self.array, self.name, self.on_points = None, "", True
+        requests = algorithm.GetInformation().Get(algorithm.INPUT_ARRAYS_TO_PROCESS())
+        if requests is None or index >= requests.GetNumberOfInformationObjects():
+            return
+        info = requests.GetInformationObject(index)
+        self.name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        attribute = info.Get(vtkDataObject.FIELD_ATTRIBUTE_TYPE()) if info.Has(
+            vtkDataObject.FIELD_ATTRIBUTE_TYPE()) else None
+        if not self.name and attribute is None:
+            return
+        association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
+        self.on_points = association in (vtkDataObject.FIELD_ASSOCIATION_POINTS,
+                                         vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)
+        if self.on_points:
+            data = points.GetPointData()
+            self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(attribute)

@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a run of the VTK filter found and used, in words for a panel, and what a run may take."""
+import numpy as np
+
+from . import _structs as c
+from ._library import lib
+from ._vtk_particles import to_numpy
+
+HUGE_CELLS = 1e9
+
+
+def estimate_cells(particles, options):
+    """About how many cubes of the virtual grid the fluid fills: a particle takes (h / 1.3)^3."""
+    choice = particles.choice
+    estimated = bool(choice.EstimateSmoothingLength)
+    fluid = np.ones(particles.count, bool) if particles.solid is None else ~particles.solid
+    if not fluid.any() or (estimated and options.cube_size > 0):
+        return 0.0
+    value = 1.0 if estimated else particles.values["smoothing_length"]
+    h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
+    h = h[fluid].astype(np.float64)
+    radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated
+    per_length = 1 / lib.mcor_support_factor(options.sph_kernel) if radius else 1.0
+    size = options.cube_size if options.cube_size > 0 else options.cube_size_factor * float(h.min()) * per_length
+    return float((h ** 3).sum()) * (per_length / 1.3) ** 3 / size ** 3 if size > 0 else 0.0
+
+
+def describe(array):
+    return "array " + (array.name or b"").decode() if array.data else f"{array.constant:g}"
+
+
+def describe_smoothing_length(given, statistics):
+    text = f"{statistics.smoothing_length_min:g}"
+    if statistics.smoothing_length_max > statistics.smoothing_length_min:
+        text += f" to {statistics.smoothing_length_max:g}"
+    if given.estimate_smoothing_length:
+        return text + " (estimated)"
+    how = describe(given.smoothing_length) if given.smoothing_length.data else "given"
+    return f"{text} ({how}{', support radius' if given.smoothing_length_is_support_radius else ''})"
+
+
+def describe_volume(given):
+    if given.has_volume:
+        return describe(given.volume)
+    if given.has_mass:
+        return f"{describe(given.mass)} / {describe(given.density) if given.has_density else 'density summed from it'}"
+    return "computed from the positions"
+
+
+class Summary:
+    """Of the last run; the part of the filter that tells about it."""
+
+    def clear_summary(self):
+        self.FluidScalarRange, self.UsedIsoValues = (0.0, 0.0), ""
+        self.UsedSmoothingLength, self.UsedVolume = "", ""
+        self.UsedCubeSize = self.EstimatedCells = 0.0
+
+    def summarize(self, arguments, surface):
+        given, options, statistics = arguments.input, arguments.options, surface.statistics
+        if options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
+            self.FluidScalarRange = (statistics.scalar_min, statistics.scalar_max)
+        self.UsedIsoValues = ", ".join(f"{options.iso_values[i]:g}" for i in range(options.iso_count))
+        self.UsedSmoothingLength = describe_smoothing_length(given, statistics)
+        self.UsedVolume, self.UsedCubeSize = describe_volume(given), statistics.cube_size
+
+    def GetFluidScalarRange(self):
+        return self.FluidScalarRange
+
+    def GetUsedIsoValues(self):
+        return self.UsedIsoValues
+
+    def GetUsedSmoothingLength(self):
+        return self.UsedSmoothingLength
+
+    def GetUsedVolume(self):
+        return self.UsedVolume
+
+    def GetUsedCubeSize(self):
+        return self.UsedCubeSize
+
+    def GetEstimatedCells(self):
+        return self.EstimatedCells
+
+
+class Box:
+    """The part of the filter that draws the cells in a box alone, or has particles repeat."""
+
+    Box, PeriodicBounds = (0.0, 1.0) * 3, (0.0,) * 6
+
+    def SetBox(self, *sides):
+        self._set_sides("Box", sides)
+
+    def GetBox(self):
+        return self.Box
+
+    def SetPeriodicBounds(self, *sides):
+        self._set_sides("PeriodicBounds", sides)
+
+    def GetPeriodicBounds(self):
+        return self.PeriodicBounds
+
+    def _set_sides(self, name, sides):
+        sides = tuple(float(side) for side in (sides[0] if len(sides) == 1 else sides))
+        if len(sides) != 6:
+            raise TypeError(f"{name} has six sides: x0, x1, y0, y1, z0, z1")
+        if sides != getattr(self, name):
+            setattr(self, name, sides)
+            self.Modified()
+
+    def SetPanelBoxPosition(self, x, y, z):
+        b = self.Box
+        self.SetBox(x, x + b[1] - b[0], y, y + b[3] - b[2], z, z + b[5] - b[4])
+
+    def SetPanelBoxLength(self, x, y, z):
+        b = self.Box
+        self.SetBox(b[0], b[0] + x, b[2], b[2] + y, b[4], b[4] + z)

@@ -1,0 +1,232 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A surface of the core as vtkPolyData, as vtkMarchingCorrectorsOutput builds it in C++."""
+import ctypes
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import (vtkAbstractArray, vtkDataArray, vtkDoubleArray, vtkIdList, vtkPoints,
+                                      vtkStringArray, vtkTypeInt64Array)
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+from . import _structs as c
+from ._arrays import statistics, take, take_all
+from ._library import lib
+from ._vtk_particles import is_real, name_of
+
+COMPUTED = {"normals": "Normals", "gradients": "Gradients", "weight_sum": "WeightSum",
+            "boundary_eigenvalue": "BoundaryEigenvalue", "correction_length": "CorrectionLength",
+            "residual": "Residual", "boundary_flag": "BoundaryFlag"}
+
+
+def computed_arrays(options):
+    return [name for option, name in COMPUTED.items() if getattr(options, option)]
+
+
+def add(data, name, values):
+    array = numpy_to_vtk(values, deep=True)
+    array.SetName(name)
+    data.AddArray(array)
+    return array
+
+
+def build_mesh(surface, particles, output, as_float):
+    arrays = take_all("mcor_surface", surface,
+                      {"point_count": surface.point_count, "triangle_count": surface.triangle_count})
+    points, data = vtkPoints(), output.GetPointData()
+    where = arrays["points"] if arrays["points"] is not None else np.empty((0, 3))
+    points.SetData(numpy_to_vtk(where.astype(np.float32 if as_float else np.float64, copy=False), deep=True))
+    output.SetPoints(points)
+    build_triangles(arrays["triangles"], output)
+    build_carried(surface, particles, data, arrays["nearest_particle"])
+    for option, name in COMPUTED.items():
+        if arrays[option] is not None:
+            add(data, name, arrays[option])
+    if arrays["normals"] is not None:
+        data.SetActiveNormals("Normals")
+    if arrays["iso_value"] is not None:
+        single = particles.scalar is not None and particles.scalar.GetDataTypeAsString() == "float"
+        add(data, particles.iso_value_name, arrays["iso_value"].astype(np.float32 if single else np.float64))
+        data.SetActiveScalars(particles.iso_value_name)
+
+
+def build_triangles(triangles, output):
+    """With ids as vtkContourFilter's: some filters take a mesh with others for non-manifold."""
+    corners = np.empty(0) if triangles is None else triangles.ravel()
+    offsets, connectivity, cells = vtkTypeInt64Array(), vtkTypeInt64Array(), vtkCellArray()
+    for array, values in ((offsets, np.arange(0, len(corners) + 1, 3)), (connectivity, corners)):
+        array.SetNumberOfValues(len(values))
+        vtk_to_numpy(array)[:] = values
+    cells.SetData(offsets, connectivity)
+    output.SetPolys(cells)
+
+
+def build_carried(surface, particles, data, nearest):
+    for i, array in enumerate(particles.interpolated):
+        if surface.attributes and surface.attributes[i]:
+            components = array.GetNumberOfComponents()
+            values = take(surface.attributes[i], (surface.point_count, components))
+            single = array.GetDataTypeAsString() == "float"
+            made = add(data, name_of(array), (values[:, 0] if components == 1 else values).astype(
+                np.float32 if single else np.float64, copy=False))
+            made.CopyComponentNames(array)
+    if nearest is None:
+        return
+    for array in particles.from_nearest:
+        made = from_nearest(array, nearest)
+        made.SetName(name_of(array))
+        made.CopyComponentNames(array)
+        data.AddArray(made)
+
+
+def from_nearest(array, nearest):
+    if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
+        return numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
+    made, ids = vtkAbstractArray.CreateArray(array.GetDataType()), vtkIdList()
+    made.SetNumberOfComponents(array.GetNumberOfComponents())
+    made.SetNumberOfTuples(len(nearest))
+    ids.SetNumberOfIds(len(nearest))
+    for i, particle in enumerate(nearest.tolist()):
+        ids.SetId(i, particle)
+    array.GetTuples(ids, made)
+    return made
+
+
+def left_out(surface, particles):
+    for i, array in enumerate(particles.interpolated):
+        particle = surface.attribute_not_finite[i] if surface.attribute_not_finite else -1
+        if particle >= 0:
+            yield (f"The point array '{name_of(array)}' is NaN or infinite at particle {particle} and was left "
+                   "out of the surface. Correct its values, or exclude it.")
+
+
+# -- field data -------------------------------------------------------------------------------------
+
+def add_real(data, name, *values):
+    array = vtkDoubleArray()
+    array.SetNumberOfComponents(len(values))
+    array.InsertNextTuple(values)
+    array.SetName(name)
+    data.AddArray(array)
+
+
+def add_count(data, name, *values):
+    array = vtkTypeInt64Array()
+    array.SetNumberOfComponents(len(values))
+    array.SetNumberOfTuples(1)
+    for i, value in enumerate(values):
+        array.SetValue(i, int(value))
+    array.SetName(name)
+    data.AddArray(array)
+
+
+def add_text(data, name, text):
+    array = vtkStringArray()
+    array.InsertNextValue(text or "")
+    array.SetName(name)
+    data.AddArray(array)
+
+
+def build_field_data(data, surface, particles, arguments):
+    s = statistics(surface.statistics)
+    add_text(data, "Device", s["device"])
+    add_text(data, "Platform", s["platform"])
+    add_statistics(data, s, surface, arguments.options)
+    add_parameters(data, particles, arguments)
+
+
+def add_statistics(data, s, surface, options):
+    add_count(data, "FluidParticles", s["fluid_particles"])
+    add_count(data, "SolidParticles", s["solid_particles"])
+    add_real(data, "SmoothingLengthRange", s["smoothing_length_min"], s["smoothing_length_max"])
+    if options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
+        add_real(data, "ScalarRange", s["scalar_min"], s["scalar_max"])
+    add_real(data, "CubeSize", s["cube_size"])
+    add_count(data, "LatticeOrigin", *s["lattice_origin"])
+    add_count(data, "LatticeCells", *s["lattice_cells"])
+    for name in ("virtual_cells", "seed_cells", "seed_cells_not_intersected", "cells_used", "ambiguous_faces",
+                 "joined_faces", "ambiguous_cells", "tunnels"):
+        add_count(data, camel(name), s[name])
+    add_count(data, "Points", surface.point_count)
+    add_count(data, "Triangles", surface.triangle_count)
+    add_count(data, "TrianglesBeforeTrimming", s["triangles_before_trimming"])
+    add_real(data, "CorrectionMean", s["correction_mean"])
+    add_real(data, "CorrectionMax", s["correction_max"])
+    add_real(data, "CorrectionStandardDeviation", s["correction_deviation"])
+    add_count(data, "VerticesCorrected", s["vertices_corrected"])
+    add_count(data, "VerticesAboveTolerance", s["vertices_above_tolerance"])
+    add_real(data, "IterationsMean", s["iterations_mean"])
+    add_count(data, "IterationsMax", s["iterations_max"])
+    add_count(data, "NewtonEvaluations", s["newton_evaluations"])
+    add_real(data, "ResidualMax", s["residual_max"])
+    add_count(data, "TrimVertices", s["trim_vertices"])
+    add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
+
+
+def add_quantity(data, name, given, array):
+    """The array's name, or the value for all particles where it was used."""
+    add_text(data, name + "Array", (array.name or b"").decode())
+    if given and not array.data:
+        add_real(data, name, array.constant)
+
+
+def add_parameters(data, particles, arguments):
+    o, core, choice = arguments.options, arguments.input, particles.choice
+    array = numpy_to_vtk(np.ctypeslib.as_array(o.iso_values, (o.iso_count,)) if o.iso_count else np.empty(0),
+                         deep=True)
+    array.SetName("IsoValues")
+    data.AddArray(array)
+    add_text(data, "Field", ("shepard", "sum", "weight sum")[o.field])
+    add_text(data, "Scalar", particles.scalar_name)
+    add_text(data, "SmoothingLengthArray", (core.smoothing_length.name or b"").decode())
+    add_count(data, "SmoothingLengthIsSupportRadius", core.smoothing_length_is_support_radius)
+    add_count(data, "EstimateSmoothingLength", core.estimate_smoothing_length)
+    add_text(data, "VolumeArray", (core.volume.name or b"").decode())
+    add_quantity(data, "Mass", core.has_mass, core.mass)
+    add_quantity(data, "Density", core.has_density, core.density)
+    add_text(data, "FluidArray", choice.FluidArrayName if particles.fluid is not None else "")
+    if particles.fluid is not None:
+        add_real(data, "FluidValue", choice.FluidValue)
+        add_count(data, "IgnoreSolids", core.ignore_solids)
+        add_real(data, "WallShare", o.wall_share)
+    add_text(data, "Kernel", lib.mcor_sph_kernel_name(o.sph_kernel).decode())
+    add_text(data, "SeedMode", ("complete", "pairs")[o.seeds])
+    add_text(data, "Topology", ("table", "field")[o.topology])
+    add_text(data, "Precision", ("single", "double")[o.precision])
+    add_real(data, "CubeSizeFactor", o.cube_size_factor)
+    if o.has_box:
+        add_real(data, "Box", *o.box)
+    if any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3)):
+        add_real(data, "PeriodicBounds", *o.periodic)
+    add_real(data, "HScaleFactor", o.h_scale)
+    add_real(data, "NodeThreshold", o.node_threshold)
+    add_text(data, "BoundaryDetection", ("weight sum", "eigenvalue")[o.boundary_detection])
+    add_real(data, "VertexThreshold", o.vertex_threshold)
+    add_real(data, "Tolerance", o.tolerance)
+    add_count(data, "IterationLimit", o.iteration_limit)
+    add_count(data, "Preview", o.preview)
+
+
+def camel(name):
+    return "".join(part.capitalize() for part in name.split("_"))
+
+
+def add_run_statistics(run, surface):
+    """Sums over the blocks of composite data."""
+    s = statistics(surface.statistics)
+    seconds = {**s["seconds"], "program build": s["build_seconds"]}
+    seconds["total"] = sum(seconds.values())
+    array = run.GetArray("Seconds")
+    if array is None:
+        add_real(run, "Seconds", *[0.0] * len(seconds))
+        array = run.GetArray("Seconds")
+    for i, (name, value) in enumerate(seconds.items()):
+        array.SetComponentName(i, name)
+        array.SetComponent(0, i, array.GetComponent(0, i) + value)
+
+    def before(name):
+        return int(run.GetArray(name).GetComponent(0, 0)) if run.HasArray(name) else 0
+
+    for name in ("particles_in_reach", "bricks", "nodes_evaluated", "march_rounds"):
+        add_count(run, camel(name), before(camel(name)) + s[name])
+    add_count(run, "DeviceBytesPeak", max(before("DeviceBytesPeak"), s["device_bytes_peak"]))

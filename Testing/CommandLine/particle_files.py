@@ -66,7 +66,7 @@ def write_vtu(path, points, arrays):
         '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" '
         f'byte_order="LittleEndian"><UnstructuredGrid><Piece NumberOfPoints="{count}" '
         f'NumberOfCells="{count}"><PointData>{data}</PointData>'
-        f'<Points>{xml_array("Points", points)}</Points><Cells>{cells}</Cells></Piece>'
+        f'<Points>{xml_array("Points", points, width=3)}</Points><Cells>{cells}</Cells></Piece>'
         '</UnstructuredGrid></VTKFile>')
 
 
@@ -80,3 +80,25 @@ def write_legacy(path, points, arrays):
         else:
             lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", text_of(values)]
     path.write_text("\n".join(lines) + "\n")
+
+
+def drop_at(time, n=10, numbers=None, velocity=2.0):
+    """The block at a time at which it falls and turns around the z axis: positions and arrays.
+    `numbers` are the particles that are there, in the order of the file."""
+    points, arrays = lattice(n)
+    angle = velocity * time
+    c, s = math.cos(angle), math.sin(angle)
+    numbers = list(range(len(points))) if numbers is None else numbers
+    moved = [(c * points[i][0] - s * points[i][1], s * points[i][0] + c * points[i][1],
+              points[i][2] - 0.5 * time * time) for i in numbers]
+    arrays = {name: [values[i] for i in numbers] for name, values in arrays.items()}
+    arrays["Velocity"] = [(-velocity * p[1], velocity * p[0], -time) for p in moved]
+    arrays["Idp"] = numbers
+    return moved, arrays
+
+
+def write_pvd(path, entries):
+    """entries: (time, file) each."""
+    path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>' + "".join(
+        f'<DataSet timestep="{time}" group="" part="0" file="{name}"/>' for time, name in entries) +
+        '</Collection></VTKFile>')

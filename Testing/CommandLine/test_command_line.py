@@ -22,11 +22,12 @@ class Usage(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(self.run_program("-h").stdout, result.stdout)
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
-                --mass --density --kernel --fluid --solids --h-scale --cube-factor --cube-size
-                --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
+                --mass --density --dp --coefh --kernel --fluid --solids --wall-share --h-scale --cube-factor --cube-size
+                --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
                 --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
                 --memory-limit --list-devices --stats --screenshot --repeat --quiet --help
-                --version --precision --support-radius --output-precision""".split():
+                --version --precision --support-radius --output-precision --box --periodic --times
+                --time-step""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
     def test_version(self):
@@ -44,8 +45,9 @@ class Usage(CommandLineTest):
         for arguments, sentence in [
             ([], "needs INPUT and OUTPUT"),
             ([self.input], "needs INPUT and OUTPUT"),
-            ([*good, "third", *ISO], "does not know what to do with 'third'"),
-            ([self.input, "surface.stl", *ISO], "output is a .vtp file, not 'surface.stl'"),
+            ([*good, "third", *ISO], "output of several steps is a .pvd file, not 'third'"),
+            ([self.input, "surface.png", *ISO],
+             "output is a .vtp, .stl, .ply or .obj file, or .pvd for a film, not 'surface.png'"),
             ([self.input, self.input, *ISO], "would overwrite the input"),
             ([*good, *ISO, "--stats", self.input], "would overwrite the input"),
             ([*good, *ISO, "--stats", "../" + self.directory.name + "/surface.vtp"], "written twice"),
@@ -63,7 +65,8 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--seeds", "all"], "--seeds is one of pairs, complete, not 'all'"),
             ([*good, *ISO, "--topology", "x"], "--topology is one of table, field, not 'x'"),
             ([*good, *ISO, "--boundary", "x"], "--boundary is one of weight, eigenvalue, not 'x'"),
-            ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, not 'x'"),
+            ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, wall, not 'x'"),
+            ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
             ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
             ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
@@ -81,7 +84,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--stats", "-h"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats", ""], "--stats needs FILE.json"),
-            ([*good, *ISO, "--", "--quiet"], "does not know what to do with '--quiet'"),
+            ([*good, *ISO, "--", "--quiet"], "output of several steps is a .pvd file, not '--quiet'"),
             ([*good, *ISO, "--h-scale", "1e999"], "--h-scale needs a finite number, not '1e999'"),
             ([*good, *ISO, "--h-scale", "1.0junk"], "--h-scale needs a finite number"),
             ([*good, *ISO, "--h-scale", "0x1p3"], "--h-scale needs a finite number"),
@@ -99,7 +102,15 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--smoothing-length", "-2"], "--smoothing-length must be greater than 0"),
             ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
             ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
+            ([*good, *ISO, "--periodic", "1,2"], "--periodic needs three lengths, or six bounds"),
+            ([*good, *ISO, "--periodic", "1,2,-1"], "--periodic needs a period of 0 or more along z"),
+            ([*good, *ISO, "--periodic", "0,1,1,0,0,1"],
+             "--periodic needs a period of 0 or more along y"),
             ([*good, *ISO, "--fluid", "Kind"], "--fluid needs NAME=VALUE"),
+            ([*good, *ISO, "--box", "0,1,0,1"], "--box needs six numbers, x0,x1,y0,y1,z0,z1"),
+            ([*good, *ISO, "--box", "0,1,0,1,2,1"], "--box needs the lower number first along z"),
+            ([*good, *ISO, "--box", "0,1,3,3,0,1"], "--box needs the lower number first along y"),
+            ([*good, *ISO, "--box", "0,1,0,nan,0,1"], "--box needs a finite number, not 'nan'"),
             ([*good, *ISO, "--fluid", "Kind=x"], "--fluid needs a finite number, not 'x'"),
             ([*good, *ISO, "--screenshot", "a.jpg"], "--screenshot writes a .png file"),
         ]:
@@ -216,7 +227,7 @@ class BadData(CommandLineTest):
         self.refuse_with("cannot be read: it is a directory", source=self.directory)
         table = self.directory / "table.csv"
         table.write_text("x,y,z\n")
-        self.refuse_with("table.csv is not a .vtp, .vtu or .vtk file", source=table)
+        self.refuse_with("table.csv is not a .vtp, .vtu, .pvtp, .pvtu, .vtkhdf or .vtk file", source=table)
         fifo = self.directory / "fifo.vtp"
         os.mkfifo(fifo)
         self.refuse_with("fifo.vtp cannot be read: it is not a regular file", source=fifo)
@@ -295,6 +306,71 @@ class Options(CommandLineTest):
         self.assertLessEqual({"search_grid", "seeds", "extraction", "correction", "trimming",
                               "output"}, set(seconds))
         self.assertAlmostEqual(total, sum(seconds.values()), places=6)
+
+    def test_derive(self):
+        """Arrays made of one of the particles', to contour and to carry; they go before stored ones."""
+        self.arrays["Lambda2"] = [17.0] * len(self.points)
+        files.write_vtp(self.input, self.points, self.arrays)
+        self.succeed("--derive", "Velocity", *ISO)
+        text = self.output.read_text()
+        for name in ("Gradients", "Divergence", "Vorticity", "Q-criterion", "Lambda2", "StrainRate"):
+            self.assertIn(f'Name="{name}"', text)
+        self.assertNotIn('RangeMax="17"', text)
+        found = self.succeed("--derive", "Radius", "--scalar", "Gradients", "--iso", "0.8")
+        self.assertGreater(found["statistics"]["triangles"], 10)
+        self.assertNotIn("Vorticity", self.output.read_text())
+        result = self.extract("--derive", "Nonsense", *ISO)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, "no point array 'Nonsense'.*Radius")
+
+    def write_points(self):
+        """The same five points on the x axis, two of them outside, in several kinds of files."""
+        xs = [-5.0, 0.0, 0.1, 0.2, 0.3]
+        files.write_vtp(self.directory / "points.vtp", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
+        files.write_vtu(self.directory / "points.vtu", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
+        extent = 'Extent="0 4 0 0 0 0"'
+        (self.directory / "points.vti").write_text(
+            '<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">'
+            f'<ImageData Whole{extent} Origin="-0.2 0 0" Spacing="0.15 1 1"><Piece {extent}>'
+            '</Piece></ImageData></VTKFile>')
+        (self.directory / "points.vtk").write_text(
+            "# vtk DataFile Version 3.0\npoints\nASCII\nDATASET STRUCTURED_POINTS\n"
+            "DIMENSIONS 5 1 1\nORIGIN -0.2 0 0\nSPACING 0.15 1 1\nPOINT_DATA 5\n")
+
+    def test_probe(self):
+        self.write_points()
+        for name, valid in [("points.vtp", 4), ("points.vtu", 4), ("points.vti", 5), ("points.vtk", 5)]:
+            with self.subTest(name):
+                output = self.directory / ("out" + name[-4:])
+                result = self.run_program(self.input, output, "--probe", name, "--derive", "Velocity",
+                                          "--attributes", "Radius,Divergence", "--gradients")
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+                self.assertIn(f"points      5, {valid} of them valid", result.stdout)
+                text = output.read_bytes().decode("latin1")
+                for array in ("Radius", "Weight", "vtkValidPointMask", "Divergence", "Radius_Gradient"):
+                    self.assertRegex(text, rf'\b{array}\b')
+                self.assertNotIn("Density", text)
+        text = (self.directory / "out.vtp").read_text()
+        self.assertIn('Name="Own"', text)
+        divergence = text[text.index('Name="Divergence"'):]
+        self.assertAlmostEqual(float(divergence.split('RangeMax="')[1].split('"')[0]), 3, places=4)
+
+    def test_wrong_probes(self):
+        self.write_points()
+        for arguments, status, sentence in [
+            ([self.input, "out.vtu", "--probe", "points.vtp"], 1, "for a .vtp or .vtk file, not 'out.vtu'"),
+            ([self.input, "out.vtp", "--probe", "nothing.vtp"], 1, "nothing.vtp cannot be read"),
+            ([self.input, "out.vtp", "--probe", "points.obj"], 1, "points.obj"),
+            ([self.input, "points.vtp", "--probe", "points.vtp"], 2, "would overwrite the input"),
+            ([self.input, "out.vtp", "--probe", "points.vtp", *ISO], 2, "leave out --scalar"),
+            ([self.input, "out.vtp", "--probe", "points.vtp", "--mass", "No"], 1, "array 'No'"),
+        ]:
+            with self.subTest(arguments):
+                result = self.run_program(*arguments)
+                self.assertEqual(result.returncode, status, result.stderr)
+                self.assertIn(sentence, result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1)
+                self.assertFalse((self.directory / "out.vtp").exists())
 
     def test_empty_surface(self):
         result = self.extract("--scalar", "Radius", "--iso", "99")
@@ -383,6 +459,69 @@ class Options(CommandLineTest):
         ignored = self.succeed(*ISO, "--fluid", "Kind=0", "--solids", "ignore")
         self.assertLess(ignored["statistics"]["triangles"], weight["statistics"]["triangles"])
 
+    def test_suspicious_input(self):
+        """What may be wrong is said on stderr and stands among the statistics."""
+        statistics = self.directory / "statistics.json"
+        self.assertEqual(self.succeed(*ISO)["warnings"], [])
+        for arguments, words in [
+            (["--smoothing-length", "0.26"], "neighbours.*smoothing length is 0.26.*support radius"),
+            (["--support-radius"], "neighbours.*smoothing length is 0.065"),
+            (["--scalar", "Radius", "--iso", "0.3,99"], "Iso value 99 is outside of the range of Radius, 0.0"),
+            (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5"),
+            (["--density", "1e6"], "node threshold 0.1"),
+        ]:
+            with self.subTest(arguments):
+                contour = [] if "--iso" in arguments else ISO
+                result = self.extract(*contour, *arguments, "--stats", statistics)
+                self.assertEqual(result.returncode, 0)
+                self.assertRegex(result.stderr, f"^marching-correctors: warning: .*{words}")
+                self.assertEqual(result.stderr.count("warning:"), 1)
+                warnings = json.loads(statistics.read_text())["warnings"]
+                self.assertEqual(len(warnings), 1)
+                self.assertIn(warnings[0], result.stderr)
+        self.arrays["ParticleType"] = self.arrays.pop("Kind")
+        files.write_vtp(self.input, self.points, self.arrays)
+        result = self.extract(*ISO)
+        self.assertRegex(result.stderr, "'ParticleType' is not used.*700 x 0, 300 x 1")
+        self.succeed(*ISO, "--fluid", "ParticleType=0")
+
+    def test_solvers_names(self):
+        """DualSPHysics stores no smoothing length; SPH-EXA a velocity in three arrays."""
+        arrays, count = self.arrays, len(self.points)
+        dual = {"Idp": list(range(count)), "Rhop": arrays["Density"], "Vel": arrays["Velocity"],
+                "Type": [3] * count, "Mass": arrays["Mass"], "Radius": arrays["Radius"]}
+        files.write_vtp(self.input, self.points, dual)
+        self.assertIn("DualSPHysics does not store it: it is coefh", self.extract(*ISO).stderr)
+        found = self.succeed(*ISO, "--dp", "0.1", "--coefh", "1.2")
+        self.assertEqual(found["arrays"]["density_array"], "Rhop")
+        length = found["statistics"]["smoothing_length_range"][0]
+        self.assertAlmostEqual(length, 1.2 * 3 ** 0.5 * 0.1)
+        exa = {"Smoothing Length": arrays["SmoothingLength"], "Mass": arrays["Mass"],
+               "Density": arrays["Density"]}
+        exa.update({f"v{axis}": [v[a] for v in arrays["Velocity"]] for a, axis in enumerate("xyz")})
+        files.write_vtp(self.input, self.points, exa)
+        found = self.succeed("--scalar", "Velocity", "--iso", "0.3")
+        self.assertEqual(found["arrays"]["smoothing_length_array"], "Smoothing Length")
+        self.assertGreater(found["statistics"]["triangles"], 100)
+        self.assertIn('Name="Velocity"', self.output.read_text())
+        files.write_vtp(self.input, self.points, self.arrays)
+        expected = self.succeed("--scalar", "Velocity", "--iso", "0.3")
+        self.assertEqual(found["statistics"]["triangles"], expected["statistics"]["triangles"])
+
+    def test_surface_ends_at_walls(self):
+        wall = self.succeed(*ISO, "--fluid", "Kind=0", "--solids", "wall")
+        self.assertEqual(wall["fluid"]["solids"], "wall")
+        self.assertEqual(wall["fluid"]["wall_share"], 0.5)
+        farther = self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", "--wall-share=0.95")
+        weight = self.succeed(*ISO, "--fluid", "Kind=0")
+        triangles = wall["statistics"]["triangles"]
+        self.assertLess(triangles, weight["statistics"]["triangles"])
+        self.assertLess(triangles, farther["statistics"]["triangles"])
+        closed = self.succeed("--free-surface", "--fluid", "Kind=0")
+        opened = self.succeed("--free-surface", "--fluid", "Kind=0", "--solids", "wall")
+        self.assertEqual(closed["statistics"]["trim_vertices"], 0)
+        self.assertGreater(opened["statistics"]["trim_vertices"], 50)
+
     def test_kernels(self):
         counts = set()
         for kernel in ("cubic", "quadratic", "mprime4", "quintic", "wendland"):
@@ -408,6 +547,37 @@ class Options(CommandLineTest):
                 found = self.succeed(*ISO, *arguments)
                 self.assertEqual(found["parameters"][name], value)
                 self.assertGreater(found["statistics"]["triangles"], 0)
+
+    def test_box(self):
+        """Two boxes make the whole; a box beside everything makes an empty surface, with a warning."""
+        whole = self.succeed(*ISO)
+        parts = [self.succeed(*ISO, "--box", "-1,0.1,-1,1,-1,1"),
+                 self.succeed(*ISO, "--box=0.1,inf,-inf,inf,-inf,inf")]
+        self.assertEqual(parts[0]["parameters"]["box"], [-1, 0.1, -1, 1, -1, 1])
+        for name in ("triangles", "cells_used", "virtual_cells"):
+            found = [part["statistics"][name] for part in parts]
+            self.assertGreater(min(found), 0)
+            self.assertEqual(sum(found), whole["statistics"][name])
+        result = self.extract(*ISO, "--box", "50,51,0,1,0,1")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, "the surface is empty: no part of the field in the box reaches")
+
+    def test_periodic(self):
+        """A block that repeats along x and y is a slab; lengths or bounds; the cube size fits."""
+        free, half = ["--free-surface", "--iso", "0.5"], 5 * files.SPACING
+        slab = self.succeed(*free, f"--periodic={-half!r},{half!r},{-half!r},{half!r},0,0")
+        first = self.output.read_bytes()
+        self.assertEqual(slab["parameters"]["periodic_bounds"], [-half, half, -half, half, 0, 0])
+        cubes = 2 * half / slab["parameters"]["cube_size"]
+        self.assertAlmostEqual(cubes, round(cubes), places=9)
+        self.assertEqual(slab["statistics"]["lattice_cells"][:2], [round(cubes)] * 2)
+        self.assertGreater(slab["statistics"]["particles_in_reach"], len(self.points))
+        # Above and below, a cell or two for each column: no sides.
+        self.assertLess(slab["statistics"]["cells_used"], 4 * round(cubes) ** 2)
+        self.succeed(*free, "--periodic", f"{2 * half!r},{2 * half!r},0")
+        self.assertEqual(self.output.read_bytes(), first)
+        self.output.unlink()
+        self.refuse(self.extract(*free, "--periodic", "1e-3,0,0"), 1, "period along x")
 
     def test_boundary_detection(self):
         cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block
@@ -493,7 +663,7 @@ class Options(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         json.loads((self.directory / "-s.json").read_text())
         self.assertTrue((self.directory / "-o.vtp").exists())
-        self.assertIn("no part", self.extract("--scalar", "Radius", "--iso", "-.5,-1,-2e3").stderr)
+        self.assertIn("value -0.5 (and 2 more)", self.extract("--scalar", "Radius", "--iso", "-.5,-1,-2e3").stderr)
 
     def test_old_output_survives_failure(self):
         self.output.write_text("old")

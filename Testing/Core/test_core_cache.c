@@ -17,6 +17,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utime.h>
 
 static char folder[64];
 static const mcor_cache_key key = { { 0x1234, 0xABCDEF } };
@@ -289,12 +290,43 @@ static void test_program(void** state)
   remove_files();
 }
 
+/* Storing removes what was last used long ago, and nothing else. */
+static void test_unused_programs_are_removed(void** state)
+{
+  (void)state;
+  const mcor_cache_key other = { { 5, 6 } };
+  const struct utimbuf long_ago = { 1000000, 1000000 };
+  char path[400];
+  size_t size;
+  remove_files();
+  mcor_cache_store(&other, "old", 3);
+  assert_int_equal(list_files(path), 1);
+  assert_int_equal(utime(path, &long_ago), 0);
+  free(mcor_cache_load(&other, &size)); /* it is used */
+  mcor_cache_store(&key, "new", 3);
+  assert_int_equal(list_files(path), 2);
+  remove_files();
+  mcor_cache_store(&other, "old", 3);
+  assert_int_equal(list_files(path), 1);
+  assert_int_equal(utime(path, &long_ago), 0);
+  snprintf(path, sizeof path, "%s/notes", folder);
+  FILE* file = fopen(path, "w");
+  assert_non_null(file);
+  fclose(file);
+  assert_int_equal(utime(path, &long_ago), 0);
+  mcor_cache_store(&key, "new", 3);
+  assert_int_equal(list_files(path), 2);
+  assert_null(mcor_cache_load(&other, &size));
+  expect_cached("new");
+  remove_files();
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_store_and_load),
     cmocka_unit_test(test_key), cmocka_unit_test(test_damaged),
     cmocka_unit_test(test_several_processes), cmocka_unit_test(test_no_folder),
     cmocka_unit_test(test_read_only), cmocka_unit_test(test_pocl_folder),
-    cmocka_unit_test(test_program) };
+    cmocka_unit_test(test_program), cmocka_unit_test(test_unused_programs_are_removed) };
   return cmocka_run_group_tests_name("cache", tests, set_up, tear_down);
 }

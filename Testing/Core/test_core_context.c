@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A context over several calls: reuse, order of the input, cancelling, devices, statistics. */
+/* A context over several calls: reuse, order of the input, devices, statistics. */
 
 #include "core_fixture.h"
 
@@ -117,6 +117,7 @@ typedef struct permuted_case
   int volumes; /* 0 array, 1 mass / density, 2 mass alone, 3 none */
   int solids, coincident, estimate;
   mcor_boundary_detection boundary;
+  double wall_share;
 } permuted_case;
 
 static const permuted_case permuted_cases[] = { { .name = "volume array" },
@@ -129,6 +130,7 @@ static const permuted_case permuted_cases[] = { { .name = "volume array" },
   { .name = "coincident, no volume", .volumes = 3, .coincident = 1 },
   { .name = "coincident fluid and solid", .solids = 1, .coincident = 1 },
   { .name = "estimated smoothing length", .estimate = 1 },
+  { .name = "free surface at solids", .field = MCOR_WEIGHT_SUM, .solids = 1, .wall_share = 0.3 },
   { .name = "eigenvalue", .solids = 1, .boundary = MCOR_BOUNDARY_EIGENVALUE },
   { .name = "eigenvalue, coincident, double",
     .coincident = 1,
@@ -174,6 +176,7 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
   options.precision = at->precision;
   options.seeds = at->seeds;
   options.boundary_detection = at->boundary;
+  options.wall_share = at->wall_share;
   return hash_of(context, &input, &options);
 }
 
@@ -207,58 +210,6 @@ static void test_order_of_input(void** state)
     }
   }
   CORE_CHECK(different == 0, "%d cases", different);
-}
-
-typedef struct cancel_at
-{
-  int calls, stop_at; /* stop_at < 0: never */
-  double last;
-  char phases[200];
-} cancel_at;
-
-static int on_progress(void* user, double fraction, const char* phase)
-{
-  cancel_at* c = user;
-  CORE_CHECK(fraction >= c->last && fraction <= 1, "progress %g after %g", fraction, c->last);
-  c->last = fraction;
-  snprintf(c->phases + strlen(c->phases), sizeof c->phases - strlen(c->phases), "%s;", phase);
-  return c->calls++ == c->stop_at;
-}
-
-static void test_cancel_in_every_phase(void** state)
-{
-  mcor_context* context = *state;
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
-  const double iso = 0;
-  mcor_input input = core_input(&set);
-  input.particles_version = input.scalar_version = 99;
-  mcor_options options = core_options(&iso);
-  const uint64_t expected = hash_of(context, &input, &options);
-  cancel_at never = { .stop_at = -1 };
-  mcor_release_memory(context);
-  options.progress = on_progress;
-  options.progress_user = &never;
-  CORE_CHECK(hash_of(context, &input, &options) == expected, "progress changes the result");
-  for (int p = MCOR_PHASE_SEARCH_GRID; p < MCOR_PHASE_COUNT; ++p)
-  {
-    CORE_CHECK(strstr(never.phases, mcor_phase_name((mcor_phase)p)), "no phase \"%s\" in %s",
-      mcor_phase_name((mcor_phase)p), never.phases);
-  }
-  for (int stop = 0; stop < never.calls; ++stop)
-  {
-    cancel_at at = { .stop_at = stop };
-    options.progress_user = &at;
-    mcor_release_memory(context); /* so that no phase is skipped */
-    mcor_surface surface = { 0 };
-    const mcor_status status = mcor_extract(context, &input, &options, &surface);
-    CORE_CHECK(status == MCOR_CANCELLED, "stop %d: %s", stop, mcor_status_name(status));
-    CORE_CHECK(surface.point_count == 0 && !surface.points && !surface.triangles, "not empty");
-    assert_non_null(strstr(mcor_last_error(context), "cancelled"));
-    cancel_at on = { .stop_at = -1 };
-    options.progress_user = &on;
-    CORE_CHECK(hash_of(context, &input, &options) == expected, "after a stop at call %d", stop);
-  }
-  core_free_set(&set);
 }
 
 /* A limit below the peak fails with a sentence; one at the peak suffices, also where a context
@@ -451,8 +402,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_reach),
     cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
-    cmocka_unit_test(test_cancel_in_every_phase), cmocka_unit_test(test_memory_limit),
-    cmocka_unit_test(test_devices), cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
+    cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_devices),
+    cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
     cmocka_unit_test(test_build_seconds), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

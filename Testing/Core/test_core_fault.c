@@ -335,7 +335,7 @@ static void test_build_fails(void** state)
   long_log = log;
   set_fault(0, CL_BUILD_PROGRAM_FAILURE);
   CORE_OK(context, mcor_choose_build(context, &build));
-  const mcor_status status = MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, 1, MCOR_INT(0));
+  const mcor_status status = MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, 1, MCOR_INT(0));
   fail_at = -1;
   assert_int_equal(status, MCOR_DEVICE_ERROR);
   assert_non_null(strstr(mcor_last_error(context), "CL_BUILD_PROGRAM_FAILURE"));

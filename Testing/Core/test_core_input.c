@@ -112,6 +112,9 @@ static void test_options(void** state)
     ARGUMENT("node threshold", call.options.node_threshold = bad[i]);
     ARGUMENT("vertex threshold", call.options.vertex_threshold = bad[i]);
   }
+  ARGUMENT("wall share|-0.1", call.options.wall_share = -0.1);
+  ARGUMENT("wall share|below 1", call.options.wall_share = 1);
+  ARGUMENT("wall share", call.options.wall_share = NAN);
   ARGUMENT("memory limit|-1", call.options.memory_limit = -1);
   ARGUMENT("iteration limit|-1|255", call.options.iteration_limit = -1);
   ARGUMENT("iteration limit|0|255", call.options.iteration_limit = 0);
@@ -528,6 +531,40 @@ static void test_far_options(void** state)
   expect_good(*state);
 }
 
+static void test_names(void** state)
+{
+  assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
+  assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
+  assert_true(
+    mcor_name_rank(MCOR_SMOOTHING_LENGTH, "h") > mcor_name_rank(MCOR_SMOOTHING_LENGTH, "hsml"));
+  assert_int_equal(mcor_name_rank(MCOR_MASS, "m"), 3);
+  assert_true(mcor_name_rank(MCOR_DENSITY, "Particle-Density") > 0);
+  assert_int_equal(mcor_name_rank(MCOR_VOLUME, "Vol"), 3);
+  assert_int_equal(mcor_name_rank(MCOR_VELOCITY, "Vel"), 2);
+  assert_int_equal(mcor_name_rank(MCOR_PARTICLE_ID, "Idp"), 0);
+  assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
+  const char* const others[] = { "", "mas", "masss", "volume of it", NULL };
+  for (int i = 0; i < 5; ++i)
+  {
+    for (int quantity = 0; quantity < MCOR_QUANTITY_COUNT; ++quantity)
+    {
+      assert_int_equal(mcor_name_rank((mcor_quantity)quantity, others[i]), -1);
+    }
+  }
+  assert_true(mcor_name_rank(MCOR_DENSITY, "Rhop") > 0);
+  assert_true(mcor_name_rank(MCOR_PARTICLE_TYPE, "Type") > 0);
+  assert_string_equal(mcor_find_layout("Idp\nVel\nRhop\nType"), "DualSPHysics");
+  assert_string_equal(mcor_find_layout("gid\nh\nm\nrho\ntag\nu\nv\nw"), "PySPH");
+  assert_string_equal(mcor_find_layout("Masses\nDensities\nSmoothingLengths"), "SWIFT");
+  assert_string_equal(mcor_find_layout("Masses\nParticleIDs\nSmoothingLength"), "GADGET");
+  assert_string_equal(mcor_find_layout("vx\nvy\nvz\nMass\nSmoothing Length"), "SPH-EXA");
+  assert_string_equal(mcor_find_layout("h\nvx\nvy\nvz\nitype"), "Phantom");
+  assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
+  assert_string_equal(mcor_find_layout(""), "");
+  assert_int_equal(mcor_name_rank(MCOR_QUANTITY_COUNT, "m"), -1);
+  (void)state;
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
@@ -539,6 +576,6 @@ int main(void)
     cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids),
     cmocka_unit_test(test_magnitudes), cmocka_unit_test(test_bad_products),
     cmocka_unit_test(test_computed_volumes), cmocka_unit_test(test_units_of_length),
-    cmocka_unit_test(test_far_options) };
+    cmocka_unit_test(test_far_options), cmocka_unit_test(test_names) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

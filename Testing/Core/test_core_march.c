@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Masks of a brick and its 7 neighbours -> shifted masks, cells with some / all nodes. */
 static const char source[] =
@@ -246,6 +247,63 @@ static void test_outlier(void** state)
   }
 }
 
+/* A block of particles, of which some have a far larger support; and the others once more, far away on
+ * the left, where the lattice then begins. */
+static core_set make_mixed(int twice)
+{
+  core_set block = core_make_block(10, 0.3, 5, core_ball), set = core_make_set(2 * block.count);
+  uint64_t seed = 3;
+  set.count = 0;
+  for (int64_t i = 0; i < block.count * (1 + twice); ++i)
+  {
+    const int64_t from = i % block.count, to = set.count;
+    const double factor = from % 3 ? 1 : pow(64, random_unit(&seed));
+    memcpy(set.position + 3 * to, block.position + 3 * from, 3 * sizeof(double));
+    set.position[3 * to] -= i == from ? 0 : 200;
+    set.smoothing_length[to] = block.smoothing_length[from] * factor;
+    set.volume[to] = factor * factor * factor;
+    set.scalar[to] = block.scalar[from];
+    set.count += i == from || from % 3;
+  }
+  core_free_set(&block);
+  return set;
+}
+
+/* A point's bits depend on it and the particles that reach it alone: not on where the lattice, and so
+ * blocks, begin, nor on other points. */
+static void test_parts_have_the_bits_of_the_whole(void** state)
+{
+  const double iso = -14;
+  mcor_options options = core_options(&iso);
+  options.gradients = options.weight_sum = options.residual = options.nearest_particle = 1;
+  core_set part = make_mixed(0), whole = make_mixed(1);
+  mcor_input input = core_input(&part);
+  mcor_surface a = core_extract(*state, &input, &options);
+  input = core_input(&whole);
+  mcor_surface b = core_extract(*state, &input, &options);
+  int64_t i = 0;
+  for (int64_t j = 0; j < b.point_count; ++j)
+  {
+    if (b.points[3 * j] > -100)
+    {
+      assert_true(i < a.point_count);
+      assert_memory_equal(a.points + 3 * i, b.points + 3 * j, 3 * sizeof(double));
+      assert_memory_equal(a.gradients + 3 * i, b.gradients + 3 * j, 3 * sizeof(double));
+      assert_memory_equal(a.weight_sum + i, b.weight_sum + j, sizeof(float));
+      assert_memory_equal(a.residual + i, b.residual + j, sizeof(float));
+      assert_true(a.nearest_particle[i] == b.nearest_particle[j]);
+      ++i;
+    }
+  }
+  assert_int_equal(i, a.point_count);
+  assert_true(i > 100 && i < b.point_count);
+
+  mcor_free_surface(&a);
+  mcor_free_surface(&b);
+  core_free_set(&part);
+  core_free_set(&whole);
+}
+
 /* Triangles face lower values. */
 static void test_orientation(void** state)
 {
@@ -431,6 +489,7 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks), cmocka_unit_test(test_sphere),
     cmocka_unit_test(test_torus_and_two_balls), cmocka_unit_test(test_free_surface_is_closed),
     cmocka_unit_test(test_nodes_at_iso), cmocka_unit_test(test_outlier),
-    cmocka_unit_test(test_orientation), cmocka_unit_test(test_node_by_node) };
+    cmocka_unit_test(test_parts_have_the_bits_of_the_whole), cmocka_unit_test(test_orientation),
+    cmocka_unit_test(test_node_by_node) };
   return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
 }

@@ -118,11 +118,11 @@ static void test_against_oracle(void** state)
   }
 }
 
-/* Two arrays, three components in all, and 9 more, so that there is more than one round. */
-static void test_bits_do_not_depend_on_other_points(void** state)
+/* Two arrays, 12 components in all, so that there is more than one round; particles in a cube of edge
+ * `size`. */
+static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
 {
-  mcor_context* context = *state;
-  core_set set = core_make_random(2000, 8, 0.5, 0.9, 3);
+  core_set set = core_make_random(2000, size, h_min, h_max, 3);
   double* wide = malloc((size_t)set.count * 11 * sizeof(double));
   assert_non_null(wide);
   uint64_t seed = 9;
@@ -138,7 +138,7 @@ static void test_bits_do_not_depend_on_other_points(void** state)
   options.iso_count = 0;
   options.gradients = 1;
   const int64_t count = 700;
-  double* points = probe_points(count, 9, 21);
+  double* points = probe_points(count, size, 21);
   int64_t* order = core_make_order(count, 8);
   double* moved = malloc((size_t)count * 3 * sizeof(double));
   assert_non_null(moved);
@@ -167,6 +167,13 @@ static void test_bits_do_not_depend_on_other_points(void** state)
   free(points);
   free(wide);
   core_free_set(&set);
+}
+
+static void test_bits_do_not_depend_on_other_points(void** state)
+{
+  probe_in_another_order(*state, 8, 0.5, 0.9);
+  /* Supports of up to 256 cubes. */
+  probe_in_another_order(*state, 30, 0.25, 16);
 }
 
 static void test_odd_points(void** state)

@@ -29,7 +29,7 @@ typedef enum reuse_base
   REUSE_ARRAYS, /* smoothing lengths and volumes as arrays */
   REUSE_CONSTANTS,
   REUSE_MASS,      /* mass and density as constants */
-  REUSE_MASS_ONLY, /* as an array, and the solids count */
+  REUSE_MASS_ONLY, /* as an array, and the solids count; the surface ends at them */
   REUSE_VECTOR,    /* a component of the positions is contoured */
   REUSE_ROUGH,     /* ambiguous faces, and components without pairs */
   REUSE_FREE_SURFACE,
@@ -104,6 +104,7 @@ static void set_base(reuse_call* call, reuse_base base)
   mcor_options* o = &call->options;
   *o = core_options(call->iso);
   o->field = base == REUSE_FREE_SURFACE ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
+  o->wall_share = base == REUSE_MASS_ONLY ? 0.12 : 0;
   if (base == REUSE_ROUGH)
   {
     o->cube_size_factor = 0.7;
@@ -177,11 +178,17 @@ STEP(iso_count, c->options.iso_count = 2)
 STEP(node_threshold, c->options.node_threshold = 0.95)
 STEP(boundary_detection, c->options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE)
 STEP(vertex_threshold, c->options.vertex_threshold = 0.9)
+STEP(wall_share, c->options.wall_share = 0.14)
+STEP(no_wall_share, c->options.wall_share = 0)
 STEP(preview, c->options.preview = 1)
 STEP(tolerance, c->options.tolerance = 1e-2)
 STEP(iteration_limit, c->options.iteration_limit = 1)
 STEP(precision, c->options.precision = MCOR_FLOAT64)
 STEP(memory_limit, c->options.memory_limit = INT64_C(1) << 40)
+STEP(box, c->options.has_box = 1; c->options.box[0] = c->options.box[2] = c->options.box[4] = -1.5;
+     c->options.box[1] = c->options.box[3] = c->options.box[5] = 2.5)
+STEP(periodic, c->options.periodic[0] = c->options.periodic[2] = -4;
+     c->options.periodic[1] = c->options.periodic[3] = 4)
 STEP(normals, c->options.normals = 0)
 STEP(gradients, c->options.gradients = 0)
 STEP(weight_sum, c->options.weight_sum = 0)
@@ -211,9 +218,11 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(ROUGH, seeds), AT(ROUGH, topology), AT(ARRAYS, h_scale), AT(MASS_ONLY, h_scale),
   AT(FREE_SURFACE, h_scale), AT(ARRAYS, cube_size_factor), AT(ARRAYS, cube_size),
   AT(ARRAYS, iso_value), AT(ARRAYS, iso_count), AT(ARRAYS, node_threshold),
-  AT(ARRAYS, boundary_detection), AT(ARRAYS, vertex_threshold), AT(ARRAYS, preview),
-  AT(ARRAYS, tolerance), AT(ARRAYS, iteration_limit), AT(ARRAYS, precision),
-  { "memory_limit", REUSE_ARRAYS, change_memory_limit, 1 }, AT(ARRAYS, normals),
+  AT(ARRAYS, boundary_detection), AT(ARRAYS, vertex_threshold), AT(MASS_ONLY, wall_share),
+  AT(MASS_ONLY, no_wall_share), AT(ARRAYS, preview), AT(ARRAYS, tolerance),
+  AT(ARRAYS, iteration_limit), AT(ARRAYS, precision),
+  { "memory_limit", REUSE_ARRAYS, change_memory_limit, 1 }, AT(ARRAYS, periodic),
+  AT(MASS_ONLY, periodic), AT(ARRAYS, box), AT(MASS_ONLY, box), AT(ROUGH, box), AT(ARRAYS, normals),
   AT(ARRAYS, gradients), AT(ARRAYS, weight_sum), AT(ARRAYS, boundary_eigenvalue),
   AT(ARRAYS, correction_length), AT(ARRAYS, residual), AT(ARRAYS, boundary_flag),
   AT(ARRAYS, iso_value_array), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };

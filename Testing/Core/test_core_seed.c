@@ -271,6 +271,43 @@ static void test_pairs(void** state)
   }
 }
 
+/* Pairs as far apart as a pair may be, to within rounding, and far from each other in rows of particles:
+ * which count does not depend on the particles that are looked at together. */
+static void test_pairs_in_each_form(void** state)
+{
+  const double iso = 0;
+  core_set set = core_make_set(2 * 20 * 20 * 10);
+  uint64_t seed = 8;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const int64_t pair = i / 2;
+    const double apart = i % 2 ? 1.0001 + 4e-5 * (random_unit(&seed) - 0.5) : 0;
+    set.position[3 * i] = 15 * (double)(pair % 20) + apart;
+    set.position[3 * i + 1] = 15 * (double)(pair / 20 % 20);
+    set.position[3 * i + 2] = 15 * (double)(pair / 400);
+    set.smoothing_length[i] = set.volume[i] = 1;
+    set.scalar[i] = i % 2 ? 1 : -1;
+  }
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.seeds = MCOR_PAIRS;
+  options.node_threshold = 1e30;
+  int64_t cells[2];
+  for (int form = 0; form < 2; ++form)
+  {
+    mcor_context* context = NULL;
+    core_create_form(&context, form ? "gpu" : "cpu");
+    mcor_surface surface = core_extract(context, &input, &options);
+    cells[form] = surface.statistics.seed_cells;
+    mcor_free_surface(&surface);
+    mcor_free_context(context);
+  }
+  assert_true(cells[0] > 1000 && cells[0] < 11000);
+  assert_int_equal(cells[0], cells[1]);
+  core_free_set(&set);
+  (void)state;
+}
+
 /* Where pairs find everything, both modes give the same bits. */
 static void test_modes_agree(void** state)
 {
@@ -409,6 +446,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_request),
     cmocka_unit_test(test_complete), cmocka_unit_test(test_line), cmocka_unit_test(test_pairs),
-    cmocka_unit_test(test_modes_agree) };
+    cmocka_unit_test(test_pairs_in_each_form), cmocka_unit_test(test_modes_agree) };
   return cmocka_run_group_tests_name("seed", tests, core_set_up, core_tear_down);
 }

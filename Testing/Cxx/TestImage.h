@@ -20,8 +20,8 @@
 namespace test
 {
 /** Draws the surface, colored by an array, and compares with the baseline (-V). */
-inline int CompareImage(vtkMarchingCorrectors* filter, const char* colorBy, double low, double high,
-  int argc, char* argv[])
+inline int CompareImage(
+  vtkAlgorithm* filter, const char* colorBy, double low, double high, int argc, char* argv[])
 {
   vtkNew<vtkLookupTable> colors;
   colors->SetVectorModeToMagnitude();

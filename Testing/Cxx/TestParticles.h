@@ -42,7 +42,7 @@
 namespace test
 {
 /// Counts events of the filter and its executive, which is where a failed update reports.
-inline void CountEvents(vtkMarchingCorrectors* filter, unsigned long event, int* count)
+inline void CountEvents(vtkAlgorithm* filter, unsigned long event, int* count)
 {
   vtkNew<vtkCallbackCommand> observer;
   observer->SetCallback([](vtkObject*, unsigned long, void* n, void*) { ++*static_cast<int*>(n); });

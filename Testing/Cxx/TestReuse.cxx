@@ -51,6 +51,14 @@ std::vector<Step> Steps()
     { "weight", [](Filter* f, vtkPolyData*) { f->SetBoundaryDetectionToWeightSum(); } },
     { "sum", [](Filter* f, vtkPolyData*) { f->ShepardNormalizationOff(); } },
     { "pairs", [](Filter* f, vtkPolyData*) { f->SetSeedModeToPairs(); } },
+    { "box",
+      [](Filter* f, vtkPolyData*)
+      {
+        f->SetBox(-2.0, 0.1, -0.2, 0.6, -2.0, 2.0);
+        f->UseBoxOn();
+      } },
+    { "other box", [](Filter* f, vtkPolyData*) { f->SetBox(-2.0, 0.1, -0.2, 0.8, -2.0, 2.0); } },
+    { "no box", [](Filter* f, vtkPolyData*) { f->UseBoxOff(); } },
     { "topology", [](Filter* f, vtkPolyData*) { f->SetTopologyToField(); } },
     { "free surface", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOn(); } },
     { "scalar again", [](Filter* f, vtkPolyData*) { f->FreeSurfaceOff(); } },

@@ -396,6 +396,7 @@ static void fuzz_change(unsigned what, fuzz_call* call)
       break;
     case 12:
       in->ignore_solids = !in->ignore_solids;
+      call->options.wall_share = in->ignore_solids ? 0 : 0.5;
       break;
     case 13:
       in->smoothing_length.data = NULL;

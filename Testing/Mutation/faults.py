@@ -74,6 +74,10 @@ FAULTS = [
     # ---- trimming, normals ----
     Fault("trim: a corner at the threshold is inside", ["core_trim"],
           "(weight[t[c]] > threshold) << c", "(weight[t[c]] >= threshold) << c"),
+    Fault("trim: the gradient of the fluid's share leaves solids out", ["core_wall"],
+          "at->fx - fluid_share * at->wx", "at->fx"),
+    Fault("trim: where the surface ends at solids alone", ["core_wall"],
+          "fmin(quantity[i] - threshold, share)", "share"),
     Fault("trim: the weight's gradient leaves solids out", ["core_trim"],
           "at->wx = tx; at->wy = ty; at->wz = tz;", "at->wx = wx; at->wy = wy; at->wz = wz;"),
     Fault("normal: triangles are not added up", ["core_normal"],
@@ -81,5 +85,5 @@ FAULTS = [
           "sums[3 * (int64_t)t[c / 3] + c % 3] = n[c % 3];"),
     # Last, as kernels of the other precision may run on such data for ever.
     Fault("reuse: a changed precision is ignored", ["core_reuse"],
-          "&& options->precision == o->precision;", ";"),
+          "&& options->precision == o->precision &&", "&&"),
 ]

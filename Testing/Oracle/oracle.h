@@ -91,6 +91,7 @@ extern "C"
     double value;       /* of the field; 0 for Shepard where the fluid weight is 0 */
     double gradient[3]; /* of the field */
     double weight;      /* fluid */
+    double weight_gradient[3];
     double trim_weight; /* fluid and solid */
     double trim_gradient[3];
     /* Sum of the magnitudes of the terms of the gradient, A taken relative to field->center: how

@@ -99,8 +99,7 @@ static int compare_is_cut(const compare_state* state, int64_t v, int close)
   const double* point = &state->surface->points[3 * v];
   oracle_sample sample;
   oracle_evaluate(&state->reference->field, NULL, point, &sample);
-  const double quantity = compare_trim_quantity(state, point, &sample);
-  return !close || fabs(quantity - state->options->vertex_threshold) <= 1e-4 ||
+  return !close || fabs(compare_trim_margin(state, point, &sample)) <= 1e-4 ||
     state->surface->boundary_flag[v] == 2;
 }
 
@@ -208,13 +207,13 @@ static int compare_within_rounding(const oracle_reference* reference, int64_t ed
 static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
 {
   const oracle_reference* reference = state->reference;
-  const double limit = state->options->vertex_threshold + 1e-5;
+  const double limit = 1e-5;
   const int pieces = 32;
   double p[3];
   double previous = 0.0;
   oracle_sample sample;
   oracle_edge_root(&reference->lattice, &reference->field, reference->limits.iso, edge, p, &sample);
-  if (compare_trim_quantity(state, p, &sample) < limit)
+  if (compare_trim_margin(state, p, &sample) < limit)
   {
     return 1;
   }
@@ -227,7 +226,7 @@ static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
     oracle_evaluate(&reference->field, NULL, p, &sample);
     const double difference = sample.value - reference->limits.iso;
     if (piece > 0 && (difference >= 0.0) != (previous >= 0.0) &&
-      compare_trim_quantity(state, p, &sample) < limit)
+      compare_trim_margin(state, p, &sample) < limit)
     {
       return 1;
     }

@@ -33,8 +33,12 @@ typedef struct compare_state
 
 /* ---- oracle_compare_state.c ---- */
 
-/* What is trimmed by, at a point: the trimming weight or the boundary eigenvalue. */
-double compare_trim_quantity(
+/* How far a point is inside of what trimming leaves: of the threshold of the trimming weight or the
+ * boundary eigenvalue; of where the surface ends at solids, in the unit of the weight; of both. */
+double compare_threshold_margin(
+  const compare_state* state, const double point[3], const oracle_sample* sample);
+double compare_wall_margin(const compare_state* state, const oracle_sample* sample);
+double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 /* The first fault is kept in words. */
 void compare_note(compare_state* state, const char* format, ...);

@@ -130,25 +130,36 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
-/* The same with its gradient, that of the eigenvalue by differences. */
+/* The margin that trimming goes by, with its gradient, that of the eigenvalue by differences. */
 static double compare_trim_gradient(const compare_state* state, const double point[3],
   const oracle_sample* sample, double gradient[3])
 {
+  const double wall = compare_wall_margin(state, sample);
+  const double margin = compare_threshold_margin(state, point, sample);
+  if (wall < margin)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      gradient[axis] = sample->weight_gradient[axis] -
+        (1.0 - state->options->wall_share) * sample->trim_gradient[axis];
+    }
+    return wall;
+  }
   if (state->options->boundary_detection != MCOR_BOUNDARY_EIGENVALUE)
   {
     memcpy(gradient, sample->trim_gradient, sizeof(sample->trim_gradient));
-    return sample->trim_weight;
+    return margin;
   }
   const double step = 1e-5 * state->reference->lattice.cube;
   for (int axis = 0; axis < 3; ++axis)
   {
     double p[3] = { point[0], point[1], point[2] };
     p[axis] = point[axis] + step;
-    const double high = compare_trim_quantity(state, p, sample);
+    const double high = compare_threshold_margin(state, p, sample);
     p[axis] = point[axis] - step;
-    gradient[axis] = (high - compare_trim_quantity(state, p, sample)) / (2.0 * step);
+    gradient[axis] = (high - compare_threshold_margin(state, p, sample)) / (2.0 * step);
   }
-  return compare_trim_quantity(state, point, sample);
+  return margin;
 }
 
 /* 1 if damped least-norm Newton steps lead from the point to where f = iso and w = threshold (or
@@ -163,8 +174,7 @@ static int compare_exact_cut_near(const compare_state* state, const double start
     oracle_evaluate(&reference->field, NULL, p, &s);
     const double f = s.value - reference->limits.iso;
     double gradient[3];
-    const double w =
-      compare_trim_gradient(state, p, &s, gradient) - state->options->vertex_threshold;
+    const double w = compare_trim_gradient(state, p, &s, gradient);
     if (fabs(f) <= 1e-7 * reference->range && fabs(w) <= 1e-7)
     {
       return 1;
@@ -214,16 +224,15 @@ static void compare_trim_vertex(
     return;
   }
   result->trim_residual = fmax(result->trim_residual, residual);
-  const double quantity = compare_trim_quantity(state, &state->surface->points[3 * v], sample);
-  const double off = fabs(quantity - state->options->vertex_threshold);
+  const double off = fabs(compare_trim_margin(state, &state->surface->points[3 * v], sample));
   result->trim_weight_error = fmax(result->trim_weight_error, off);
   if (!(off < 1e-3))
   {
     const double* p = &state->surface->points[3 * v];
     compare_note(state,
-      "cut vertex %lld at (%.9g, %.9g, %.9g) has weight or eigenvalue %.6g,"
+      "cut vertex %lld at (%.9g, %.9g, %.9g) is %.6g off its threshold, weight %.6g, fluid %.6g,"
       " residual %.3g",
-      (long long)v, p[0], p[1], p[2], quantity, residual);
+      (long long)v, p[0], p[1], p[2], off, sample->trim_weight, sample->weight, residual);
   }
 }
 
@@ -234,9 +243,7 @@ static int compare_edge_vertex(
   oracle_comparison* result = state->result;
   const double* point = &state->surface->points[3 * v];
   const int axis = (int)(state->vertex_edge[v] % 3);
-  const double threshold = state->options->vertex_threshold;
-  const double quantity = compare_trim_quantity(state, point, sample);
-  result->below_threshold += state->trimmed && quantity < threshold - 1e-5;
+  result->below_threshold += state->trimmed && compare_trim_margin(state, point, sample) < -1e-5;
   if (compare_jump(state, point, axis, residual))
   {
     ++result->jumps;

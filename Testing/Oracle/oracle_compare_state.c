@@ -18,16 +18,33 @@ void compare_note(compare_state* state, const char* format, ...)
   }
 }
 
-double compare_trim_quantity(
+double compare_wall_margin(const compare_state* state, const oracle_sample* sample)
+{
+  const double share = state->options->wall_share;
+  return share > 0.0 && !state->reference->particles.ignore_solids
+    ? share * sample->trim_weight - (sample->trim_weight - sample->weight)
+    : INFINITY;
+}
+
+double compare_threshold_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample)
 {
-  if (state->options->boundary_detection != MCOR_BOUNDARY_EIGENVALUE)
+  double eigenvalues[3] = { sample->trim_weight, 0.0, 0.0 };
+  if (state->reference->field.kind == ORACLE_WEIGHT)
   {
-    return sample->trim_weight;
+    return INFINITY;
   }
-  double eigenvalues[3];
-  oracle_boundary_eigenvalues(&state->reference->field, point, eigenvalues);
-  return eigenvalues[0];
+  if (state->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE)
+  {
+    oracle_boundary_eigenvalues(&state->reference->field, point, eigenvalues);
+  }
+  return eigenvalues[0] - state->options->vertex_threshold;
+}
+
+double compare_trim_margin(
+  const compare_state* state, const double point[3], const oracle_sample* sample)
+{
+  return fmin(compare_threshold_margin(state, point, sample), compare_wall_margin(state, sample));
 }
 
 /* Least trimming weight at the nodes of a cell; NaN outside the lattice. */

@@ -300,6 +300,7 @@ void oracle_evaluate(
   sample->trim_weight = sums.w + (solids ? sums.solid_w : 0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
+    sample->weight_gradient[axis] = sums.grad_w[axis];
     sample->trim_gradient[axis] = sums.grad_w[axis] + (solids ? sums.grad_solid[axis] : 0.0);
     sample->gradient[axis] = field->kind == ORACLE_WEIGHT ? sums.grad_w[axis] : sums.grad_fw[axis];
   }

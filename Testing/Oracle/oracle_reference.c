@@ -99,9 +99,10 @@ static int reference_particles(
   {
     return 0;
   }
-  /* Solids count in the weight that trims; nothing is trimmed when the weight itself is contoured.
-   */
-  particles->ignore_solids = input->ignore_solids || options->field == MCOR_WEIGHT_SUM;
+  /* Solids count in the weight that trims; nothing but solids trims when the weight itself is
+   * contoured. */
+  particles->ignore_solids =
+    input->ignore_solids || (options->field == MCOR_WEIGHT_SUM && !(options->wall_share > 0.0));
   for (int64_t j = 0; j < input->count; ++j)
   {
     for (int axis = 0; axis < 3; ++axis)

@@ -213,6 +213,22 @@ static void ignore_solids(particle_set* set, oracle_case* at, double* iso)
   at->input.ignore_solids = 1;
 }
 
+static void end_at_solids(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)set;
+  (void)iso;
+  at->options.wall_share = 0.5;
+}
+
+/* The surface reaches farther into the wall, and a low threshold lets the wall alone end it. */
+static void end_in_solids(particle_set* set, oracle_case* at, double* iso)
+{
+  (void)set;
+  (void)iso;
+  at->options.wall_share = 0.85;
+  at->options.vertex_threshold = 0.2;
+}
+
 static void no_volume(particle_set* set, oracle_case* at, double* iso)
 {
   (void)set;
@@ -332,6 +348,12 @@ static void run_inputs(oracle_suite* suite)
     void (*change)(particle_set* set, oracle_case* at, double* iso);
   } inputs[] = {
     { { .set = "puddle", .suffix = "/ignore_solids" }, ignore_solids },
+    { { .set = "puddle", .suffix = "/wall" }, end_at_solids },
+    { { .set = "puddle", .suffix = "/wall", .in_double = 1 }, end_at_solids },
+    { { .set = "puddle", .suffix = "/wall", .field = MCOR_SUM }, end_at_solids },
+    { { .set = "puddle", .suffix = "/wall", .field = MCOR_WEIGHT_SUM }, end_at_solids },
+    { { .set = "puddle", .suffix = "/wall_eigenvalue", .eigenvalue = 0.3, .skip_pairs = 1 }, end_at_solids },
+    { { .set = "puddle", .suffix = "/in_wall" }, end_in_solids },
     { { .set = "puddle", .suffix = "/no_volume" }, no_volume },
     { { .set = "puddle", .suffix = "/no_volume", .field = MCOR_WEIGHT_SUM }, no_volume },
     { { .set = "variable_4", .suffix = "/no_volume" }, no_volume },

@@ -48,6 +48,12 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
     at->options.boundary_eigenvalue = 1;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
+  /* Of the free surface, computed volumes would differ with and without solids. */
+  if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.has_volume))
+  {
+    static const double shares[] = { 0.0, 0.5, 0.8 };
+    at->options.wall_share = pick(state, shares, 3);
+  }
 }
 
 static void run_seed(oracle_suite* suite, uint64_t seed)

@@ -163,6 +163,71 @@ class TestFilter(unittest.TestCase):
         self.assertGreater(surfaces.GetBlock(0).GetNumberOfCells(), 100)
         self.assertEqual(surfaces.GetBlock(1).GetNumberOfCells(), 0)
 
+    def test_trim(self):
+        """Off, the surface goes on beyond the weight sum 0.5, up to the node threshold."""
+        extract = make_filter(make_particles(), iso=0.52)
+        extract.ComputeWeightSumOn()
+        weights = {}
+        for trim in (True, False):
+            extract.SetTrim(trim)
+            extract.Update()
+            weights[trim] = extract.GetOutput().GetPointData().GetArray("WeightSum").GetRange()[0]
+        self.assertAlmostEqual(weights[True], 0.5, 3)
+        self.assertLess(weights[False], 0.4)
+        self.assertGreater(weights[False], 0.05)
+
+    def test_what_was_used(self):
+        particles = make_particles()
+        extract = make_filter(particles)
+        extract.Update()
+        self.assertEqual(extract.GetFluidScalarRange(), particles.GetPointData().GetArray("Radius").GetRange())
+        self.assertEqual(extract.GetUsedIsoValues(), "0.3")
+        self.assertEqual(extract.GetUsedSmoothingLength(), "0.13 (array hsml)")
+        self.assertEqual(extract.GetUsedVolume(), "computed from the positions")
+        self.assertAlmostEqual(extract.GetUsedCubeSize(), 0.065)
+        # A particle on this lattice takes 0.1^3.
+        self.assertAlmostEqual(extract.GetEstimatedCells(), 1331 * (0.1 / 0.065) ** 3, 3)
+        extract.SetSmoothingLength(0.26)
+        extract.SetSmoothingLengthArrayName("(none)")
+        extract.SmoothingLengthIsSupportRadiusOn()
+        extract.SetMass(2)
+        extract.SetDensity(2000)
+        extract.SetValue(1, 0.4)
+        extract.Update()
+        self.assertEqual(extract.GetUsedIsoValues(), "0.3, 0.4")
+        self.assertEqual(extract.GetUsedSmoothingLength(), "0.13 (given, support radius)")
+        self.assertEqual(extract.GetUsedVolume(), "2 / 2000")
+        self.assertAlmostEqual(extract.GetEstimatedCells(), 1331 * (0.1 / 0.065) ** 3, 3)
+        extract.SetInputData(vtkPolyData())
+        extract.Update()
+        self.assertEqual(extract.GetUsedIsoValues(), "")
+        self.assertEqual(extract.GetEstimatedCells(), 0)
+
+    def test_range_is_that_of_the_fluid(self):
+        particles = make_particles()
+        kind = vtkDoubleArray()
+        kind.SetName("Kind")
+        radius = particles.GetPointData().GetArray("Radius")
+        for i in range(particles.GetNumberOfPoints()):
+            kind.InsertNextValue(0 if radius.GetValue(i) < 0.45 else 1)
+        particles.GetPointData().AddArray(kind)
+        extract = make_filter(particles)
+        extract.SetFluidArrayName("Kind")
+        extract.Update()
+        inside = [radius.GetValue(i) for i in range(particles.GetNumberOfPoints()) if not kind.GetValue(i)]
+        self.assertEqual(extract.GetFluidScalarRange(), (min(inside), max(inside)))
+
+    def test_huge_run_is_announced(self):
+        """Before it begins: here it is ended at its first sign of progress."""
+        extract = make_filter(make_particles())
+        extract.SetCubeSize(1e-4)
+        warnings = []
+        extract.AddObserver("WarningEvent", lambda *_: warnings.append(extract.GetEstimatedCells()))
+        extract.AddObserver("ProgressEvent", lambda *_: extract.SetAbortExecute(len(warnings)))
+        extract.Update()
+        self.assertEqual(len(warnings), 1)
+        self.assertAlmostEqual(warnings[0], 1331e9, -6)
+
     def test_enumerations(self):
         extract = vtkMarchingCorrectors()
         self.assertEqual(extract.GetValue(0), 0)

@@ -5,8 +5,9 @@ import os
 import subprocess
 import sys
 
-from paraview import servermanager
-from paraview.simple import (Connect, Disconnect, LoadPlugin, PointSource, XMLPolyDataReader)
+from paraview import servermanager, smtrace
+from paraview.simple import (Connect, Delete, Disconnect, FindSource, LoadPlugin, LoadState,
+                             PointSource, RenameSource, SaveState, XMLPolyDataReader)
 
 PLUGIN = os.environ["MCOR_TEST_PLUGIN"]
 DATA = os.environ["MCOR_TEST_DATA"]
@@ -37,6 +38,7 @@ def check_panel(extract):
     assert set(names_offered(extract, "SmoothingLengthArray")) == scalars | {"(automatic)"}
     assert set(names_offered(extract, "FluidArray")) == scalars | {"(none)"}
     assert set(names_offered(extract, "DotProductWith")) == vectors | {"(none)"}
+    assert list(extract.DotProductWith)[-1] == "(none)"
     iterator = extract.SMProxy.NewPropertyIterator()
     iterator.Begin()
     while not iterator.IsAtEnd():
@@ -85,6 +87,120 @@ def check_surfaces(extract):
     assert extract.GetDataInformation().GetNumberOfCells() > 100000
 
 
+def value_of(proxy, name):
+    """Of a property by its name or label: a list, a text, or a number."""
+    value = proxy.GetProperty(name)
+    if hasattr(value, "__len__") and not isinstance(value, str):
+        value = list(value) if len(value) != 1 or name == "Isosurfaces" else value[0]
+    return str(value) if "Enumeration" in type(value).__name__ else value
+
+
+def check_in_use(reader):
+    """What the panel tells after Apply, for walls left out, a component and a dot product."""
+    extract = MarchingCorrectors(Input=reader)  # noqa: F821
+    extract.FluidArray = "ParticleType"
+    extract.ContourBy = ["POINTS", "Velocity"]
+    shown = {}
+    for choice in ("Magnitude", "Y", "dot product"):
+        if choice == "dot product":
+            extract.DotProductWith = ["POINTS", "Vorticity"]
+        else:
+            extract.Component = choice
+        extract.UpdatePipeline()
+        extract.UpdatePropertyInformation()
+        shown[choice] = value_of(extract, "FluidScalarRange")
+        value = float(value_of(extract, "UsedIsoValues"))
+        assert shown[choice][0] < value < shown[choice][1], (choice, shown, value)
+    assert 0 < shown["Magnitude"][0] < shown["Magnitude"][1]
+    assert shown["Y"][0] < 0 < shown["Y"][1] < shown["Magnitude"][1]
+    assert shown["dot product"][0] < 0 and len({tuple(each) for each in shown.values()}) == 3
+    assert value_of(extract, "UsedSmoothingLength") == "0.0236 (array SmoothingLength)"
+    assert value_of(extract, "UsedVolume") == "array Mass / array Density"
+    assert abs(value_of(extract, "UsedCubeSize") - 0.0118) < 1e-6
+    assert 1e5 < value_of(extract, "EstimatedCells") < 3e5
+    Delete(extract)
+
+
+# What a user may set, not all of it by default.
+CHOICES = {"ContourBy": ["POINTS", "Velocity"], "Component": "X", "DotProductWith": ["POINTS", "Vorticity"],
+           "Isosurfaces": [-1.0, 2.0], "FluidArray": "ParticleType", "Kernel": "Wendland C2",
+           "CubeSizeFactor": 0.75, "Trim": 0, "ComputeWeightSum": 1, "ExcludedArrays": ["Pressure"],
+           "SmoothingLengthArray": "SmoothingLengthAdaptive", "Tolerance": 1e-5}
+
+
+def triangles(source):
+    source.UpdatePipeline()
+    return source.GetDataInformation().GetNumberOfCells()
+
+
+def has_choices(extract):
+    for name, value in CHOICES.items():
+        found = getattr(extract, name)
+        found = list(found) if isinstance(value, list) else found
+        assert found == value, (name, found)
+
+
+def check_trace(reader):
+    """A trace of what was done, run again, makes the same surface with the same choices."""
+    smtrace.start_trace()
+    extract = SPHIsosurfaceMarchingCorrectors(registrationName="traced", Input=reader)  # noqa: F821
+    applied = smtrace.PropertiesModified(extract)  # as the window does around Apply
+    for name, value in CHOICES.items():
+        setattr(extract, name, value)
+    applied.finalize()
+    expected = triangles(extract)
+    trace = smtrace.stop_trace()
+    assert "SPHIsosurfaceMarchingCorrectors(" in trace, trace
+    # All but the reader, which is there already.
+    lines = trace.splitlines()
+    first = next(i for i, line in enumerate(lines) if "SPHIsosurfaceMarchingCorrectors(" in line)
+    RenameSource("original", extract)
+    names = {**globals(), lines[first].split("Input=")[1].rstrip(")"): reader}
+    exec("\n".join(lines[first:]), names)  # pylint: disable=exec-used
+    replayed = FindSource("traced")
+    has_choices(replayed)
+    assert triangles(replayed) == expected > 0
+    Delete(replayed)
+    return extract, expected
+
+
+def check_state(extract, expected):
+    """A saved state brings everything back."""
+    path = os.path.join(os.environ["MCOR_TEST_OUTPUT"], "state_%d.pvsm" % os.getpid())
+    SaveState(path)
+    RenameSource("before", extract)
+    LoadState(path)
+    os.remove(path)
+    loaded = FindSource("original")
+    has_choices(loaded)
+    assert triangles(loaded) == expected
+
+
+def check_undo(extract):
+    """Each change of a property can be undone and redone."""
+    stack = servermanager.vtkSMUndoStack()
+    builder = servermanager.vtkSMUndoStackBuilder()
+    builder.SetUndoStack(stack)
+    manager = servermanager.vtkSMProxyManager.GetProxyManager()
+    manager.SetUndoStackBuilder(builder)
+    def now():
+        return [extract.CubeSizeFactor, extract.Trim, list(extract.Isosurfaces), str(extract.Kernel).strip("'")]
+
+    # States are kept from now on: the first one is what the next change is told from.
+    extract.CubeSizeFactor = 0.75
+    before = now()
+    builder.Begin("changes")
+    extract.CubeSizeFactor, extract.Trim, extract.Isosurfaces, extract.Kernel = 1.0, 0, [3.0], "Quadratic"
+    builder.EndAndPushToStack()
+    assert stack.CanUndo()
+    stack.Undo()
+    assert now() == before, (now(), before)
+    stack.Redo()
+    assert now() == [1.0, 0, [3.0], "Quadratic"], now()
+    manager.SetUndoStackBuilder(None)
+    builder.SetUndoStack(None)
+
+
 def check_refusal(extract):
     """An error leaves an empty output and a program that goes on."""
     extract.Device = "no such device"
@@ -103,6 +219,9 @@ def check_plugin(remote):
     check_panel(extract)
     check_surfaces(extract)
     check_refusal(extract)
+    check_in_use(reader)
+    check_undo(extract)
+    check_state(*check_trace(reader))
 
     # Points without any array have a free surface, too.
     cloud = PointSource(NumberOfPoints=2000, Radius=1.0)

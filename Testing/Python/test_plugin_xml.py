@@ -5,20 +5,23 @@ import pathlib
 import unittest
 import xml.etree.ElementTree
 
-from marchingcorrectors import vtkMarchingCorrectors
+from marchingcorrectors import vtkMarchingCorrectors, vtkSPHAlgorithm
 
 XML = pathlib.Path(__file__).resolve().parents[2] / "Plugin" / "MarchingCorrectors.xml"
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 NO_NAMES = ("(automatic)", "(none)")  # the filter's empty array name
 # Setters of more or less than one value.
-NOT_SCALAR = ("SetInputConnection", "SetInputArrayToProcess", "SetValue", "AddExcludedArray")
+NOT_SCALAR = ("SetInputConnection", "SetInputArrayToProcess", "SetValue", "AddExcludedArray",
+              "SetPanelBoxPosition", "SetPanelBoxLength", "SetPeriodicBounds", "ReleaseDeviceMemory")
 
 COMMAND_KEYS = ("command", "set_number_command", "clean_command")
 
 # Setters without a property, and why.
 NOT_IN_XML = {
+    "SetBox": "set by SetPanelBoxPosition and SetPanelBoxLength",
     "SetDetectArrays": "(automatic) in the panel's lists of arrays",
     "SetNumberOfFreeSurfaceValues": "SetFreeSurfaceValue makes it 1",
+    "SetIgnoreSolids": "set by SetSolids",
     "SetScalarComponent": "set by SetPanelComponent",
 }
 
@@ -44,8 +47,11 @@ def domain_values(element):
 
 class TestPluginXml(unittest.TestCase):
     def setUp(self):
-        self.proxy = xml.etree.ElementTree.parse(XML).find(".//SourceProxy")
-        self.elements = [e for e in self.proxy if e.tag.endswith("Property")]
+        self.root = xml.etree.ElementTree.parse(XML)
+        self.proxy = self.root.find(".//SourceProxy[@name='MarchingCorrectors']")
+        properties = [e for e in self.proxy if e.tag.endswith("Property")]
+        self.information = [e for e in properties if e.get("information_only")]
+        self.elements = [e for e in properties if e not in self.information]
 
     def for_each_scalar(self, check):
         """check(setter, type, XML element) for all properties of one value."""
@@ -64,8 +70,40 @@ class TestPluginXml(unittest.TestCase):
             with self.subTest(command):
                 self.assertTrue(callable(getattr(vtkMarchingCorrectors, command, None)))
 
+    def test_label_is_found(self):
+        """ParaView's quick search looks at labels only."""
+        label = self.proxy.get("label").lower()
+        for word in ("sph", "isosurface", "marching correctors"):
+            self.assertIn(word, label)
+
+    def test_everything_is_documented(self):
+        for proxy in self.root.iter("SourceProxy"):
+            self.assertTrue(proxy.find("Documentation").text.strip())
+            for element in proxy:
+                if element.tag.endswith("Property"):
+                    with self.subTest(proxy=proxy.get("name"), name=element.get("name")):
+                        text = element.findtext("Documentation", "")
+                        self.assertRegex(text, "Default:" if element.get("name") != "Input" else ".")
+
+    def test_information(self):
+        """What the panel shows of the last update has the type and size of its getter."""
+        empty = vtkMarchingCorrectors()
+        self.assertEqual(len(self.information), 6)
+        for element in self.information:
+            with self.subTest(element.get("name")):
+                self.assertEqual(element.get("command"), "Get" + element.get("name"))
+                found = getattr(empty, element.get("command"))()
+                found = found if isinstance(found, tuple) else (found,)
+                self.assertEqual(len(found), int(element.get("number_of_elements")))
+                self.assertIs(type(found[0]), TYPES[element.tag])
+
+    def test_properties_are_in_one_group(self):
+        groups = [e.get("name") for e in self.proxy.findall("PropertyGroup/Property")]
+        names = [e.get("name") for e in self.elements + self.information if e.get("name") != "Input"]
+        self.assertEqual(sorted(groups), sorted(names))
+
     def test_setters_have_properties(self):
-        own = vars(vtkMarchingCorrectors)
+        own = {**vars(vtkSPHAlgorithm), **vars(vtkMarchingCorrectors)}
         setters = {name for name in own if name.startswith("Set") and "G" + name[1:] in own}
         self.assertEqual(setters - set(self.commands()), set(NOT_IN_XML))
 
@@ -82,6 +120,19 @@ class TestPluginXml(unittest.TestCase):
             self.assertIs(type(found), kind)
             self.assertEqual(found, kind("" if text in NO_NAMES else text))
         self.for_each_scalar(check)
+
+    def test_box(self):
+        """The widget's position is the lower corner, its scale the lengths, in any order."""
+        group = self.proxy.find("PropertyGroup[@panel_widget='InteractiveBox']")
+        functions = {e.get("function"): e.get("name") for e in group.findall("Property")}
+        self.assertEqual(functions, {"Position": "BoxPosition", "Scale": "BoxLength"})
+        commands = {e.get("name"): e.get("command") for e in self.elements}
+        for order in (("Position", "Scale"), ("Scale", "Position")):
+            extract = vtkMarchingCorrectors()
+            for function in order:
+                values = (1.0, 2.0, 3.0) if function == "Position" else (0.5, 0.25, 4.0)
+                getattr(extract, commands[functions[function]])(*values)
+            self.assertEqual(extract.GetBox(), (1.0, 1.5, 2.0, 2.25, 3.0, 7.0))
 
     def test_list_of_names(self):
         """A property of any number of names: cleared, then added one by one."""

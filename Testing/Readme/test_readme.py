@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the snippets of a section of README.md as they stand there.
+"""Runs the snippets of a section of README.md, or of another page, as they stand there.
 
-test_readme.py SOURCE BUILD SCRATCH SECTION
+test_readme.py SOURCE BUILD SCRATCH PAGE SECTION
+test_readme.py SOURCE --links          all links between pages lead somewhere
 
-SCRATCH becomes what README.md calls "this folder": it shows the source tree's files and, as "build",
+SCRATCH becomes what the page calls "this folder": it shows the source tree's files and, as "build",
 the build tree. Fenced blocks with a file name behind the language are written to that file; then the
 blocks of language sh are run. They must succeed, leave every .vtp and .png that the section names, and
 print every "N triangles" that stands in a comment.
@@ -20,10 +21,10 @@ FENCE = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL
 COMMENT = re.compile(r"(?:#|//|/\*) *([0-9][0-9,]*) triangles")
 
 
-def section_of(readme, title):
-    match = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", readme, re.MULTILINE | re.DOTALL)
+def section_of(page, title):
+    match = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL)
     if not match:
-        sys.exit(f"README.md has no section '{title}'")
+        sys.exit(f"the page has no section '{title}'")
     return FENCE.findall(match[1])
 
 
@@ -63,15 +64,33 @@ def faults(blocks, scratch, output):
     text = "".join(text for _, _, text in blocks)
     for count in COMMENT.findall(text):
         if not re.search(rf"\b{count.replace(',', '')} triangles", output):
-            yield f"README.md says {count} triangles"
+            yield f"the page says {count} triangles"
     for name in sorted(set(re.findall(r"[\w/]+\.(?:vtp|png)\b", text))):
         path = os.path.join(scratch, name)
         if not (os.path.isfile(path) and os.path.getsize(path)):
             yield f"{name} is not there"
 
 
-def main(source, build, scratch, title):
-    with open(os.path.join(source, "README.md"), encoding="utf-8") as file:
+def pages(source):
+    """All .md files but those of build trees."""
+    for folder, folders, names in os.walk(source):
+        folders[:] = sorted(name for name in folders if not re.match(r"build|install|\.", name))
+        yield from (os.path.join(folder, name) for name in sorted(names) if name.endswith(".md"))
+
+
+def dead_links(source):
+    """Links and pictures of the pages that name no file of the tree."""
+    for path in pages(source):
+        with open(path, encoding="utf-8") as file:
+            text = re.sub(r"^```.*?^```$", "", file.read(), flags=re.MULTILINE | re.DOTALL)
+        for target in re.findall(r"\]\(([^)\s]+)\)", text):
+            name = target.split("#")[0]
+            if name and "://" not in name and not os.path.exists(os.path.join(os.path.dirname(path), name)):
+                yield f"{os.path.relpath(path, source)}: {target}"
+
+
+def main(source, build, scratch, page, title):
+    with open(os.path.join(source, page), encoding="utf-8") as file:
         blocks = section_of(file.read(), title)
     make_scratch(source, build, scratch)
     write_files(blocks, scratch)
@@ -80,6 +99,8 @@ def main(source, build, scratch, title):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 5:
+    if len(sys.argv) == 3 and sys.argv[2] == "--links":
+        sys.exit("\n".join(dead_links(sys.argv[1])) or 0)
+    if len(sys.argv) != 6:
         sys.exit(__doc__)
     main(*sys.argv[1:])

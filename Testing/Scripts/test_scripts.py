@@ -6,6 +6,7 @@
 test_scripts.py SOURCE SCRATCH [TESTS]
 """
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -19,6 +20,18 @@ SOURCE, SCRATCH = sys.argv[1:3]
 def run(*command, cwd=SOURCE):
     return subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, timeout=600, check=False)
+
+
+class Sources(unittest.TestCase):
+    def test_only_some_files_call_opencl(self):
+        core = os.path.join(SOURCE, "vtkMarchingCorrectors", "core")
+        callers = set()
+        for name in sorted(os.listdir(core)):
+            with open(os.path.join(core, name), encoding="utf-8") as file:
+                if re.search(r"\bcl[A-Z]\w*\s*\(", file.read()):
+                    callers.add(name)
+        self.assertEqual(callers, {name for name in callers if re.match(r"mcor_cl_\w+\.c$", name)})
+        self.assertTrue(callers)
 
 
 class Arguments(unittest.TestCase):

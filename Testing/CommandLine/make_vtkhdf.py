@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""How lattice.vtkhdf (an unstructured grid) and lattice_poly.vtkhdf were made: needs h5py."""
+import pathlib
+
+import h5py
+import numpy
+
+import particle_files as files
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def fill_cells(group, count):
+    group["NumberOfCells"] = numpy.array([count])
+    group["NumberOfConnectivityIds"] = numpy.array([count])
+    group["Connectivity"] = numpy.arange(count)
+    group["Offsets"] = numpy.arange(count + 1)
+
+
+def write(path, kind, version):
+    points, arrays = files.lattice(3)
+    with h5py.File(path, "w", libver="earliest") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = numpy.array(version, "i8")
+        root.attrs.create("Type", kind, dtype=h5py.string_dtype("ascii", len(kind)))
+        root["NumberOfPoints"] = numpy.array([len(points)])
+        root["Points"] = numpy.array(points)
+        if kind == b"PolyData":
+            for name in ("Vertices", "Lines", "Polygons", "Strips"):
+                fill_cells(root.create_group(name), len(points) if name == "Vertices" else 0)
+        else:
+            fill_cells(root, len(points))
+            root["Types"] = numpy.ones(len(points), "u1")
+        for name, values in arrays.items():
+            root[f"PointData/{name}"] = numpy.array(values, "u1" if name == "Kind" else "f8")
+
+
+write(HERE / "lattice.vtkhdf", b"UnstructuredGrid", (1, 0))
+write(HERE / "lattice_poly.vtkhdf", b"PolyData", (2, 0))

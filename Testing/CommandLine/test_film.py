@@ -1,0 +1,447 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Films by the program marching-correctors: test_film.py PROGRAM PRELOAD."""
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import struct
+import subprocess
+import time
+import xml.etree.ElementTree
+
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+FREE = ["--free-surface"]
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def box_of(path):
+    """Smallest and largest coordinates of an ASCII .obj file."""
+    points = [tuple(map(float, line.split()[1:4])) for line in path.read_text().splitlines()
+              if line.startswith("v ")]
+    return [(min(p[c] for p in points), max(p[c] for p in points)) for c in range(3)]
+
+
+class Film(CommandLineTest):
+    """Many steps: one surface for each, and a list of them."""
+
+    def setUp(self):
+        super().setUp()
+        self.film = self.directory / "film.pvd"
+
+    def write_steps(self, count, step=0.1, **changes):
+        """drop_0.vtp, ... and steps.pvd, which lists them at 0, `step`, ..."""
+        entries = []
+        for i in range(count):
+            path = self.directory / f"drop_{i:03}.vtp"
+            files.write_vtp(path, *files.drop_at(step * i, **changes))
+            entries.append((repr(round(step * i, 9)), path.name))
+        files.write_pvd(self.directory / "steps.pvd", entries)
+        return [self.directory / name for _, name in entries]
+
+    def make(self, *arguments, **options):
+        return self.run_program(*arguments, self.film, *FREE, **options)
+
+    def good(self, *arguments):
+        statistics = self.directory / "statistics.json"
+        result = self.make(*arguments, "--stats", statistics)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return json.loads(statistics.read_text())
+
+    def listed(self):
+        """[(time, path)] of the film."""
+        root = xml.etree.ElementTree.parse(self.film).getroot()
+        self.assertEqual(root.get("type"), "Collection")
+        return [(float(e.get("timestep")), self.directory / e.get("file"))
+                for e in root.iter("DataSet")]
+
+    def surfaces(self):
+        return sorted(p.name for p in self.directory.glob("film_*"))
+
+    def without_mark(self, path):
+        return re.sub("\n<!--.*?-->", "", path.read_text(), count=1)
+
+    # What a film is
+
+    def test_ten_steps_by_one_command(self):
+        """Five of them interpolated."""
+        self.write_steps(6)
+        times = [0.05 * i for i in range(10)]  # 0.30000000000000004, too
+        result = self.make("steps.pvd", "--times", ",".join(map(repr, times)), "--stats", "s.json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.stdout.count("\n"), 10)
+        self.assertRegex(result.stdout, r"(?m)^.*film_0003\.vtp \(time 0\.15\): \d+ points, \d+ triangles")
+        self.assertEqual([(round(t, 9), p.name) for t, p in self.listed()],
+                         [(round(t, 9), f"film_{i:04}.vtp") for i, t in enumerate(times)])
+        self.assertEqual(self.listed()[6][0], 0.3)
+        statistics = json.loads((self.directory / "s.json").read_text())
+        steps = statistics["steps"]
+        self.assertEqual([s["time"] for s in steps], [t for t, _ in self.listed()])
+        self.assertEqual([len(s["inputs"]) for s in steps], [1, 2] * 5)
+        builds = [s["seconds"]["program_build"] for s in steps]
+        self.assertGreater(builds[0], 0)
+        self.assertEqual(builds[1:], [0] * 9)  # one program for all
+        for step in steps:
+            self.assertGreater(step["statistics"]["triangles"], 1000)
+            self.assertGreater(step["wall_seconds"], 0)
+
+    def test_steps_are_as_surfaces_alone(self):
+        """Buffers that live on change no byte; file order is that of the shell."""
+        paths = self.write_steps(3)
+        self.good(*paths[::-1])
+        self.assertEqual([t for t, _ in self.listed()], [0, 1, 2])
+        for path, (_, surface) in zip(paths[::-1], self.listed()):
+            self.assertEqual(self.extract(*FREE, source=path).returncode, 0)
+            self.assertEqual(self.output.read_bytes().decode(), self.without_mark(surface))
+
+    def test_interpolated_surface(self):
+        """Where the particles are known: the free surface there and that of the film agree."""
+        self.write_steps(2)
+        self.good("steps.pvd", "--times", "0.05")
+        exact = self.directory / "exact.vtp"
+        files.write_vtp(exact, *files.drop_at(0.05))
+        self.assertEqual(self.extract(*FREE, source=exact).returncode, 0)
+        def bounds(path):
+            text = path.read_text()
+            array = re.search(r'Name="Points".*?RangeMin="(.*?)".*?RangeMax="(.*?)"', text, re.S)
+            return [float(v) for v in array.groups()]
+        for a, b in zip(bounds(self.output), bounds(self.listed()[0][1])):
+            self.assertAlmostEqual(a, b, delta=1e-5)
+
+    def test_time_step(self):
+        paths = self.write_steps(3)
+        result = self.make(*paths, "--times", "0.5")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, "warning: .*film_0000.vtp .*moved 0.10.* times as far as 'Velocity'")
+        self.good(*paths, "--time-step", "0.1", "--times", "0.05,0.2")
+        self.assertEqual([t for t, _ in self.listed()], [0.05, 0.2])
+
+    def test_one_step(self):
+        self.good(self.input)
+        self.assertEqual([p.name for _, p in self.listed()], ["film_0000.vtp"])
+
+    def test_shuffled_particles(self):
+        self.write_steps(2)
+        self.good("steps.pvd", "--times", "0.03")
+        expected = self.without_mark(self.listed()[0][1])
+        for i in range(2):
+            order = list(range(1000))
+            random.Random(i).shuffle(order)
+            files.write_vtp(self.directory / f"drop_00{i}.vtp", *files.drop_at(0.1 * i, numbers=order))
+        self.good("steps.pvd", "--times", "0.03")
+        self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
+
+    def test_entering_and_leaving(self):
+        """Half of the block leaves, as many others enter."""
+        for i, numbers in enumerate((range(0, 600), range(400, 1000))):
+            files.write_vtp(self.directory / f"drop_00{i}.vtp",
+                            *files.drop_at(0.1 * i, numbers=list(numbers)))
+        files.write_pvd(self.directory / "steps.pvd", [(0, "drop_000.vtp"), (0.1, "drop_001.vtp")])
+        steps = self.good("steps.pvd", "--times", "0.02,0.08")["steps"]
+        self.assertEqual([s["statistics"]["fluid_particles"] for s in steps], [600, 600])
+        self.assertNotEqual(*[self.without_mark(p) for _, p in self.listed()])
+
+    def test_no_numbers(self):
+        points, arrays = files.drop_at(0.1)
+        del arrays["Idp"]
+        paths = self.write_steps(2)
+        files.write_vtp(paths[1], points, arrays)
+        self.good("steps.pvd")
+        result = self.make("steps.pvd", "--times", "0,0.05", "--quiet")
+        self.one_sentence(result, 1, r"film_0001.vtp \(time 0.05\): There is no point array 'Idp'")
+
+    def test_parts(self):
+        """Several files of one time are parts of one set of particles."""
+        self.write_steps(1)
+        self.good("steps.pvd")
+        whole = self.listed()[0][1].read_bytes()
+        for i in range(2):
+            files.write_vtp(self.directory / f"part{i}.vtp",
+                            *files.drop_at(0.0, numbers=list(range(500 * i, 500 * i + 500))))
+        files.write_pvd(self.directory / "steps.pvd", [(0, "part0.vtp"), (0, "part1.vtp")])
+        step = self.good("steps.pvd")["steps"][0]
+        self.assertEqual(step["statistics"]["fluid_particles"], 1000)
+        self.assertEqual(self.listed()[0][1].read_bytes(), whole)
+
+    # What fails
+
+    def test_failing_step(self):
+        paths = self.write_steps(5)
+        paths[2].write_text(paths[2].read_text()[:3000])
+        result = self.make("steps.pvd", "--stats", "s.json", "--quiet")
+        self.one_sentence(result, 1, r"film_0002.vtp \(time 0.2\): .*drop_002.vtp is not a complete")
+        self.assertEqual([p.name for _, p in self.listed()],
+                         [f"film_000{i}.vtp" for i in (0, 1, 3, 4)])
+        steps = json.loads((self.directory / "s.json").read_text())["steps"]
+        self.assertEqual(["error" in s for s in steps], [False, False, True, False, False])
+        result = self.make("steps.pvd", "--times", "0.1,0.15,0.25,0.3,0.35", "--quiet")
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 2), result.stderr)
+        self.assertEqual([t for t, _ in self.listed()], [0.1, 0.3, 0.35])
+
+    def test_crashing_steps(self):
+        """VTK's reader crashes over two of the files; each costs its own step alone."""
+        points, arrays = files.drop_at(0.1, n=3)
+        crash = self.directory / "crash.vtk"
+        files.write_legacy(crash, points, {n: v for n, v in arrays.items() if n != "Velocity"})
+        crash.write_text(crash.read_text().replace("POINT_DATA 27", "POINT_DATA 27000000"))
+        paths = self.write_steps(4)
+        paths[1:1] = [crash]
+        result = self.make(*paths, crash, "--stats", "s.json", "--quiet")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stderr.count("\n"), 2, result.stderr)
+        self.assertEqual(len(re.findall(r"crash.vtk cannot be read", result.stderr)), 2)
+        self.assertEqual([t for t, _ in self.listed()], [0, 2, 3, 4])
+        steps = json.loads((self.directory / "s.json").read_text())["steps"]
+        self.assertEqual([s["time"] for s in steps], [0, 1, 2, 3, 4, 5])
+        self.assertEqual(["error" in s for s in steps], [False, True, False, False, False, True])
+
+    def test_any_end_of_the_reader(self):
+        """Each step's reading ends the process: all are tried, none is listed."""
+        paths = self.write_steps(3)
+        result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault"))
+        if result.returncode == 0:
+            self.skipTest("this VTK has an XML library of its own")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(re.findall(r"drop_00\d", result.stderr), ["drop_000", "drop_001", "drop_002"])
+        self.assertFalse(self.film.exists())
+
+    def test_all_fail(self):
+        paths = self.write_steps(2)
+        result = self.run_program(*paths, self.film, "--scalar", "Nothing", "--iso", "1", "--quiet")
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 2))
+        self.assertFalse(self.film.exists())
+        self.assertEqual(self.surfaces(), [])
+
+    def test_signal(self):
+        """What was done so far stays, and is listed; a second run goes over it."""
+        self.write_steps(3)
+        run = subprocess.Popen([self.program, "steps.pvd", self.film, *FREE, "--quiet"],
+                               cwd=self.directory, env=self.misbehaving(rename_seconds=1))
+        self.addCleanup(run.kill)
+        while not self.film.exists():
+            self.assertIsNone(run.poll())
+            time.sleep(0.05)
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(), -signal.SIGTERM)
+        self.assertGreaterEqual(len(self.surfaces()), len(self.listed()))
+        self.assertLess(len(self.listed()), 3)
+        self.good("steps.pvd")
+        self.assertEqual(len(self.listed()), 3)
+
+    # Whose files are whose
+
+    def test_no_file_of_others_is_lost(self):
+        paths = self.write_steps(2)
+        self.good("steps.pvd")
+        self.good("steps.pvd")  # over its own
+        mine = self.directory / "film_0001.vtp"
+        for content in ("precious", self.without_mark(mine)):
+            mine.write_text(content)
+            self.one_sentence(self.make("steps.pvd"), 2, "film_0001.vtp is there already, and is no step")
+            self.assertEqual(mine.read_text(), content)
+        mine.unlink()
+        mine.symlink_to("nowhere")
+        self.one_sentence(self.make("steps.pvd"), 2, "film_0001.vtp is there already")
+        mine.unlink()
+        self.one_sentence(self.make("steps.pvd", "--stats", self.film), 2, "written twice")
+        paths[0].rename(self.directory / "film_0000.vtp")
+        files.write_pvd(self.directory / "steps.pvd", [(0, "film_0000.vtp"), (1, paths[1].name)])
+        self.one_sentence(self.make("steps.pvd"), 2, "film_0000.vtp would overwrite the input")
+        result = self.run_program("steps.pvd", "steps.pvd", *FREE)
+        self.one_sentence(result, 2, "steps.pvd would overwrite the input")
+
+    def test_names(self):
+        """The list names what XML and shells know how to quote."""
+        folder = self.directory / 'a "b" & <c> ü'
+        folder.mkdir()
+        self.film = folder / 'd "e" & <f> ö.pvd'
+        self.directory, parent = folder, self.directory
+        result = self.run_program(self.input, self.film, *FREE, "--quiet")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual([p.name for _, p in self.listed()], ['d "e" & <f> ö_0000.vtp'])
+        self.assertTrue(self.listed()[0][1].exists())
+        result = self.run_program(self.input, parent / "a\x1bb.pvd", *FREE)
+        self.one_sentence(result, 2, "characters in its name that a .pvd file cannot hold")
+
+    def test_usage(self):
+        pvd = self.directory / "steps.pvd"
+        paths = self.write_steps(2)
+        for arguments, sentence in [
+            ([*paths, "film.vtp"], "output of several steps is a .pvd file, not 'film.vtp'"),
+            ([pvd, "film.vtp"], "output of several steps is a .pvd file"),
+            ([pvd, pvd, "film.pvd"], "a .pvd file is the only input"),
+            ([paths[0], pvd, "film.pvd"], "a .pvd file is the only input"),
+            ([self.input, "surface.vtp", "--times", "1"], "--times is for films"),
+            ([self.input, "surface.vtp", "--time-step", "2"], "--time-step is for films"),
+            ([pvd, "film.pvd", "--time-step", "2"], "a .pvd file has times"),
+            ([*paths, "film.pvd", "--time-step", "0"], "--time-step must be greater than 0"),
+            ([pvd, "film.pvd", "--times", "0.05,x"], "--times needs a finite number, not 'x'"),
+            ([pvd, "film.pvd", "--times", "0.05,0.3"], "0.3 is outside of the steps' times, 0 to 0.1"),
+            ([pvd, "film.pvd", "--times=-0.1"], "-0.1 is outside"),
+            ([pvd, "film.pvd", "--repeat", "2"], "--repeat is for one surface"),
+            ([pvd, "film.pvd", "--screenshot", "a.png"], "--screenshot is for one surface"),
+        ]:
+            with self.subTest(sentence):
+                self.one_sentence(self.run_program(*arguments, *FREE), 2, sentence)
+                self.assertEqual(self.surfaces(), [])
+
+    def test_bad_lists(self):
+        for text, sentence in [
+            ("", "it is not XML, or damaged|no element found"),
+            ("<VTKFile><Collection>", "no element found|damaged"),
+            ("<VTKFile/>", "it has no element Collection"),
+            ("<VTKFile><Collection/></VTKFile>", "it lists no files"),
+            ("<VTKFile><Collection><DataSet timestep='0'/></Collection></VTKFile>", "entry 0 names no file"),
+            ("<VTKFile><Collection><DataSet timestep='x' file='a.vtp'/></Collection></VTKFile>",
+             "the time of a.vtp is 'x', not a number"),
+        ]:
+            with self.subTest(sentence):
+                (self.directory / "steps.pvd").write_text(text)
+                self.one_sentence(self.make("steps.pvd"), 1, "steps.pvd cannot be read: .*" + f"({sentence})")
+        self.one_sentence(self.make("nothing.pvd"), 1, "nothing.pvd cannot be read: No such file")
+        files.write_pvd(self.directory / "steps.pvd", [(0, "nothing.vtp")])
+        self.one_sentence(self.make("steps.pvd"), 1, "nothing.vtp cannot be read: No such file")
+
+    # What it costs
+
+    def test_memory_is_flat(self):
+        """100 steps, of which 50 are interpolated, take no more than the first 20 do."""
+        self.write_steps(51, step=0.01, n=16)
+        steps = self.good("steps.pvd", "--times", ",".join(repr(0.005 * i) for i in range(100)))["steps"]
+        self.assertEqual(len(steps), 100)
+        peaks = [s["peak_resident_bytes"] for s in steps]
+        self.assertLess(peaks[-1], 1.05 * peaks[19])
+
+
+class Formats(CommandLineTest):
+    """Surfaces as .stl, .ply and .obj; particles from .pvtp, .pvtu and .vtkhdf."""
+
+    def extract_as(self, ending, *options):
+        self.output = self.directory / ("surface" + ending)
+        result = self.extract("--free-surface", "--quiet", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.output.read_bytes()
+
+    def counts(self):
+        statistics = self.succeed("--free-surface")["statistics"]
+        return statistics["points"], statistics["triangles"]
+
+    def test_stl(self):
+        points, triangles = self.counts()
+        data = self.extract_as(".stl")
+        self.assertEqual(len(data), 84 + 50 * triangles)
+        self.assertEqual(struct.unpack_from("<I", data, 80)[0], triangles)
+        numbers = struct.unpack_from("<12f", data, 84)
+        self.assertAlmostEqual(sum(n * n for n in numbers[:3]), 1, delta=1e-5)
+        self.assertGreater(sum(a * b for a, b in zip(numbers[:3], numbers[3:6])), 0)  # outwards
+        self.assertGreater(points, 0)
+
+    def test_ply(self):
+        points, triangles = self.counts()
+        data = self.extract_as(".ply")
+        head, body = data.split(b"end_header\n", 1)
+        self.assertIn(f"element vertex {points}\n".encode(), head)
+        self.assertIn(f"element face {triangles}\n".encode(), head)
+        self.assertEqual(len(body), 24 * points + 13 * triangles)
+        for i in range(points):
+            values = struct.unpack_from("=6f", body, 24 * i)
+            self.assertAlmostEqual(sum(n * n for n in values[3:]), 1, delta=1e-5)
+            self.assertGreater(sum(x * n for x, n in zip(values[:3], values[3:])), 0)
+        for i in range(triangles):
+            n, *corners = struct.unpack_from("=B3i", body, 24 * points + 13 * i)
+            self.assertEqual(n, 3)
+            self.assertTrue(all(0 <= c < points for c in corners) and len(set(corners)) == 3)
+
+    def test_obj(self):
+        points, triangles = self.counts()
+        lines = self.extract_as(".obj").decode().splitlines()
+        kinds = [line.split(" ", 1)[0] for line in lines]
+        self.assertEqual([kinds.count(k) for k in ("v", "vn", "f")], [points, points, triangles])
+        self.assertLess(abs(box_of(self.output)[0][0] + box_of(self.output)[0][1]), 1e-3)
+
+    def test_empty(self):
+        for ending in (".stl", ".ply", ".obj"):
+            self.extract_as(ending, "--iso", "5")
+            self.assertTrue(self.output.exists())
+
+    def test_whole_or_untouched(self):
+        for ending in (".stl", ".ply", ".obj"):
+            self.output = self.directory / ("surface" + ending)
+            self.output.write_text("old")
+            result = self.extract("--free-surface", "--quiet", env=self.misbehaving(failing_call="rename"))
+            self.one_sentence(result, 1, f"surface{ending} could not be written: Input/output error")
+            self.assertEqual(self.output.read_text(), "old")
+
+    # Inputs
+
+    def write_pieces(self, kind, write, ghosts=False):
+        """particles.p<kind> with two pieces and an empty one."""
+        pieces = []
+        for i, numbers in enumerate((range(0, 600 if ghosts else 500), range(500, 1000), [])):
+            path = self.directory / f"piece{i}.{kind}"
+            points, arrays = files.drop_at(0, numbers=list(numbers))
+            if ghosts:
+                marks = [int(n >= 500 and i == 0) for n in numbers]
+                arrays["vtkGhostType"] = marks
+            write(path, points, arrays)
+            if ghosts:
+                path.write_text(path.read_text().replace('"Float64" Name="vtkGhostType"',
+                                                         '"UInt8" Name="vtkGhostType"'))
+            pieces.append(path)
+        name = {"vtp": "PolyData", "vtu": "UnstructuredGrid"}[kind]
+        path = self.directory / f"particles.p{kind}"
+        path.write_text(f'<?xml version="1.0"?><VTKFile type="P{name}"><P{name} GhostLevel="0">' +
+                        "".join(f'<Piece Source="{p.name}"/>' for p in pieces) +
+                        f"</P{name}></VTKFile>")
+        return path, pieces
+
+    def test_pieces(self):
+        whole = self.directory / "whole.vtp"
+        files.write_vtp(whole, *files.drop_at(0))
+        expected = self.succeed("--free-surface", source=whole)["statistics"]["triangles"]
+        for kind, write in (("vtp", files.write_vtp), ("vtu", files.write_vtu)):
+            for ghosts in (False, True):
+                with self.subTest(kind, ghosts=ghosts):
+                    path, _ = self.write_pieces(kind, write, ghosts)
+                    found = self.succeed("--free-surface", source=path)["statistics"]
+                    self.assertEqual(found["fluid_particles"], 1000)
+                    self.assertEqual(found["triangles"], expected)
+
+    def test_damaged_pieces(self):
+        path, pieces = self.write_pieces("vtp", files.write_vtp)
+        pieces[1].write_text(pieces[1].read_text()[:2000])
+        self.output.unlink(missing_ok=True)
+        self.refuse(self.extract("--free-surface", source=path), 1, "piece1.vtp is not a complete")
+        pieces[1].unlink()
+        self.refuse(self.extract("--free-surface", source=path), 1, "piece1.vtp cannot be read: No such")
+        path.write_text(path.read_text().replace("piece1.vtp", "particles.pvtp"))
+        self.refuse(self.extract("--free-surface", source=path), 1, "is a list itself")
+        path.write_text("<VTKFile><PPolyData/></VTKFile>")
+        self.refuse(self.extract("--free-surface", source=path), 1, "it lists no pieces")
+
+    def test_vtkhdf(self):
+        grid = HERE / "lattice.vtkhdf"
+        result = self.extract("--free-surface", source=grid)
+        if "without its reader" in result.stderr:
+            self.skipTest("this VTK has no reader for it")
+        points, arrays = files.lattice(3)
+        files.write_vtp(self.input, points, arrays)
+        expected = self.succeed("--free-surface")["statistics"]["triangles"]
+        self.assertEqual(self.succeed("--free-surface", source=grid)["statistics"]["triangles"], expected)
+        self.output.unlink()
+        poly = self.extract("--free-surface", source=HERE / "lattice_poly.vtkhdf")
+        if poly.returncode != 0:
+            self.one_sentence(poly, 1, r"lattice_poly.vtkhdf cannot be read: .*\(VTK 9\.[12]\..* no poly data\)")
+            self.assertFalse(self.output.exists())
+        damaged = self.directory / "damaged.vtkhdf"
+        damaged.write_bytes(grid.read_bytes()[:2000])
+        self.output.unlink(missing_ok=True)
+        self.refuse(self.extract("--free-surface", source=damaged), 1, "damaged.vtkhdf cannot be read: ")
+
+
+if __name__ == "__main__":
+    main()

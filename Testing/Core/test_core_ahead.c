@@ -1,0 +1,225 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Kernels compiled ahead by a second process, which is started once and leaves nothing behind. With
+ * PoCL; other drivers have no such process, which is tested instead. */
+
+#if !defined(_GNU_SOURCE)
+#define _GNU_SOURCE /* for nftw, setenv, mkdtemp */
+#endif
+
+#include "core_fixture.h"
+
+#include <errno.h>
+#include <ftw.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static char folder[64];
+static int compiled; /* kernels in the folder */
+
+static int remove_file(const char* path, const struct stat* stat, int type, struct FTW* at)
+{
+  (void)stat;
+  (void)type;
+  (void)at;
+  return remove(path);
+}
+
+static int count_file(const char* path, const struct stat* stat, int type, struct FTW* at)
+{
+  (void)stat;
+  (void)at;
+  const size_t length = strlen(path);
+  compiled += type == FTW_F && length > 3 && strcmp(path + length - 3, ".so") == 0 &&
+    !strstr(path, "tempfile");
+  return 0;
+}
+
+/* The device, with the folder that it was given; then an empty one, for what is started. */
+static int set_up(void** state)
+{
+  setenv("MCOR_COMPILER", "", 1);
+  const int status = core_set_up(state);
+  strcpy(folder, "/tmp/test_core_ahead_XXXXXX");
+  assert_non_null(mkdtemp(folder));
+  setenv("POCL_CACHE_DIR", folder, 1);
+  return status;
+}
+
+static int tear_down(void** state)
+{
+  nftw(folder, remove_file, 16, FTW_DEPTH | FTW_PHYS);
+  return core_tear_down(state);
+}
+
+static bool has_pocl(mcor_context* context)
+{
+  return mcor_can_compile_ahead(&context->cl, &(mcor_build){ 0 });
+}
+
+/* Seconds until so many kernels are compiled, at most `limit`. */
+static double wait_for_kernels(int count, double limit)
+{
+  const double begin = mcor_seconds();
+  const struct timespec pause = { 0, 50000000 };
+  for (compiled = 0; compiled < count && mcor_seconds() - begin < limit;)
+  {
+    nanosleep(&pause, NULL);
+    compiled = 0;
+    nftw(folder, count_file, 16, FTW_PHYS);
+  }
+  return mcor_seconds() - begin;
+}
+
+static bool is_listed(
+  const mcor_ahead_kernel* kernels, int count, const char* name, mcor_program program)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    if (strcmp(kernels[i].name, name) == 0)
+    {
+      return kernels[i].program == program;
+    }
+  }
+  return false;
+}
+
+/* The list is what usual surfaces launch, no more and no less. */
+static void expect_list(mcor_context* context, mcor_field field)
+{
+  const double iso = field == MCOR_WEIGHT_SUM ? 0.5 : 0;
+  core_set set = core_make_block(14, 0.1, 3, core_slope); /* cut by the end of the fluid */
+  mcor_input input = core_input(&set);
+  mcor_array attribute = core_array(set.position, 3);
+  mcor_options options = core_options(&iso);
+  mcor_ahead_kernel kernels[MCOR_AHEAD_LIMIT];
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  options.field = field;
+  mcor_surface surface = core_extract(context, &input, &options);
+  const int count = mcor_list_ahead(&context->cl.build, set.count, kernels);
+  for (int i = 0; i < context->cl.kernel_count; ++i)
+  {
+    const mcor_kernel* kernel = &context->cl.kernels[i];
+    CORE_CHECK(is_listed(kernels, count, kernel->name, kernel->program) ||
+        strcmp(kernel->name, "mcor_attribute_means") == 0,
+      "%s is not listed", kernel->name);
+  }
+  int launched = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    for (int k = 0; k < context->cl.kernel_count; ++k)
+    {
+      launched += strcmp(kernels[i].name, context->cl.kernels[k].name) == 0;
+    }
+  }
+  /* Those for arrays of many components, and for many points, are not needed here. */
+  CORE_CHECK(launched + 3 >= count, "%d of %d listed kernels were launched", launched, count);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void test_list(void** state)
+{
+  expect_list(*state, MCOR_WEIGHT_SUM);
+  mcor_context* context = NULL;
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  expect_list(context, MCOR_SHEPARD);
+  mcor_free_context(context);
+}
+
+/* Each kernel of the list compiles by a launch whose counts are 0, and that does nothing. */
+static void test_zero_launches(void** state)
+{
+  mcor_context* context = *state;
+  for (int field = MCOR_SHEPARD; field <= MCOR_WEIGHT_SUM; field += MCOR_WEIGHT_SUM)
+  {
+    mcor_ahead_kernel kernels[MCOR_AHEAD_LIMIT];
+    core_build(context, MCOR_CUBIC_SPLINE, (mcor_field)field, MCOR_FLOAT32);
+    const int count = mcor_list_ahead(&context->cl.build, 1000, kernels);
+    for (int i = 0; i < count; ++i)
+    {
+      CORE_OK(context, mcor_compile_kernel(context, kernels + i));
+    }
+  }
+  const mcor_ahead_kernel none = { "mcor_no_such_kernel", MCOR_PROGRAM_FIELD, MCOR_LIGHT, false };
+  assert_int_equal(mcor_compile_kernel(context, &none), MCOR_DEVICE_ERROR);
+}
+
+/* The process begins at once, ends when it is no longer wanted, and is not started a second time. */
+static void test_process(void** state)
+{
+  mcor_context* context = NULL;
+  core_set set = core_make_block(6, 0, 1, core_ball);
+  const mcor_input input = core_input(&set);
+  const mcor_build build = { .sph_kernel = MCOR_QUADRATIC, .field = MCOR_WEIGHT_SUM };
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  if (!has_pocl(*state))
+  {
+    mcor_begin_ahead(context, &build, &input);
+    assert_false(context->ahead.started);
+    mcor_free_context(context);
+    core_free_set(&set);
+    return;
+  }
+  setenv("MCOR_COMPILER", CORE_COMPILER, 1);
+  mcor_begin_ahead(context, &build, &input);
+  assert_true(context->ahead.started);
+  assert_true(waitpid(-1, NULL, WNOHANG) < 0 && errno == ECHILD); /* nobody is left to wait for */
+  wait_for_kernels(2, 300);
+  assert_true(compiled >= 2);
+  mcor_end_ahead(context, false);
+  wait_for_kernels(1 << 20, 3); /* it may be in the middle of one */
+  const int last = compiled;
+  wait_for_kernels(1 << 20, 1);
+  assert_true(compiled <= last + 1);
+  assert_true(compiled < 20);
+  /* The call failed: once more. It succeeds: no more. */
+  mcor_begin_ahead(context, &build, &input);
+  assert_true(context->ahead.started);
+  mcor_end_ahead(context, true);
+  mcor_begin_ahead(context, &build, &input);
+  assert_false(context->ahead.started);
+  const mcor_build other = { .sph_kernel = MCOR_QUINTIC_SPLINE, .field = MCOR_WEIGHT_SUM };
+  mcor_begin_ahead(context, &other, &input);
+  assert_true(context->ahead.started);
+  mcor_end_ahead(context, false);
+  mcor_free_context(context);
+  core_free_set(&set);
+}
+
+/* Without the program, with one that fails, or in a folder that cannot be written, all goes on. */
+static void test_no_process(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(6, 0, 1, core_ball);
+  const mcor_input input = core_input(&set);
+  const mcor_build build = { .sph_kernel = MCOR_WENDLAND_C2, .field = MCOR_WEIGHT_SUM };
+  const char* const compilers[] = { "", "/nowhere", "/tmp", "/bin/false" };
+  for (int i = 0; i < 4; ++i)
+  {
+    setenv("MCOR_COMPILER", compilers[i], 1);
+    mcor_begin_ahead(context, &build, &input);
+    assert_int_equal(context->ahead.started, i == 3 && has_pocl(context));
+    mcor_end_ahead(context, false);
+  }
+  setenv("POCL_CACHE_DIR", "/proc/nowhere", 1);
+  mcor_begin_ahead(context, &build, &input);
+  mcor_end_ahead(context, true);
+  setenv("POCL_CACHE_DIR", folder, 1);
+  assert_true(waitpid(-1, NULL, WNOHANG) < 0 && errno == ECHILD);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_list),
+    cmocka_unit_test(test_zero_launches), cmocka_unit_test(test_process),
+    cmocka_unit_test(test_no_process) };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

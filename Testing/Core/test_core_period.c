@@ -1,0 +1,322 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Periodic boxes, against the same particles with all their images as an input that is not periodic;
+ * and the surface at opposite sides, against itself. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* Particles of spacing 1 in a box at the origin with sides of these lengths; a scalar that repeats. */
+static core_set make_period(const int length[3], uint64_t seed)
+{
+  core_set set = core_make_set((int64_t)length[0] * length[1] * length[2]);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    double* x = set.position + 3 * i;
+    const int64_t at[3] = { i % length[0], i / length[0] % length[1], i / length[0] / length[1] };
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] = (double)at[a] + 0.5 + 0.2 * (2 * random_unit(&seed) - 1);
+      set.scalar[i] += sin(2 * PI * x[a] / length[a] + a);
+    }
+    set.smoothing_length[i] = 1.3 * (1 + 0.4 * random_unit(&seed));
+    set.volume[i] = 1;
+  }
+  return set;
+}
+
+/* The set and its images in all 27 periods, or those along the axes that have one. */
+static core_set add_images(const core_set* set, const double period[6])
+{
+  core_set all = core_make_set(27 * set->count);
+  all.count = 0;
+  for (int image = 0; image < 27; ++image)
+  {
+    const int at[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
+    int open = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      open = open || (at[a] != 0 && period[2 * a] == period[2 * a + 1]);
+    }
+    for (int64_t i = 0; i < set->count && !open; ++i, ++all.count)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        all.position[3 * all.count + a] =
+          set->position[3 * i + a] + at[a] * (period[2 * a + 1] - period[2 * a]);
+      }
+      all.smoothing_length[all.count] = set->smoothing_length[i];
+      all.volume[all.count] = set->volume[i];
+      all.scalar[all.count] = set->scalar[i];
+    }
+  }
+  return all;
+}
+
+/* A point of the surface at x to within 1e-4, or -1. */
+static int64_t find_point(const mcor_surface* s, const double x[3])
+{
+  for (int64_t i = 0; i < s->point_count; ++i)
+  {
+    const double* p = s->points + 3 * i;
+    if (fabs(p[0] - x[0]) < 1e-4 && fabs(p[1] - x[1]) < 1e-4 && fabs(p[2] - x[2]) < 1e-4)
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/* As many triangles, and all points of one where the other has some, with about the same normals. */
+static void check_same(const char* name, const mcor_surface* s, const mcor_surface* expected)
+{
+  CORE_CHECK(s->triangle_count == expected->triangle_count &&
+      s->point_count == expected->point_count && s->triangle_count > 300,
+    "%s: %lld triangles of %lld points, expected %lld of %lld", name, (long long)s->triangle_count,
+    (long long)s->point_count, (long long)expected->triangle_count,
+    (long long)expected->point_count);
+  for (int64_t i = 0; i < s->point_count; ++i)
+  {
+    const int64_t other = find_point(expected, s->points + 3 * i);
+    CORE_CHECK(other >= 0, "%s: no point at %g %g %g", name, s->points[3 * i], s->points[3 * i + 1],
+      s->points[3 * i + 2]);
+    for (int a = 0; a < 3; ++a)
+    {
+      assert_true(fabs(s->normals[3 * i + a] - expected->normals[3 * other + a]) < 1e-3);
+    }
+  }
+}
+
+/* Of a point on a side of the period, whether there is one a period away; of another one, 0. */
+static int has_partner(const mcor_surface* s, const double period[6], int64_t point)
+{
+  int found = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double length = period[2 * a + 1] - period[2 * a];
+    for (int upper = 0; upper < 2 && length > 0; ++upper)
+    {
+      const double side = s->statistics.cube_size *
+        (double)(s->statistics.lattice_origin[a] + (upper ? s->statistics.lattice_cells[a] : 0));
+      double x[3];
+      memcpy(x, s->points + 3 * point, sizeof x);
+      if (fabs(x[a] - side) < 1e-9)
+      {
+        x[a] += upper ? -length : length;
+        found = found || find_point(s, x) >= 0;
+      }
+    }
+  }
+  return found;
+}
+
+/* Borders lie on the sides of the period, where each of their points has a partner, but for those of
+ * trimming. */
+static void check_sides(const char* name, const mcor_surface* s, const double period[6])
+{
+  mesh_report report = core_check_mesh(s);
+  int64_t borders = 0;
+  for (int64_t i = 0; i < 2 * report.side_count; ++i)
+  {
+    const mesh_edge* e = report.side + i / 2;
+    const int64_t point = i % 2 ? e->a : e->b;
+    if (mesh_count_sides(&report, e->a, e->b) == 1 && s->boundary_flag[point] == 0)
+    {
+      CORE_CHECK(has_partner(s, period, point), "%s: a border at %g %g %g", name,
+        s->points[3 * point], s->points[3 * point + 1], s->points[3 * point + 2]);
+      ++borders;
+    }
+  }
+  CORE_CHECK(borders > 40, "%s: only %lld points of borders", name, (long long)borders);
+  mesh_free_report(&report);
+}
+
+static mcor_options period_options(const double* iso, const double period[6])
+{
+  mcor_options options = core_options(iso);
+  memcpy(options.periodic, period, sizeof options.periodic);
+  options.boundary_flag = 1;
+  return options;
+}
+
+static void check_images(mcor_context* context, const char* name, const core_set* set,
+  const mcor_options* options, int computed)
+{
+  mcor_input input = core_input(set);
+  input.has_volume = !computed;
+  mcor_surface surface = core_extract(context, &input, options);
+  check_sides(name, &surface, options->periodic);
+  core_set all = add_images(set, options->periodic);
+  mcor_input other = core_input(&all);
+  other.has_volume = !computed;
+  mcor_options plain = *options;
+  memset(plain.periodic, 0, sizeof plain.periodic);
+  plain.cube_size = surface.statistics.cube_size;
+  plain.has_box = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int open = options->periodic[2 * a] == options->periodic[2 * a + 1];
+    plain.box[2 * a] = open ? -INFINITY : options->periodic[2 * a];
+    plain.box[2 * a + 1] = open ? INFINITY : options->periodic[2 * a + 1];
+  }
+  mcor_surface expected = core_extract(context, &other, &plain);
+  check_same(name, &surface, &expected);
+  mcor_free_surface(&surface);
+  mcor_free_surface(&expected);
+  core_free_set(&all);
+}
+
+static void images_count(void** state)
+{
+  const double iso = 0.2, half = 0.5;
+  const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
+  const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
+  core_set set = make_period(cube, 5);
+  mcor_options options = period_options(&iso, around);
+  check_images(*state, "all axes", &set, &options, 0);
+  options.nearest_particle = 1;
+  check_images(*state, "computed volumes", &set, &options, 1);
+  core_free_set(&set);
+  set = make_period(slab, 6);
+  options = period_options(&iso, along);
+  check_images(*state, "two axes", &set, &options, 0);
+  options.field = MCOR_WEIGHT_SUM;
+  options.iso_values = &half;
+  check_images(*state, "free surface", &set, &options, 0);
+  core_free_set(&set);
+}
+
+/* Particles shifted by whole cubes, and taken out of the period by some: the same surface, shifted.
+ * Lengths are powers of 2, so that nothing is rounded. */
+static void shifts(void** state)
+{
+  const double iso = 0.2;
+  const int cube[3] = { 8, 8, 8 };
+  const double around[6] = { 0, 8, 0, 8, 0, 8 }, step[3] = { 1.5, -3.5, 21 };
+  core_set set = make_period(cube, 7);
+  mcor_options options = period_options(&iso, around);
+  options.cube_size = 0.5;
+  mcor_input input = core_input(&set);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_true(surface.statistics.cube_size == 0.5);
+  for (int64_t i = 0; i < 3 * set.count; ++i)
+  {
+    set.position[i] += step[i % 3];
+  }
+  mcor_surface other = core_extract(*state, &input, &options);
+  assert_int_equal(other.triangle_count, surface.triangle_count);
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    double x[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] = surface.points[3 * i + a] + step[a];
+      x[a] -= 8 * floor(x[a] / 8);
+    }
+    for (int image = 0; image < 8 && find_point(&other, x) < 0; ++image)
+    {
+      /* On a side it may be at the opposite one, or a little beyond. */
+      for (int a = 0; a < 3; ++a)
+      {
+        const double base = x[a] > 4 ? x[a] - 8 : x[a];
+        x[a] = fabs(base) < 1e-4 ? base + 8 * (image >> a & 1) : x[a];
+      }
+    }
+    assert_true(find_point(&other, x) >= 0);
+  }
+  mcor_free_surface(&surface);
+  mcor_free_surface(&other);
+  core_free_set(&set);
+}
+
+/* Boxes within a period, on its sides too, make up the whole. */
+static void boxes(void** state)
+{
+  const double iso = 0.2;
+  const int cube[3] = { 8, 8, 8 };
+  const double around[6] = { 0, 8, 0, 8, 0, 8 };
+  core_set set = make_period(cube, 5);
+  const mcor_input input = core_input(&set);
+  mcor_options options = period_options(&iso, around);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  int64_t triangles = 0, cells = 0;
+  for (int part = 0; part < 2; ++part)
+  {
+    const double box[6] = { part ? 3.3 : -5, part ? 50 : 3.3, -5, 50, -5, 50 };
+    options.has_box = 1;
+    memcpy(options.box, box, sizeof box);
+    mcor_surface half = core_extract(*state, &input, &options);
+    triangles += half.triangle_count;
+    cells += half.statistics.virtual_cells;
+    mcor_free_surface(&half);
+  }
+  assert_int_equal(triangles, surface.triangle_count);
+  assert_int_equal(cells, surface.statistics.virtual_cells);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Cubes fit periods of different lengths; what cannot be is said. */
+static void lengths(void** state)
+{
+  const struct
+  {
+    double period[6], cube;
+    const char* sentence;
+  } cases[] = { { { 0, 8, 0, 8, 0, 8 }, 8.0 / 13, NULL }, { { 0, 8, 0, 6, 0, 0 }, 8.0 / 16, NULL },
+    { { -4, 4, 0, 10, -1, 11 }, 8.0 / 16, NULL },
+    { { 0, 8, 0, 8.123456, 0, 0 }, 0, "not all whole numbers of a cube size" },
+    { { 0, 0.5, 0, 8, 0, 8 }, 0, "period along x is 0.5, too little" },
+    { { 0, 8, 0, -1, 0, 8 }, 0, "period along y goes from 0 to -1" },
+    { { 0, NAN, 0, 8, 0, 8 }, 0, "period along x goes from 0 to nan" } };
+  const double iso = 0.2;
+  const int cube[3] = { 8, 8, 8 };
+  core_set set = make_period(cube, 5);
+  mcor_input input = core_input(&set);
+  input.smoothing_length = (mcor_array){ .constant = 1.3 };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    const mcor_options options = period_options(&iso, cases[i].period);
+    mcor_surface surface = { 0 };
+    const mcor_status status = mcor_extract(*state, &input, &options, &surface);
+    if (cases[i].sentence)
+    {
+      assert_int_equal(status, MCOR_INVALID_ARGUMENT);
+      CORE_CHECK(strstr(mcor_last_error(*state), cases[i].sentence), "%s", mcor_last_error(*state));
+      continue;
+    }
+    CORE_OK(*state, status);
+    assert_true(fabs(surface.statistics.cube_size - cases[i].cube) < 1e-12);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double period = cases[i].period[2 * a + 1] - cases[i].period[2 * a];
+      assert_true(period == 0 ||
+        fabs((double)surface.statistics.lattice_cells[a] * cases[i].cube - period) < 1e-9);
+    }
+    mcor_free_surface(&surface);
+  }
+  mcor_options options = period_options(&iso, cases[0].period);
+  mcor_surface surface = { 0 };
+  options.seeds = MCOR_PAIRS;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(*state), "Pairs as seeds"));
+  options.seeds = MCOR_COMPLETE;
+  options.sph_kernel = MCOR_M_PRIME_4;
+  input.has_volume = 0;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(*state), "Volumes are not computed with kernel mprime4"));
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(images_count), cmocka_unit_test(shifts),
+    cmocka_unit_test(boxes), cmocka_unit_test(lengths) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

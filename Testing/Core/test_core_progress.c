@@ -1,0 +1,145 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Progress, and runs that it cancels. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  mcor_surface surface = core_extract(context, input, options);
+  const uint64_t hash = core_hash(&surface);
+  CORE_CHECK(surface.triangle_count > 0, "no triangles");
+  mcor_free_surface(&surface);
+  return hash;
+}
+
+typedef struct cancel_at
+{
+  int calls, stop_at; /* stop_at < 0: never */
+  double last;
+  char phases[200];
+} cancel_at;
+
+static int on_progress(void* user, double fraction, const char* phase)
+{
+  cancel_at* c = user;
+  CORE_CHECK(fraction >= c->last && fraction <= 1, "progress %g after %g", fraction, c->last);
+  c->last = fraction;
+  snprintf(c->phases + strlen(c->phases), sizeof c->phases - strlen(c->phases), "%s;", phase);
+  return c->calls++ == c->stop_at;
+}
+
+static void test_cancel_in_every_phase(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  const double iso = 0, interval = context->report_interval;
+  mcor_input input = core_input(&set);
+  input.particles_version = input.scalar_version = 99;
+  mcor_options options = core_options(&iso);
+  const uint64_t expected = hash_of(context, &input, &options);
+  cancel_at never = { .stop_at = -1 };
+  mcor_release_memory(context);
+  context->report_interval = INFINITY; /* the phases alone */
+  options.progress = on_progress;
+  options.progress_user = &never;
+  CORE_CHECK(hash_of(context, &input, &options) == expected, "progress changes the result");
+  for (int p = MCOR_PHASE_SEARCH_GRID; p < MCOR_PHASE_COUNT; ++p)
+  {
+    CORE_CHECK(strstr(never.phases, mcor_phase_name((mcor_phase)p)), "no phase \"%s\" in %s",
+      mcor_phase_name((mcor_phase)p), never.phases);
+  }
+  for (int stop = 0; stop < never.calls; ++stop)
+  {
+    cancel_at at = { .stop_at = stop };
+    options.progress_user = &at;
+    mcor_release_memory(context); /* so that no phase is skipped */
+    mcor_surface surface = { 0 };
+    const mcor_status status = mcor_extract(context, &input, &options, &surface);
+    CORE_CHECK(status == MCOR_CANCELLED, "stop %d: %s", stop, mcor_status_name(status));
+    CORE_CHECK(surface.point_count == 0 && !surface.points && !surface.triangles, "not empty");
+    assert_non_null(strstr(mcor_last_error(context), "cancelled"));
+    cancel_at on = { .stop_at = -1 };
+    options.progress_user = &on;
+    CORE_CHECK(hash_of(context, &input, &options) == expected, "after a stop at call %d", stop);
+  }
+  context->report_interval = interval;
+  core_free_set(&set);
+}
+
+/* One call of any kind, on whose way there are launches. */
+static mcor_status run_kind(
+  mcor_context* context, int kind, const mcor_input* input, const mcor_options* options)
+{
+  mcor_surface surface;
+  mcor_samples samples;
+  mcor_derivatives derivatives;
+  mcor_status status;
+  switch (kind)
+  {
+    case 0:
+      status = mcor_extract(context, input, options, &surface);
+      mcor_free_surface(&surface);
+      return status;
+    case 1:
+      status = mcor_probe(context, input, options, &input->positions, input->count, &samples);
+      mcor_free_samples(&samples);
+      return status;
+    default:
+      status = mcor_derive(context, input, options, MCOR_GRADIENT_CORRECTED, &derivatives);
+      mcor_free_derivatives(&derivatives);
+      return status;
+  }
+}
+
+/* Where each launch is worth a report, there are many, none goes back, and one that asks to stop is
+ * the last: nothing is launched after it. */
+static void test_cancel_between_launches(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  const double iso = 0, interval = context->report_interval;
+  mcor_input input = core_input(&set);
+  input.attributes = &input.scalar;
+  input.attribute_count = 1;
+  mcor_options options = core_options(&iso);
+  options.progress = on_progress;
+  for (int kind = 0; kind < 3; ++kind)
+  {
+    options.iso_count = kind == 0;
+    cancel_at phases = { .stop_at = -1 }, launches = phases, again = phases;
+    context->report_interval = INFINITY;
+    options.progress_user = &phases;
+    CORE_OK(context, run_kind(context, kind, &input, &options)); /* builds */
+    context->report_interval = 0;
+    options.progress_user = &launches;
+    CORE_OK(context, run_kind(context, kind, &input, &options));
+    CORE_CHECK(launches.calls > phases.calls + 10, "kind %d: %d calls", kind, launches.calls);
+    assert_true(launches.last == 1);
+    for (int stop = 0; stop < launches.calls; stop += 1 + stop / 4)
+    {
+      cancel_at at = { .stop_at = stop };
+      options.progress_user = &at;
+      const mcor_status status = run_kind(context, kind, &input, &options);
+      CORE_CHECK(status == MCOR_CANCELLED && at.calls == stop + 1, "kind %d, stop %d: %s, %d calls",
+        kind, stop, mcor_status_name(status), at.calls);
+    }
+    options.progress_user = &again;
+    CORE_OK(context, run_kind(context, kind, &input, &options));
+    assert_int_equal(again.calls, launches.calls);
+  }
+  context->report_interval = interval;
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_cancel_in_every_phase),
+    cmocka_unit_test(test_cancel_between_launches) };
+  return cmocka_run_group_tests_name("progress", tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,169 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What is wrong with the input is said in one sentence with figures; what is right, not at all. */
+
+#include "core_fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct warning_call
+{
+  core_set set;
+  mcor_input input;
+  mcor_options options;
+  double iso[2];
+} warning_call;
+
+static void begin_call(warning_call* call)
+{
+  memset(call, 0, sizeof *call);
+  call->set = core_make_block(10, 0.2, 3, core_ball);
+  call->input = core_input(&call->set);
+  call->options = core_options(call->iso);
+}
+
+/* Each warning of the call: whether it is given, and then that it holds all of `words`, with | between
+ * them. Returns how many are given. */
+static int check_call(mcor_context* context, warning_call* call, const char* name,
+  mcor_warning expected, const char* words)
+{
+  mcor_surface surface = core_extract(context, &call->input, &call->options);
+  int count = 0;
+  for (int w = 0; w < MCOR_WARNING_COUNT; ++w)
+  {
+    char* text = mcor_describe_warning((mcor_warning)w, &call->input, &call->options, &surface);
+    count += text != NULL;
+    CORE_CHECK((text != NULL) == (words && w == (int)expected), "%s: warning %d: %s", name, w,
+      text ? text : "not given");
+    char list[200];
+    snprintf(list, sizeof list, "%s", words ? words : "");
+    for (char* word = strtok(list, "|"); text && word; word = strtok(NULL, "|"))
+    {
+      CORE_CHECK(strstr(text, word), "%s: no \"%s\" in: %s", name, word, text);
+    }
+    free(text);
+  }
+  mcor_free_surface(&surface);
+  core_free_set(&call->set);
+  return count;
+}
+
+#define SILENT(statement)                                                                          \
+  do                                                                                               \
+  {                                                                                                \
+    warning_call call;                                                                             \
+    begin_call(&call);                                                                             \
+    statement;                                                                                     \
+    assert_int_equal(check_call(*state, &call, #statement, MCOR_WARNING_COUNT, NULL), 0);          \
+  } while (0)
+
+#define WARNED(kind, words, statement)                                                             \
+  do                                                                                               \
+  {                                                                                                \
+    warning_call call;                                                                             \
+    begin_call(&call);                                                                             \
+    statement;                                                                                     \
+    assert_int_equal(check_call(*state, &call, #statement, kind, words), 1);                       \
+  } while (0)
+
+static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
+                        far_off = { .constant = 0.0013 };
+
+static void test_neighbours(void** state)
+{
+  SILENT((void)call);
+  SILENT(call.options.sph_kernel = MCOR_QUINTIC_SPLINE);
+  SILENT(call.options.sph_kernel = MCOR_M_PRIME_4);
+  SILENT(call.options.h_scale = 0.5);
+  SILENT(call.options.field = MCOR_WEIGHT_SUM; call.iso[0] = 0.5);
+  SILENT(call.input.estimate_smoothing_length = 1);
+  SILENT(call.input.smoothing_length = twice; call.input.smoothing_length_is_support_radius = 1);
+  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 2.6|30 to 100|cubic|support radius (then say",
+    call.input.smoothing_length = twice);
+  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|read as the support radius",
+         call.input.smoothing_length_is_support_radius = 1;
+         call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|unit of the positions",
+         call.input.smoothing_length = half;
+         call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_NEIGHBOURS, "has 1 neighbours|no other particle|unit of the positions",
+         call.input.smoothing_length = far_off;
+         call.options.cube_size = 1; call.options.node_threshold = 0;
+         call.options.vertex_threshold = 0);
+  SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
+         call.options.vertex_threshold = 0); /* nothing is usual */
+}
+
+/* The extent is that of the fluid. */
+static void flatten(core_set* set, double height)
+{
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    set->position[3 * i] = 1.1 * (double)(i % 32);
+    set->position[3 * i + 1] = height * (double)(i % 7);
+    set->position[3 * i + 2] = 1.1 * (double)(i / 32);
+  }
+}
+
+static void test_plane(void** state)
+{
+  WARNED(MCOR_WARN_PLANE, "along y|0 times", flatten(&call.set, 0);
+         call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_PLANE, "along y|over 0.06", flatten(&call.set, 0.01);
+         call.options.vertex_threshold = 0);
+  SILENT(flatten(&call.set, 0.2); call.options.vertex_threshold = 0);
+}
+
+static void test_iso_value(void** state)
+{
+  WARNED(MCOR_WARN_ISO_VALUE, "100 is outside|scalar", call.iso[0] = 100);
+  WARNED(MCOR_WARN_ISO_VALUE, "-1000 is outside|Height|to 8.", call.input.scalar.name = "Height";
+         call.iso[0] = 0; call.iso[1] = -1000; call.options.iso_count = 2);
+  WARNED(MCOR_WARN_ISO_VALUE, "100 (and 1 more)", call.iso[0] = 100; call.iso[1] = -1000;
+         call.options.iso_count = 2);
+  WARNED(MCOR_WARN_ISO_VALUE, "100 is outside", call.iso[0] = 100; call.options.field = MCOR_SUM);
+  SILENT(call.iso[0] = 8.4; call.options.field = MCOR_SUM);
+}
+
+static void test_trimmed(void** state)
+{
+  WARNED(MCOR_WARN_TRIMMED, "triangles were trimmed|weight sum|vertex threshold 3",
+    call.options.vertex_threshold = 3);
+  WARNED(MCOR_WARN_TRIMMED, "boundary eigenvalue|vertex threshold 3|0.3",
+         call.options.vertex_threshold = 3;
+         call.options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE);
+  WARNED(MCOR_WARN_TRIMMED, "threshold 0.5, or the solids' share|wall share 0.01",
+         call.options.wall_share = 0.01;
+         call.set.has_solids = 1; for (int i = 0; i < 1000; ++i) call.set.solid[i] = i % 2 == 0;
+         call.input = core_input(&call.set));
+  WARNED(MCOR_WARN_TRIMMED, "everywhere there is the solids' share|wall share 0.01",
+         call.options.field = MCOR_WEIGHT_SUM;
+         call.iso[0] = 0.4; call.options.wall_share = 0.01; call.set.has_solids = 1;
+         for (int i = 0; i < 1000; ++i) call.set.solid[i] = i % 2 == 0;
+         call.input = core_input(&call.set));
+  WARNED(MCOR_WARN_TRIMMED, "node threshold 0.1|fill but 0.00",
+    call.input.volume = (mcor_array){ .constant = 0.001 });
+}
+
+/* With globals the input may be any part of the particles. */
+static void test_without_input(void** state)
+{
+  warning_call call;
+  begin_call(&call);
+  mcor_surface surface = core_extract(*state, &call.input, &call.options);
+  assert_null(mcor_describe_warning(MCOR_WARNING_COUNT, &call.input, &call.options, &surface));
+  assert_null(mcor_describe_warning(MCOR_WARN_PLANE, NULL, &call.options, &surface));
+  mcor_free_surface(&surface);
+  core_free_set(&call.set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
+    cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
+    cmocka_unit_test(test_without_input) };
+  return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
+}

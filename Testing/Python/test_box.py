@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces of boxes of the real data sets: together they are the whole surface, byte for byte."""
+import itertools
+import math
+import pathlib
+import unittest
+
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from marchingcorrectors import vtkMarchingCorrectors
+
+DATA = pathlib.Path(__file__).resolve().parents[2] / "Examples" / "Data"
+
+
+def read(name):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(DATA / name))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def point_bytes(surface):
+    """For each point the bytes of its coordinates and arrays."""
+    data = surface.GetPointData()
+    arrays = [surface.GetPoints().GetData(), *map(data.GetArray, range(data.GetNumberOfArrays()))]
+    columns = []
+    for array in arrays:
+        width = array.GetNumberOfComponents() * array.GetDataTypeSize()
+        whole = bytes(memoryview(array).cast("B"))
+        columns.append([whole[i:i + width] for i in range(0, len(whole), width)])
+    return [b"".join(point) for point in zip(*columns)]
+
+
+def triangles(surface):
+    if surface.GetNumberOfCells() == 0:
+        return []
+    points = point_bytes(surface)
+    ids = surface.GetPolys().GetConnectivityArray()
+    corners = [points[ids.GetValue(i)] for i in range(ids.GetNumberOfValues())]
+    return [b"".join(corners[i:i + 3]) for i in range(0, len(corners), 3)]
+
+
+def parts(cuts):
+    """The intervals that planes cut an axis into."""
+    sides = [-math.inf, *cuts, math.inf]
+    return list(zip(sides, sides[1:]))
+
+
+class TestBox(unittest.TestCase):
+    def check(self, extract, *cuts):
+        """cuts: the planes along x, y and z."""
+        extract.ComputeBoundaryFlagOn()
+        extract.ComputeWeightSumOn()
+        extract.UseBoxOff()
+        extract.Update()
+        whole = sorted(triangles(extract.GetOutput()))
+        self.assertGreater(len(whole), 1000)
+        together, shares = [], []
+        extract.UseBoxOn()
+        for x, y, z in itertools.product(*map(parts, cuts)):
+            extract.SetBox(*x, *y, *z)
+            extract.Update()
+            shares.append(extract.GetRunStatistics().GetArray("ParticlesInReach").GetValue(0))
+            together += triangles(extract.GetOutput())
+        self.assertEqual(len(together), len(whole))
+        self.assertTrue(sorted(together) == whole)
+        return shares
+
+    def test_dam_break(self):
+        """Walls, trimming, smoothing lengths that differ; two iso values."""
+        extract = vtkMarchingCorrectors()
+        extract.SetInputData(read("dam_break_45k.vtp"))
+        extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "Velocity")
+        extract.SetFluidArrayName("ParticleType")
+        extract.SetSmoothingLengthArrayName("SmoothingLengthAdaptive")
+        extract.SetValue(0, 1.0)
+        extract.SetValue(1, 1.7)
+        shares = self.check(extract, [0.5, 0.52, 2.4], [], [])
+        self.assertLess(shares[1], 0.2 * 100228)
+        extract.SetTopologyToField()
+        self.check(extract, [1.61], [0.123], [0.5])
+
+    def test_free_surfaces(self):
+        """Computed volumes: those of particles in reach depend on others farther away."""
+        extract = vtkMarchingCorrectors()
+        extract.FreeSurfaceOn()
+        for name, middle in (("double_dam_break_small.vtp", 0.2), ("bunny_splash_small.vtp", 0.1)):
+            particles = read(name)
+            for array in ("Mass", "Density"):
+                particles.GetPointData().RemoveArray(array)
+            extract.SetInputData(particles)
+            with self.subTest(name):
+                self.check(extract, [middle], [], [])
+                self.check(extract, [middle], [0.1], [0.07])
+                self.check(extract, [-99, 99], [0.13, 0.14], [])
+
+    def test_nothing_there(self):
+        """Far away there is no surface, and nothing to complain about."""
+        extract = vtkMarchingCorrectors()
+        events = []
+        extract.AddObserver("ErrorEvent", lambda *_: events.append("error"))
+        extract.SetInputData(read("bunny_splash_small.vtp"))
+        extract.FreeSurfaceOn()
+        extract.UseBoxOn()
+        extract.SetBox(50, 51, 0, 1, 0, 1)
+        extract.Update()
+        self.assertEqual(extract.GetOutput().GetNumberOfCells(), 0)
+        self.assertEqual(events, [])
+        extract.SetBox(1, 0, 0, 1, 0, 1)
+        extract.Update()
+        self.assertEqual(events, ["error"])
+
+
+if __name__ == "__main__":
+    unittest.main()

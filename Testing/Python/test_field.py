@@ -1,0 +1,175 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""vtkSPHDerivatives and vtkSPHProbe from Python: weird input first, then what users do.
+
+test_field.py DATA: the folder with dam_break_45k.vtp.
+"""
+import math
+import pathlib
+import sys
+import unittest
+
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives, vtkSPHProbe
+
+POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
+DATA = pathlib.Path(sys.argv.pop() if len(sys.argv) > 1 else ".")
+
+
+def make_vortex(n):
+    """A Taylor-Green vortex in [0, 1]^3, n^3 particles off their lattice."""
+    particles, points = vtkPolyData(), vtkPoints()
+    velocity, length = vtkFloatArray(), vtkFloatArray()
+    velocity.SetName("Velocity")
+    velocity.SetNumberOfComponents(3)
+    length.SetName("h")
+    state = 1
+    for i in range(n ** 3):
+        place = []
+        for k in (i % n, i // n % n, i // n ** 2):
+            state = (state * 1664525 + 1013904223) % 2 ** 32
+            place.append((k + 0.5 + 0.2 * (state / 2 ** 32 - 0.5)) / n)
+        x, y = (2 * math.pi * c for c in place[:2])
+        points.InsertNextPoint(place)
+        velocity.InsertNextTuple3(math.cos(x) * math.sin(y), -math.sin(x) * math.cos(y), 0)
+        length.InsertNextValue(1.3 / n)
+    particles.SetPoints(points)
+    particles.GetPointData().AddArray(velocity)
+    particles.GetPointData().AddArray(length)
+    return particles
+
+
+def derive(particles):
+    filter_ = vtkSPHDerivatives()
+    filter_.SetInputData(particles)
+    filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Velocity")
+    filter_.Update()
+    return filter_.GetOutput()
+
+
+def vortex_errors(n):
+    """Root mean squares of the errors of vorticity, Q and lambda2 inside, over the largest values."""
+    data = derive(make_vortex(n))
+    arrays = [data.GetPointData().GetArray(name) for name in ("Vorticity", "Q-criterion", "Lambda2")]
+    sums, count = [0.0, 0.0, 0.0], 0
+    for i in range(data.GetNumberOfPoints()):
+        place = data.GetPoint(i)
+        if not all(0.2 < c < 0.8 for c in place):
+            continue
+        x, y = (2 * math.pi * c for c in place[:2])
+        # In units of 2 pi: J = [[-a, b, 0], [-b, a, 0], [0, 0, 0]]
+        a, b = math.sin(x) * math.sin(y), math.cos(x) * math.cos(y)
+        expected = (-2 * b, b * b - a * a, a * a - b * b)
+        scale = 2 * math.pi
+        found = (arrays[0].GetComponent(i, 2) / scale, arrays[1].GetValue(i) / scale ** 2,
+                 arrays[2].GetValue(i) / scale ** 2)
+        for k in range(3):
+            sums[k] += (found[k] - expected[k]) ** 2
+        count += 1
+    return [math.sqrt(s / count) for s in sums]
+
+
+class TestDerivatives(unittest.TestCase):
+    def test_something_weird(self):
+        filter_ = vtkSPHDerivatives()
+        filter_.SetInputData(vtkPolyData())
+        filter_.Update()
+        self.assertEqual(filter_.GetOutput().GetNumberOfPoints(), 0)
+        self.assertEqual(filter_.GetErrorMessage(), "")
+
+    def test_error_is_a_sentence(self):
+        filter_ = vtkSPHDerivatives()
+        filter_.SetInputData(make_vortex(5))
+        filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Nonsense")
+        vtkObject.GlobalWarningDisplayOff()
+        filter_.Update()
+        vtkObject.GlobalWarningDisplayOn()
+        self.assertRegex(filter_.GetErrorMessage(), "'Nonsense'.*Velocity, h")
+
+    def test_taylor_green(self):
+        """Twice as fine, about a quarter of the error."""
+        coarse, fine = vortex_errors(12), vortex_errors(24)
+        for name, a, b in zip(("vorticity", "Q", "lambda2"), coarse, fine):
+            self.assertGreater(math.log2(a / b), 1.6, f"{name}: {a}, {b}")
+            self.assertLess(b, 0.1, name)
+
+    def test_chain(self):
+        """What is derived can be contoured."""
+        extract = vtkMarchingCorrectors()
+        extract.SetInputData(derive(make_vortex(20)))
+        extract.SetInputArrayToProcess(0, 0, 0, POINTS, "Lambda2")
+        extract.SetValue(0, -15)
+        extract.Update()
+        self.assertGreater(extract.GetOutput().GetNumberOfCells(), 100)
+        self.assertTrue(extract.GetOutput().GetPointData().HasArray("Vorticity"))
+
+    def test_stored_arrays(self):
+        """The file's own Vorticity and Lambda2, made by another program from the same velocities with
+        1.3 times the smoothing length; zeros where it found too few neighbors."""
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(DATA / "dam_break_45k.vtp"))
+        reader.Update()
+        stored = vtkPolyData()
+        stored.DeepCopy(reader.GetOutput())
+        filter_ = vtkSPHDerivatives()
+        filter_.SetInputData(reader.GetOutput())
+        filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Velocity")
+        filter_.SetFluidArrayName("ParticleType")
+        filter_.SetHScaleFactor(1.3)
+        filter_.Update()
+        ours, theirs = filter_.GetOutput().GetPointData(), stored.GetPointData()
+        for name, components in (("Vorticity", 3), ("Lambda2", 1)):
+            a, b = ours.GetArray(name), theirs.GetArray(name)
+            distances = []
+            for i in range(stored.GetNumberOfPoints()):
+                x, y = a.GetTuple(i), b.GetTuple(i)
+                if any(y):
+                    distances.append(math.dist(x, y) / math.hypot(*y))
+            distances.sort()
+            self.assertGreater(len(distances), 42000)
+            self.assertEqual(a.GetNumberOfComponents(), components)
+            self.assertLess(distances[len(distances) // 2], 1e-5, name)
+            self.assertLess(distances[len(distances) * 99 // 100], 1e-4, name)
+
+
+class TestProbe(unittest.TestCase):
+    def make(self):
+        image = vtkImageData()
+        image.SetDimensions(8, 8, 1)
+        image.SetSpacing(0.1, 0.1, 1)
+        image.SetOrigin(0.15, 0.15, 0.5)
+        probe = vtkSPHProbe()
+        probe.SetInputData(image)
+        probe.SetSourceData(make_vortex(12))
+        return probe
+
+    def test_slice(self):
+        probe = self.make()
+        probe.Update()
+        image = probe.GetOutput()
+        self.assertEqual(image.GetDimensions(), (8, 8, 1))
+        data = image.GetPointData()
+        self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (1, 1))
+        for i in range(image.GetNumberOfPoints()):
+            x, y = (2 * math.pi * c for c in image.GetPoint(i)[:2])
+            speed = math.cos(x) * math.sin(y)
+            self.assertAlmostEqual(data.GetArray("Velocity").GetComponent(i, 0), speed, delta=0.15)
+        self.assertEqual(probe.GetUsedSmoothingLengthArrayName(), "h")
+
+    def test_source(self):
+        probe = self.make()
+        self.assertEqual(probe.GetSource().GetNumberOfPoints(), 12 ** 3)
+        self.assertIsNone(vtkSPHProbe().GetSource())
+        probe.SetSmoothingLengthArrayName("Nonsense")
+        vtkObject.GlobalWarningDisplayOff()
+        probe.Update()
+        vtkObject.GlobalWarningDisplayOn()
+        self.assertIn("'Nonsense'", probe.GetErrorMessage())
+        self.assertEqual(probe.GetOutput().GetNumberOfPoints(), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The XML of SPH Derivatives and SPH Probe against the wrapped filters, without ParaView."""
+import pathlib
+import unittest
+import xml.etree.ElementTree
+
+from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHProbe
+
+PLUGIN = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
+TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
+INPUTS = {"SetInputConnection", "SetSourceConnection"}
+NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray"}
+# Setters without a property: (automatic) in the panel's lists stands for the first.
+NOT_IN_XML = {"SetDetectArrays"}
+
+
+class TestFieldXml(unittest.TestCase):
+    def for_each(self, check):
+        for filter_class in (vtkSPHDerivatives, vtkSPHProbe):
+            name = filter_class.__name__[3:]
+            proxy = xml.etree.ElementTree.parse(PLUGIN / f"{name}.xml").find(".//SourceProxy")
+            self.assertEqual((proxy.get("name"), proxy.get("class")), (name, filter_class.__name__))
+            elements = [e for e in proxy if e.tag.endswith("Property")]
+            with self.subTest(name):
+                check(filter_class, proxy, elements)
+
+    def for_each_value(self, check):
+        """check(class, command, type, element) for the properties of one value."""
+        def run(filter_class, proxy, elements):
+            for element in elements:
+                if element.get("command") not in NOT_SCALAR:
+                    with self.subTest(element.get("name")):
+                        check(filter_class, element.get("command"), TYPES[element.tag], element)
+        self.for_each(run)
+
+    def test_commands_are_methods(self):
+        def check(filter_class, proxy, elements):
+            for element in elements:
+                for key in ("command", "clean_command"):
+                    if element.get(key):
+                        self.assertTrue(callable(getattr(filter_class, element.get(key), None)))
+        self.for_each(check)
+
+    def test_setters_have_properties(self):
+        def check(filter_class, proxy, elements):
+            own = {**vars(vtkSPHAlgorithm), **vars(filter_class)}
+            setters = {name for name in own if name.startswith("Set") and "G" + name[1:] in own}
+            self.assertEqual(setters - {e.get("command") for e in elements}, NOT_IN_XML)
+        self.for_each(check)
+
+    def test_defaults_and_values(self):
+        def check(filter_class, command, kind, element):
+            made = filter_class()
+            get = getattr(made, "Get" + command[len("Set"):])
+            text = element.get("default_values")
+            self.assertIs(type(get()), kind)
+            self.assertEqual(get(), kind("" if text in ("(automatic)", "(none)") else text))
+            for domain in element:
+                values = [entry.get("value") for entry in domain if domain.tag == "EnumerationDomain"]
+                values += ["0", "1"] if domain.tag == "BooleanDomain" else []
+                values += [domain.get(k) for k in ("min", "max") if domain.get(k)]
+                for value in values:
+                    getattr(made, command)(kind(value))
+                    self.assertEqual(get(), kind(value))
+        self.for_each_value(check)
+
+    def test_documentation_and_groups(self):
+        def check(filter_class, proxy, elements):
+            self.assertGreater(len(proxy.findtext("Documentation")), 200)
+            for element in elements:
+                text = element.findtext("Documentation", "")
+                self.assertRegex(text, "." if element.get("command") in INPUTS else "Default:")
+            grouped = [e.get("name") for e in proxy.findall("PropertyGroup/Property")]
+            names = [e.get("name") for e in elements if e.get("command") not in INPUTS]
+            self.assertEqual(sorted(grouped), sorted(names))
+            menu = proxy.find("Hints/ShowInMenu")
+            self.assertEqual(menu.get("category"), "Point Interpolation")
+        self.for_each(check)
+
+
+if __name__ == "__main__":
+    unittest.main()

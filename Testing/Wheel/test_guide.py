@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The guide's pages for Python: the blocks of python.md as they stand, the recipes of readers-python.md on
+files in the layout of each code."""
+import contextlib
+import os
+import re
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyvista
+
+SOURCES = Path(os.environ["MCOR_TEST_SOURCES"])
+FENCE = re.compile(r"^```python(?: (\S+))?\n(.*?)^```$", re.M | re.S)
+
+
+def blocks(page):
+    return FENCE.findall((SOURCES / "Documentation" / "Guide" / page).read_text())
+
+
+def recipes():
+    scope = {}
+    for _, text in blocks("readers-python.md"):
+        exec(text, scope)
+    return scope
+
+
+def ball(spacing=0.1, radius=0.9):
+    """A ball on a lattice; its density falls outwards."""
+    line = np.arange(-12, 13) * spacing
+    x = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
+    x = x[np.linalg.norm(x, axis=1) < radius]
+    return x, 2 - np.linalg.norm(x, axis=1)
+
+
+X, DENSITY = ball()
+SPACING = 0.1
+MASS = DENSITY * SPACING ** 3
+
+
+class Test(unittest.TestCase):
+    def assert_ball(self, points, radius, tolerance=0.05):
+        self.assertGreater(len(points), 300)
+        self.assertLess(np.abs(np.linalg.norm(points, axis=1) - radius).max(), tolerance)
+
+    def test_python_page(self):
+        scope = {}
+        with contextlib.chdir(SOURCES) if hasattr(contextlib, "chdir") else contextlib.nullcontext(os.chdir(SOURCES)):
+            for _, text in blocks("python.md"):
+                exec(text, scope)
+                wanted = re.search(r"# (\d+) triangles", text)
+                if wanted:
+                    self.assertEqual(scope["surface"].n_cells, int(wanted.group(1)))
+        self.assertAlmostEqual(np.linalg.norm(scope["surface"].points - 0.5, axis=1).mean(), 0.3, delta=0.02)
+
+    def test_gadget_and_swift(self):
+        found = {}
+        for swift in (False, True):
+            with h5py.File("snapshot.hdf5", "w") as file:
+                gas = file.create_group("PartType0")
+                gas["Coordinates"] = X
+                gas["Densities" if swift else "Density"] = DENSITY.astype(np.float32)
+                gas["Masses"] = MASS
+                gamma = 1.825742
+                h = np.full(len(X), 0.26 / (gamma if swift else 1))
+                gas["SmoothingLengths" if swift else "SmoothingLength"] = h
+                file.create_group("HydroScheme").attrs["Kernel gamma"] = [gamma]
+            with h5py.File("snapshot.hdf5") as file:
+                found[swift] = recipes()["gadget"](file, 1.5)
+            self.assert_ball(found[swift].points, 0.5)
+            self.assertAlmostEqual(found[swift].statistics["smoothing_length_min"], 0.13)
+
+    def test_phantom(self):
+        with h5py.File("dump.h5", "w") as file:
+            header, gas = file.create_group("header"), file.create_group("particles")
+            header["massoftype"] = np.array([0.001] + [0.0] * 6)
+            header["hfact"] = 1.2
+            h = 1.2 * (0.001 / DENSITY) ** (1 / 3)
+            gas["xyz"], gas["h"] = X, np.where(np.arange(len(X)) == 7, -h, h)
+            gas["itype"] = np.where(X[:, 0] < 0, -1, 1).astype(np.int8)  # Half of them inactive in this step.
+        with h5py.File("dump.h5") as file:
+            points = recipes()["phantom"](file, 1.5).points
+        self.assert_ball(points, 0.5, tolerance=0.06)
+        self.assertAlmostEqual(points[:, 0].min(), -0.5, delta=0.06)
+
+    def test_dualsphysics(self):
+        particles = pyvista.PolyData(X.astype(np.float32))
+        particles["Rhop"] = np.full(len(X), 1000.0, np.float32)
+        particles["Type"] = np.where(X[:, 2] < -0.5, 0, 3).astype(np.uint8)
+        particles.save("PartFluid.vtk")
+        surface = recipes()["dualsphysics"](pyvista.read("PartFluid.vtk"), SPACING)
+        self.assertGreater(surface.n_cells, 500)
+        self.assertAlmostEqual(surface.bounds[5], 0.9, delta=SPACING)
+        self.assertGreater(surface.bounds[4], -0.7)
+
+    def test_splishsplash(self):
+        """A real run's particles."""
+        particles = pyvista.read(SOURCES / "Examples" / "Data" / "double_dam_break_small.vtp")
+        bare = pyvista.PolyData(particles.points)
+        bare["velocity"] = particles["Velocity"]
+        bare.save("ParticleData_Fluid_26.vtk")
+        surface = recipes()["splishsplash"](pyvista.read("ParticleData_Fluid_26.vtk"), 0.025)
+        expected = particles.sph.free_surface(mass=0.1, density=1000.0)
+        self.assertEqual(surface.n_cells, expected.n_cells)
+        self.assertGreater(surface.n_cells, 3000)
+
+
+if __name__ == "__main__":
+    unittest.main()

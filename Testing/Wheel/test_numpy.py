@@ -1,0 +1,304 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The functions for NumPy: shapes, types, what is copied, errors, interrupts."""
+import inspect
+import os
+import signal
+import threading
+import unittest
+import warnings
+
+import numpy as np
+
+import marchingcorrectors as mc
+
+N = 14
+H, V = 0.13, 0.001
+
+
+def lattice(dtype=np.float64):
+    """A cube of particles, somewhat out of order, and their distances from its middle."""
+    random = np.random.default_rng(1)
+    indices = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3)
+    positions = indices * 0.1 + random.normal(0, 0.004, (N ** 3, 3))
+    return positions.astype(dtype), np.linalg.norm(positions - 0.65, axis=1).astype(dtype)
+
+
+POSITIONS, DISTANCE = lattice()
+
+
+def sphere(**more):
+    return mc.isosurface(POSITIONS, DISTANCE, **{"iso": 0.4, "smoothing_length": H, "volume": V, **more})
+
+
+class Results(unittest.TestCase):
+    def test_sphere(self):
+        surface = sphere()
+        radius = np.linalg.norm(surface.points - 0.65, axis=1)
+        self.assertGreater(len(surface.triangles), 500)
+        self.assertLess(np.abs(radius - 0.4).max(), 0.03)
+        # Towards lower values: to the middle.
+        inwards = np.einsum("ij,ij->i", surface.normals, 0.65 - surface.points)
+        self.assertGreater(inwards.min(), 0)
+        self.assertEqual((surface.points.dtype, surface.triangles.dtype, surface.normals.dtype),
+                         (np.float64, np.int32, np.float32))
+        self.assertLess(surface.triangles.max(), len(surface.points))
+
+    def test_arrays_own_their_memory(self):
+        surface = sphere(attributes={"x": POSITIONS})
+        for array in (surface.points, surface.triangles, surface.normals, surface.attributes["x"]):
+            self.assertTrue(array.flags.owndata and array.flags.writeable)
+
+    def test_every_option_is_a_keyword(self):
+        names = ("sph_kernel field seeds topology h_scale cube_size_factor cube_size iso_values node_threshold "
+                 "boundary_detection vertex_threshold preview tolerance iteration_limit precision memory_limit "
+                 "normals gradients weight_sum boundary_eigenvalue correction_length residual boundary_flag "
+                 "iso_value nearest_particle triangle_normals").split()
+        known = inspect.signature(mc.isosurface).parameters
+        for name in names:
+            if name != "iso_values":
+                self.assertIn(name, known)
+                self.assertIn(name + ":", mc.isosurface.__doc__)
+        wanted = names[17:26]
+        surface = sphere(**dict.fromkeys(wanted, True))
+        for name in wanted[:-1]:
+            if name != "normals":
+                self.assertEqual(len(getattr(surface, name)), len(surface.points), name)
+                self.assertIsNone(getattr(sphere(), name))
+        self.assertIsNone(sphere(normals=False).normals)
+
+    def test_options_count(self):
+        plain = sphere().statistics
+        self.assertAlmostEqual(sphere(cube_size=0.1).statistics["cube_size"], 0.1)
+        self.assertAlmostEqual(sphere(cube_size_factor=1).statistics["cube_size"], H)
+        self.assertNotEqual(sphere(sph_kernel="wendland").points.tobytes(), sphere().points.tobytes())
+        self.assertEqual(sphere(sph_kernel="wendland_c2").points.tobytes(),
+                         sphere(sph_kernel=4).points.tobytes())
+        self.assertEqual(sphere(preview=True).statistics["newton_evaluations"], 0)
+        self.assertLess(sphere(seeds="pairs").statistics["seed_cells"], plain["seed_cells"])
+        halves = [sphere(box=(*x, *[-np.inf, np.inf] * 2)) for x in ((-np.inf, 0.65), (0.65, np.inf))]
+        self.assertEqual(sum(len(half.triangles) for half in halves), len(sphere().triangles))
+        self.assertLess(halves[0].points[:, 0].max(), 0.65 + H)
+        with self.assertRaisesRegex(mc.InvalidArgument, "6 numbers"):
+            sphere(box=(1, 2))
+        two = sphere(iso_values=[0.3, 0.4], iso_value=True)
+        self.assertEqual(sorted(set(two.iso_value)), [0.3, 0.4])
+        half = sphere(smoothing_length=2 * H, smoothing_length_is_support_radius=True)
+        self.assertEqual(half.points.tobytes(), sphere().points.tobytes())
+
+    def test_components(self):
+        away = POSITIONS - 0.65
+        by_length = mc.isosurface(POSITIONS, away, iso=0.4, smoothing_length=H, volume=V)
+        self.assertEqual(len(by_length.triangles), len(sphere().triangles))
+        plane = mc.isosurface(POSITIONS, away, scalar_component=1, iso=0.0, smoothing_length=H, volume=V)
+        self.assertLess(np.abs(plane.points[:, 1] - 0.65).max(), 0.03)
+        dot = mc.isosurface(POSITIONS, away, scalar_dot=away, iso=0.16, smoothing_length=H, volume=V)
+        self.assertLess(np.abs(np.linalg.norm(dot.points - 0.65, axis=1) - 0.4).max(), 0.03)
+
+    def test_attributes(self):
+        identifiers = np.arange(N ** 3) + 7
+        surface = sphere(attributes={"where": POSITIONS, "id": identifiers, "one": np.ones(N ** 3, np.float32)})
+        self.assertLess(np.abs(surface.attributes["where"] - surface.points).max(), 0.03)
+        np.testing.assert_allclose(surface.attributes["one"], 1, rtol=1e-6)
+        nearest = surface.attributes["id"] - 7
+        self.assertEqual(surface.attributes["id"].dtype, identifiers.dtype)
+        some = slice(None, None, 37)
+        distances = np.linalg.norm(surface.points[some, None] - POSITIONS[None], axis=2)
+        np.testing.assert_array_equal(nearest[some], distances.argmin(axis=1))
+        self.assertIsNone(surface.nearest_particle)
+
+    def test_attribute_that_is_not_finite(self):
+        bad = DISTANCE.copy()
+        bad[17] = np.nan
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            surface = sphere(attributes={"bad": bad, "good": DISTANCE})
+        self.assertEqual(surface.left_out, {"bad": 17})
+        self.assertEqual(list(surface.attributes), ["good"])
+        self.assertIn("'bad'", str(caught[0].message))
+
+    def test_solid(self):
+        solid = POSITIONS[:, 0] < 0.3
+        surface = sphere(solid=solid, ignore_solids=True)
+        self.assertEqual(surface.statistics["solid_particles"], solid.sum())
+        self.assertGreater(surface.points[:, 0].min(), 0.2)
+
+    def test_free_surface(self):
+        surface = mc.free_surface(POSITIONS, smoothing_length=H)
+        edges = np.sort(np.concatenate([surface.triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+        _, uses = np.unique(edges, axis=0, return_counts=True)
+        self.assertTrue((uses == 2).all())  # closed
+        self.assertEqual(mc.free_surface(POSITIONS, estimate_smoothing_length=True).statistics["solid_particles"], 0)
+
+    def test_empty(self):
+        surface = mc.isosurface(np.empty((0, 3)), np.empty(0), iso=1, smoothing_length=1.0)
+        self.assertEqual((surface.points.shape, surface.triangles.shape), ((0, 3), (0, 3)))
+        self.assertEqual(len(sphere(iso=99).triangles), 0)
+        self.assertEqual(len(mc.probe(POSITIONS, np.empty((0, 3)), smoothing_length=H).valid), 0)
+
+    def test_probe_and_derivatives(self):
+        linear = POSITIONS @ [1.0, 2.0, 3.0]
+        found = mc.probe(POSITIONS, [[0.65, 0.65, 0.65], [9, 9, 9]], smoothing_length=H, volume=V,
+                         attributes={"a": linear, "v": POSITIONS}, gradients=True)
+        self.assertEqual(found.valid.tolist(), [True, False])
+        self.assertAlmostEqual(found.values["a"][0], 3.9, delta=0.05)
+        self.assertEqual((found.values["v"].shape, found.gradients["a"].shape, found.gradients["v"].shape),
+                         ((2, 3), (2, 3), (2, 3, 3)))
+        derived = mc.derivatives(POSITIONS, {"a": linear, "v": POSITIONS}, smoothing_length=H, volume=V)
+        inside = derived.corrected
+        np.testing.assert_allclose(derived.gradients["a"][inside], np.tile([1, 2, 3], (inside.sum(), 1)), atol=1e-3)
+        np.testing.assert_allclose(mc.flow(derived.gradients["v"])["divergence"][inside], 3, atol=1e-3)
+        standard = mc.derivatives(POSITIONS, {"a": linear}, smoothing_length=H, volume=V, form="standard")
+        self.assertFalse(standard.corrected.any())
+
+
+class Inputs(unittest.TestCase):
+    def test_all_kinds_of_arrays(self):
+        expected = sphere().points
+        others = {"a list": POSITIONS.tolist(), "Fortran order": np.asfortranarray(POSITIONS),
+                  "every second": np.repeat(POSITIONS, 2, axis=0)[::2], "big end first": POSITIONS.astype(">f8")}
+        for name, positions in others.items():
+            found = mc.isosurface(positions, DISTANCE, iso=0.4, smoothing_length=H, volume=V).points
+            self.assertEqual(found.tobytes(), expected.tobytes(), name)
+        halves = mc.isosurface(POSITIONS.astype(np.float32), DISTANCE.astype(np.float16), iso=0.4,
+                               smoothing_length=np.full(N ** 3, H, np.float32), volume=V)
+        self.assertGreater(len(halves.triangles), 500)
+
+    def test_right_arrays_are_not_copied(self):
+        from marchingcorrectors._arrays import Arguments
+
+        for dtype in (np.float32, np.float64):
+            positions, distance = lattice(dtype)
+            marks = np.zeros(N ** 3, np.uint8)
+            arguments = Arguments(positions)
+            arguments.set_quantities({"volume": distance})
+            arguments.set_solid(marks)
+            arguments.set_attributes({"a": distance})
+            self.assertEqual(arguments.input.positions.data, positions.ctypes.data)
+            self.assertEqual(arguments.input.volume.data, distance.ctypes.data)
+            self.assertEqual(arguments.input.attributes[0].data, distance.ctypes.data)
+            self.assertEqual(arguments.input.solid.contents.value, 0)
+            marks[0] = 3
+            self.assertEqual(arguments.input.solid.contents.value, 3)
+
+    def test_errors(self):
+        bad = POSITIONS.copy()
+        bad[5, 1] = np.nan
+        with self.assertRaisesRegex(mc.InvalidData, "5"):
+            mc.isosurface(bad, DISTANCE, iso=0.4, smoothing_length=H)
+        with self.assertRaisesRegex(ValueError, "smoothing length"):
+            sphere(smoothing_length=-1.0)
+        with self.assertRaisesRegex(mc.InvalidArgument, "estimate"):
+            sphere(smoothing_length=None)
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar has the shape"):
+            mc.isosurface(POSITIONS, DISTANCE[:-1], iso=0.4, smoothing_length=H)
+        with self.assertRaisesRegex(mc.InvalidArgument, r"\(particles, 3\)"):
+            mc.isosurface(POSITIONS[:, :2], DISTANCE, iso=0.4, smoothing_length=H)
+        with self.assertRaisesRegex(mc.InvalidArgument, "iso value"):
+            sphere(iso=None)
+        with self.assertRaisesRegex(mc.InvalidArgument, "wendland"):
+            sphere(sph_kernel="gaussian")
+        with self.assertRaisesRegex(TypeError, "no option 'cubesize'"):
+            sphere(cubesize=1)
+        with self.assertRaisesRegex(mc.OutOfCapacity, "(?i)memory|cube"):
+            sphere(memory_limit=1000)
+        with self.assertRaisesRegex(mc.InvalidArgument, "does not hold numbers"):
+            sphere(volume=np.array(["a"] * N ** 3))
+        with self.assertRaisesRegex(mc.DeviceError, "no OpenCL device \"nonsuch\""):
+            sphere(device="nonsuch")
+        self.assertGreater(len(sphere().triangles), 500)  # as if nothing had happened
+
+
+class Runs(unittest.TestCase):
+    def test_context_keeps_particles(self):
+        with mc.Context() as context:
+            first = sphere(context=context, particles_version=1, scalar_version=1)
+            again = sphere(context=context, particles_version=1, scalar_version=1)
+            self.assertEqual(first.points.tobytes(), again.points.tobytes())
+            self.assertEqual(first.points.tobytes(), sphere().points.tobytes())
+            context.release_memory()
+        with self.assertRaises(mc.DeviceError):
+            sphere(context=context)
+
+    def test_progress(self):
+        seen = []
+        sphere(progress=lambda fraction, phase: seen.append((fraction, phase)))
+        self.assertTrue(seen and all(0 <= fraction <= 1 and phase for fraction, phase in seen))
+        with self.assertRaises(mc.Cancelled):
+            sphere(progress=lambda fraction, phase: True)
+
+        def fail(fraction, phase):
+            raise LookupError("mine")
+
+        with self.assertRaisesRegex(LookupError, "mine"):
+            sphere(progress=fail)
+
+    def test_interrupt(self):
+        handler = signal.getsignal(signal.SIGINT)
+        calls = []
+
+        def interrupt(fraction, phase):
+            calls.append(phase)
+            if len(calls) == 2:
+                os.kill(os.getpid(), signal.SIGINT)
+
+        total = []
+        sphere(progress=lambda fraction, phase: total.append(phase))
+        with self.assertRaises(KeyboardInterrupt):
+            sphere(progress=interrupt)
+        self.assertLess(len(calls), len(total))  # it ended early
+        self.assertIs(signal.getsignal(signal.SIGINT), handler)
+
+    def test_interrupt_without_callback(self):
+        positions = np.random.default_rng(3).random((150000, 3))
+        timer = threading.Timer(0.15, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            for _ in range(1000):
+                mc.isosurface(positions, positions[:, 0], iso=0.5, smoothing_length=0.03)
+
+    def test_other_threads_go_on(self):
+        ticks, done = [], threading.Event()
+
+        def tick():
+            while not done.wait(0.001):
+                ticks.append(None)
+
+        thread = threading.Thread(target=tick)
+        positions = np.random.default_rng(3).random((100000, 3))
+        mc.isosurface(positions, positions[:, 0], iso=0.5, smoothing_length=0.03)  # compiled
+        thread.start()
+        before = len(ticks)
+        mc.isosurface(positions, positions[:, 0], iso=0.5, smoothing_length=0.03)
+        during = len(ticks) - before
+        done.set()
+        thread.join()
+        self.assertGreater(during, 5)
+
+    def test_threads(self):
+        expected, found = sphere().points.tobytes(), []
+        threads = [threading.Thread(target=lambda: found.append(sphere().points.tobytes())) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(found, [expected] * 4)
+
+    def test_forked_child_is_told(self):
+        sphere()
+        reader, writer = os.pipe()
+        child = os.fork()
+        if child == 0:
+            try:
+                sphere()
+            except mc.DeviceError as error:
+                os.write(writer, str(error).encode())
+            finally:
+                os._exit(0)
+        os.close(writer)
+        self.assertIn(b"forked", os.read(reader, 1000))
+        os.waitpid(child, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

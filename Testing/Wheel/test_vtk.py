@@ -1,0 +1,178 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""PyVista and VTK of PyPI: the accessor, the filter beside the functions and the program, a picture."""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import pyvista
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+import marchingcorrectors as mc
+from marchingcorrectors import vtkMarchingCorrectors
+
+DATA = Path(os.environ["MCOR_TEST_DATA"])
+DAM = DATA / "dam_break_45k.vtp"
+POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
+FLUID = ("ParticleType", 0)
+
+
+def run_filter(particles, **properties):
+    extract = vtkMarchingCorrectors()
+    extract.SetInputData(particles)
+    scalar = properties.pop("scalar", "Velocity")
+    extract.SetInputArrayToProcess(0, 0, 0, POINTS, scalar)
+    extract.SetValue(0, properties.pop("value", 1.0))
+    for name, value in properties.items():
+        getattr(extract, "Set" + name)(value)
+    extract.Update()
+    return extract, pyvista.wrap(extract.GetOutput())
+
+
+class Test(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.dam = pyvista.read(DAM)
+
+    def assert_same(self, found, expected):
+        """Points, cells and all point arrays, to the bit."""
+        self.assertEqual(found.points.dtype, expected.points.dtype)
+        self.assertEqual(found.points.tobytes(), expected.points.tobytes())
+        self.assertEqual(found.faces.tolist(), expected.faces.tolist())
+        self.assertEqual(sorted(found.point_data.keys()), sorted(expected.point_data.keys()))
+        for name in expected.point_data.keys():
+            one, other = np.asarray(found.point_data[name]), np.asarray(expected.point_data[name])
+            self.assertEqual((name, one.dtype, one.tobytes()), (name, other.dtype, other.tobytes()))
+
+    def test_class_is_that_of_python(self):
+        self.assertIn("MarchingCorrectorsFilter", vtkMarchingCorrectors.__module__)
+        import marchingcorrectors
+
+        self.assertIs(marchingcorrectors.vtkMarchingCorrectors, vtkMarchingCorrectors)
+
+    def test_accessor(self):
+        surface = self.dam.sph.isosurface("Velocity", 1.0, fluid=FLUID)
+        extract, expected = run_filter(self.dam, FluidArrayName="ParticleType", OutputPointsPrecision=1)
+        self.assertEqual(surface.points.tobytes(), expected.points.tobytes())
+        self.assertEqual(surface.faces.tolist(), expected.faces.tolist())
+        self.assertEqual(np.asarray(surface["Normals"]).tobytes(), np.asarray(expected["Normals"]).tobytes())
+        speed = np.linalg.norm(surface["Velocity"], axis=1)
+        self.assertLess(abs(np.median(speed) - 1), 0.1)
+        self.assertEqual(surface["ParticleType"].dtype, self.dam["ParticleType"].dtype)
+        self.assertEqual(extract.GetUsedSmoothingLengthArrayName(), "SmoothingLength")
+        names = self.dam.sph.isosurface("Velocity", 1.0, fluid=FLUID, attributes=["Pressure"]).point_data.keys()
+        self.assertEqual(sorted(names), ["Normals", "Pressure"])
+        with self.assertRaisesRegex(mc.InvalidArgument, "'Speed'.*Velocity"):
+            self.dam.sph.isosurface("Speed", 1.0)
+
+    def test_box_and_period(self):
+        small = pyvista.read(DATA / "double_dam_break_small.vtp")
+        x0, x1, *others = small.bounds
+        for properties, words in (({"UseBox": 1, "Box": (x0, (x0 + x1) / 2, -9, 9, -9, 9)},
+                                   {"box": (x0, (x0 + x1) / 2, -9, 9, -9, 9)}),
+                                  ({"PeriodicBounds": (x0 - 0.05, x1, 0, 0, 0, 0)},
+                                   {"periodic": (x0 - 0.05, x1, 0, 0, 0, 0)})):
+            extract, found = run_filter(small, scalar="Speed", value=1.5, OutputPointsPrecision=1, **properties)
+            expected = small.sph.isosurface("Speed", 1.5, **words)
+            self.assertEqual(extract.GetErrorMessage(), "")
+            self.assertEqual(found.points.tobytes(), expected.points.tobytes())
+            self.assertNotEqual(found.points.tobytes(), small.sph.isosurface("Speed", 1.5).points.tobytes())
+            self.assertIn("Box" if "box" in words else "PeriodicBounds", found.field_data.keys())
+
+    def test_other_methods(self):
+        self.assertGreater(self.dam.sph.free_surface(fluid=FLUID, attributes=[]).n_cells, 10000)
+        line = pyvista.Line((1.0, 0.1, 0.5), (2.0, 0.1, 0.5), resolution=20)
+        found = self.dam.sph.probe(line, fluid=FLUID)
+        self.assertEqual(found.n_points, line.n_points)
+        self.assertTrue(found["Valid"].any())
+        inside = found["Valid"] == 1
+        self.assertTrue((np.linalg.norm(found["Velocity"][inside], axis=1) < 20).all())
+        derived = self.dam.sph.derivatives("Velocity", fluid=FLUID)
+        fluid = np.asarray(self.dam["ParticleType"]) == 0
+        self.assertEqual(derived["Gradients"].shape, (self.dam.n_points, 9))
+        strength = np.linalg.norm(derived["Vorticity"], axis=1)[fluid]
+        self.assertGreater(np.corrcoef(strength, np.asarray(self.dam["VorticityMagnitude"])[fluid])[0, 1], 0.5)
+
+    @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
+    def test_same_bits_as_the_program(self):
+        cases = [(["--scalar", "Velocity", "--iso", "1.0"], {}),
+                 (["--free-surface"], {"FreeSurface": 1}),
+                 (["--scalar", "Pressure", "--iso", "2000", "--kernel", "wendland"],
+                  {"scalar": "Pressure", "value": 2000.0, "Kernel": 4})]
+        with tempfile.TemporaryDirectory() as folder:
+            for arguments, properties in cases:
+                file = Path(folder) / "program.vtp"
+                subprocess.run([os.environ["MCOR_TEST_PROGRAM"], DAM, file, "--fluid", "ParticleType=0",
+                                *arguments], check=True, stdout=subprocess.DEVNULL)
+                program = pyvista.read(file)
+                if program.field_data["Device"][0] not in " ".join(mc.devices()):
+                    self.skipTest("the program and the wheel have other devices")
+                _, found = run_filter(self.dam, FluidArrayName="ParticleType", **properties)
+                self.assert_same(found, program)
+                for name in program.field_data.keys():
+                    self.assertEqual(np.asarray(found.field_data[name]).tolist(),
+                                     np.asarray(program.field_data[name]).tolist(), name)
+                # The input's own time is the data set's, which the program writes elsewhere.
+                self.assertEqual(sorted(set(found.field_data.keys()) - {"TimeValue"}),
+                                 sorted(set(program.field_data.keys()) - {"TimeValue"}))
+
+    def test_properties_are_those_of_cxx(self):
+        folder = Path(os.environ["MCOR_TEST_SOURCES"]) / "vtkMarchingCorrectors"
+        text = "".join((folder / name).read_text() for name in ("vtkSPHAlgorithm.h", "vtkMarchingCorrectors.h"))
+        names = {"Set" + name for name in re.findall(r"vtkSet(?:Clamp|StdStringFromChar|Vector\d)?Macro\((\w+)", text)}
+        names |= {"Get" + name for name in re.findall(r"vtkGet(?:CharFromStdString|Vector\d)?Macro\((\w+)", text)}
+        for name in re.findall(r"vtkBooleanMacro\((\w+)", text):
+            names |= {name + "On", name + "Off"}
+        names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
+                                text.split("protected:")[0], re.M))
+        self.assertGreater(len(names), 100)
+        lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
+        self.assertEqual(lacking, [], "add them to PROPERTIES of MarchingCorrectorsFilter.py")
+        for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):
+            if value.replace(".", "").replace("e-", "").isdigit() and hasattr(vtkMarchingCorrectors, "Get" + name):
+                self.assertEqual(getattr(vtkMarchingCorrectors(), "Get" + name)(), float(value), name)
+
+    def test_reuse_changes_nothing(self):
+        particles = pyvista.read(DATA / "double_dam_break_small.vtp")
+        extract, first = run_filter(particles, scalar="Speed", value=1.5)
+        extract.SetValue(0, 2.0)
+        extract.Update()
+        extract.SetValue(0, 1.5)
+        extract.Update()
+        self.assert_same(pyvista.wrap(extract.GetOutput()), first)
+        particles["Speed"] *= 2
+        particles.point_data.GetArray("Speed").Modified()
+        extract.Update()
+        changed = pyvista.wrap(extract.GetOutput())
+        self.assertNotEqual(changed.points.tobytes(), first.points.tobytes())
+        _, fresh = run_filter(particles, scalar="Speed", value=1.5)
+        self.assert_same(changed, fresh)
+
+    def test_abort(self):
+        extract = vtkMarchingCorrectors()
+        extract.SetInputData(self.dam)
+        extract.FreeSurfaceOn()
+        extract.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+        extract.Update()
+        self.assertEqual((extract.GetOutput().GetNumberOfPoints(), extract.GetErrorMessage()), (0, ""))
+
+    def test_picture(self):
+        """Off-screen, in a process of its own: without a display VTK may end it."""
+        script = (f"import pyvista; dam = pyvista.read({str(DAM)!r}); "
+                  "s = dam.sph.free_surface(fluid=('ParticleType', 0)); "
+                  "p = pyvista.Plotter(off_screen=True); p.add_mesh(s, color='lightblue'); "
+                  "p.screenshot('picture.png')")
+        done = subprocess.run([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        pixels = pyvista.read("picture.png").point_data.active_scalars
+        background = (pixels == pixels[0]).all(axis=1).mean()
+        self.assertTrue(0.3 < background < 0.95, background)
+
+
+if __name__ == "__main__":
+    unittest.main()

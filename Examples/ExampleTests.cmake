@@ -21,7 +21,9 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     "${CMAKE_CURRENT_SOURCE_DIR}/extract_surface.py" "${particles}" "${out}/free.vtp" "${out}/speed.vtp")
   mcor_add_example_test(pictures vtk "${with_display}" "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/readme_pictures.py" "${out}")
-  set_tests_properties(example.python example.pictures PROPERTIES
+  mcor_add_example_test(gallery vtk "${with_display}" "${MCOR_VTK_PYTHON}"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Gallery/gallery.py" "${out}")
+  set_tests_properties(example.python example.pictures example.gallery PROPERTIES
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 

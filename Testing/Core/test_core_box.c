@@ -98,6 +98,18 @@ static void check_points(const mcor_surface* s)
   free(used);
 }
 
+/* Each point has a key of its own, and they ascend. Boxes' points have those of the whole surface, as
+ * they are compared along with all else. */
+static void check_keys(const mcor_surface* s)
+{
+  for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)
+  {
+    const uint64_t *a = s->point_keys + MCOR_POINT_KEY * (i - 1), *b = a + MCOR_POINT_KEY;
+    const int at = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
+    CORE_CHECK(a[at] < b[at], "keys of points %lld and the next", (long long)(i - 1));
+  }
+}
+
 /* Planes that cut the lattice; ends are at infinity. */
 typedef struct box_cut
 {
@@ -146,6 +158,7 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
     set_box(&own, cut, at);
     mcor_surface part = core_extract(context, input, &own);
     check_points(&part);
+    check_keys(&part);
     add_surface(&all, input, &part);
     cells += part.statistics.cells_used;
     triangles += part.statistics.triangles_before_trimming;
@@ -176,6 +189,7 @@ static void check_cuts(
   mcor_surface surface = core_extract(context, input, options);
   CORE_CHECK(surface.triangle_count > 500, "%s: only %lld triangles", name,
     (long long)surface.triangle_count);
+  check_keys(&surface);
   add_surface(&whole.triangles, input, &surface);
   sort_triangles(&whole.triangles);
   whole.statistics = surface.statistics;
@@ -205,6 +219,7 @@ static void ask_for_all(mcor_options* options)
 {
   options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
   options->boundary_flag = options->nearest_particle = options->iso_value = 1;
+  options->point_keys = 1;
 }
 
 static void trimmed_surfaces(void** state)

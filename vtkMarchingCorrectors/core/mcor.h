@@ -240,6 +240,7 @@ extern "C"
     int normals; /* default on */
     int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag;
     int iso_value, nearest_particle;
+    int point_keys; /* see MCOR_POINT_KEY */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
@@ -299,6 +300,11 @@ extern "C"
     char device[128], platform[128];
   } mcor_statistics;
 
+  /* A point's key: number of the iso value and whether it is a cut, then its lattice edge or the two
+   * between whose points it was cut. Points of a surface have different keys, ascending one number
+   * after the other; those of a box's surface have the keys that they have in the whole surface. */
+#define MCOR_POINT_KEY 3
+
   /* A triangle mesh. Vertices are shared; a triangle's normal (right-hand rule) points to lower
    * values of the field, as vtkContourFilter orients it. Owned; free with mcor_free_surface. */
   typedef struct mcor_surface
@@ -319,6 +325,7 @@ extern "C"
                              * discarded */
     double* iso_value;          /* [point_count] */
     int64_t* nearest_particle;  /* [point_count], index of the nearest fluid particle */
+    uint64_t* point_keys;       /* [point_count][MCOR_POINT_KEY] */
     double** attributes;        /* [attribute_count] -> [point_count][components] */
     int64_t*
       attribute_not_finite; /* [attribute_count], -1; or, of an attribute that holds NaN or an

@@ -13,6 +13,7 @@ static mcor_status mcor_extract_iso(
   const mcor_options* options = context->options;
   const bool last = i + 1 == options->iso_count;
   const double value = options->iso_values[i], iso = value - context->value_shift;
+  context->iso_number = i;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
   MCOR_TRY(mcor_select_seeds(context, iso));

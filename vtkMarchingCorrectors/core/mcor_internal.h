@@ -219,6 +219,7 @@ struct mcor_context
   bool grid_valid, value_valid;
   const mcor_options* options; /* of the call under way; NULL between calls */
   bool uses_solids;            /* solid particles are on the device */
+  int iso_number;              /* of the iso value under way */
   mcor_statistics* statistics;
   mcor_phase phase;
   double phase_begin;
@@ -377,7 +378,7 @@ bool mcor_output_evaluates(const mcor_context* context);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
 /* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
-#define MCOR_SURFACE_ARRAYS 10
+#define MCOR_SURFACE_ARRAYS 11
 typedef struct mcor_surface_array
 {
   void** array;
@@ -385,6 +386,10 @@ typedef struct mcor_surface_array
 } mcor_surface_array;
 void mcor_list_surface_arrays(
   mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
+/* mcor_point_key.c */
+mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts);
+void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
+  int64_t v, uint64_t key[MCOR_POINT_KEY]);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 
 /* 256 rows of 16: up to 15 edges, 3 a triangle, see mcor_cell_row; then the number of triangles. */

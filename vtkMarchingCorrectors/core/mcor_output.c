@@ -34,6 +34,7 @@ typedef struct mcor_download
   const void *offset, *linear, *value, *gradient, *weight;
   const uint8_t* flag;
   uint8_t* owned; /* see mcor_keep_owned */
+  uint64_t* cuts; /* see mcor_keep_cuts */
 } mcor_download;
 
 /* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
@@ -117,7 +118,8 @@ void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SU
     { (void**)&s->weight_sum, sizeof(float) }, { (void**)&s->boundary_eigenvalue, sizeof(float) },
     { (void**)&s->correction_length, sizeof(float) }, { (void**)&s->residual, sizeof(float) },
     { (void**)&s->boundary_flag, 1 }, { (void**)&s->iso_value, sizeof(double) },
-    { (void**)&s->nearest_particle, sizeof(int64_t) } };
+    { (void**)&s->nearest_particle, sizeof(int64_t) },
+    { (void**)&s->point_keys, MCOR_POINT_KEY * sizeof(uint64_t) } };
   memcpy(arrays, all, sizeof all);
 }
 
@@ -128,7 +130,7 @@ static mcor_status mcor_grow_surface(
   const int64_t n = s->point_count;
   const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
     o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
-    o->nearest_particle };
+    o->nearest_particle, o->point_keys };
   mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
   mcor_list_surface_arrays(s, arrays);
   for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
@@ -275,6 +277,10 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   if (s->iso_value)
   {
     s->iso_value[to] = iso;
+  }
+  if (s->point_keys)
+  {
+    mcor_store_point_key(context, d->node, d->cuts, v, s->point_keys + MCOR_POINT_KEY * to);
   }
 }
 
@@ -432,11 +438,16 @@ mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
 {
   mcor_download download = { 0 };
+  mcor_status status = mcor_keep_cuts(context, &download.cuts);
   mcor_release_construction(context);
-  const mcor_status status = mcor_append_mesh(context, input, iso, &download, surface);
+  if (status == MCOR_OK)
+  {
+    status = mcor_append_mesh(context, input, iso, &download, surface);
+  }
   const mcor_status unmapped = mcor_unmap_vertices(context, &download);
   mcor_release_vertices(context);
   free(download.owned);
+  free(download.cuts);
   return status != MCOR_OK ? status : unmapped;
 }
 
@@ -449,7 +460,7 @@ void mcor_free_surface(mcor_surface* surface)
   void* const arrays[] = { surface->points, surface->triangles, surface->normals,
     surface->gradients, surface->weight_sum, surface->boundary_eigenvalue,
     surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value,
-    surface->nearest_particle };
+    surface->nearest_particle, surface->point_keys };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);

@@ -1,0 +1,64 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
+ * makes, and ascending in the order of the whole surface's points. */
+
+#include "mcor_internal.h"
+
+#include <stdlib.h>
+
+/* The two vertices on lattice edges between which each cut vertex lies, as the kernels keep them:
+ * lower number << 32 | higher. Taken before trimming gives its memory back. */
+mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
+{
+  const mcor_mesh* mesh = &context->mesh;
+  const int count = mesh->vertex_count - mesh->march_count;
+  if (!context->options->point_keys || count == 0)
+  {
+    return MCOR_OK;
+  }
+  const size_t bytes = (size_t)count * sizeof **cuts;
+  *cuts = malloc(bytes);
+  MCOR_RETURN_IF(!*cuts, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for the keys of %d points could not be allocated.", count);
+  return mcor_read(context, &context->trim.distinct, 0, *cuts, bytes);
+}
+
+/* In the order of vertices: by block, brick and node, each by z, y, x, then by axis. Fits, as the
+ * lattice has no more than 2^15 + 2 blocks along an axis. */
+static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4], int copy)
+{
+  uint64_t block = 0, inner = 0;
+  for (int a = 2; a >= 0; --a)
+  {
+    block = block * (uint64_t)lattice->blocks[a] + (uint64_t)(node[a] / MCOR_BLOCK_CUBES);
+  }
+  for (int bits = 3, shift = 2; shift >= 0; bits = 2, shift -= 2)
+  {
+    for (int a = 2; a >= 0; --a)
+    {
+      inner = inner << bits | (uint64_t)(node[a] >> shift & ((1 << bits) - 1));
+    }
+  }
+  return (block << 15 | inner) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
+}
+
+/* A pinched edge has two vertices, one after the other. */
+static uint64_t mcor_march_key(const mcor_lattice* lattice, const cl_int* nodes, int64_t v)
+{
+  const cl_int *node = nodes + 4 * v, *before = node - 4;
+  const bool copy = v > 0 && node[0] == before[0] && node[1] == before[1] &&
+    node[2] == before[2] && node[3] == before[3];
+  return mcor_edge_key(lattice, node, copy);
+}
+
+void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
+  int64_t v, uint64_t key[MCOR_POINT_KEY])
+{
+  const int64_t cut = v - context->mesh.march_count;
+  const mcor_lattice* lattice = &context->lattice;
+  key[0] = 2 * (uint64_t)context->iso_number + (cut >= 0);
+  key[1] = mcor_march_key(lattice, nodes, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));
+  key[2] = cut < 0 ? 0 : mcor_march_key(lattice, nodes, (int64_t)(cuts[cut] & UINT32_MAX));
+}

@@ -53,6 +53,11 @@ FAULTS = [
     Fault("gather: planes of rows stop short upwards", ["core_grid", "core_correct"],
           "const int z = next < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level.cells[2];",
           "const int z = next + 1 < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level.cells[2];"),
+    # ---- graded cells ----
+    Fault("graded: diagonals on an edge of the cell", ["core_graded_cell", "core_graded_trees"],
+          "(common & 0xffffff) != 0 || (faces & (faces - 1)) != 0;", "(common & 0xffffff) != 0;"),
+    Fault("graded: whole faces end runs at split edges", ["core_graded_cell", "core_graded_trees"],
+          "while (above >> ring[next] & 1)", "while (above >> ring[next] & ring[next] % 2 & 1)"),
     # ---- marching ----
     Fault("march: the second diagonal of pinched edges", ["core_march"],
           "crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));",

@@ -180,12 +180,40 @@ extern "C"
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unscaled, L */
     double support_min, support_max; /* scaled support radius of all that take part, L */
     double smoothing_length;         /* estimated; 0: it was not asked for */
+    double cube_size;                /* as in mcor_statistics; not read */
     double mass_max;                 /* 0: there are no masses */
     double scalar_min, scalar_max;   /* over fluid particles */
     double scalar_shift;             /* about the median; values on the device are relative to it */
+    /* As in mcor_statistics; and the positions of fluid particles, L. */
+    double smoothing_length_median, neighbours_median, spacing_median, filled_median;
+    double fluid_low[3], fluid_high[3];
     int component_count;
     mcor_global_component* components; /* [component_count], of all attributes in their order */
   } mcor_globals;
+
+  typedef enum mcor_reduction
+  {
+    MCOR_LEAST = 0,
+    MCOR_GREATEST = 1,
+    MCOR_SUM_OF = 2 /* of counts alone: exact in any order */
+  } mcor_reduction;
+
+  /* Ranks: processes, or threads with contexts of their own, that hold an input together. All of them
+   * call the same function of this library with the same options, but for the box, and the same form of
+   * input, and are called back equally often, in the same order. A return that is not 0, as when
+   * another rank gave up, ends the call with MCOR_CANCELLED. A rank whose own call fails calls back no
+   * more: the others must then be told so by theirs. */
+  typedef struct mcor_ranks
+  {
+    /* values: [count]; each becomes that over all ranks. */
+    int (*reduce_doubles)(void* user, mcor_reduction reduction, double* values, int count);
+    int (*reduce_counts)(void* user, mcor_reduction reduction, int64_t* values, int count);
+    /* The records, of `width` bytes, of all ranks, this one's too, in any order; valid until one of
+     * these is called again. count: of this rank's, 0 or more. */
+    int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
+      int64_t* all_count);
+    void* user;
+  } mcor_ranks;
 
   typedef struct mcor_options
   {
@@ -235,6 +263,12 @@ extern "C"
      * (unscaled) support of these. The surface is, to the last bit, that from all of them. Borrowed
      * until return; mcor_probe and mcor_derive do not read it. See mcor_measure_globals. */
     const mcor_globals* globals;
+
+    /* NULL: alone. mcor_measure_globals measures over all ranks' inputs, each particle being in one of
+     * them (a rank without any has count 0, and data that are not NULL where others have data): what it
+     * returns are, to the last bit, the globals of all particles in one input, but for not_finite, a
+     * number on the rank that has the least. Borrowed until return; others do not read it. */
+    const mcor_ranks* ranks;
 
     /* What the surface carries besides points and triangles. */
     int normals; /* default on */

@@ -230,7 +230,7 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   if (status == MCOR_OUT_OF_CAPACITY)
   {
     mcor_release_memory(context);
-    if (held > cl->bytes)
+    if (held > cl->bytes && !options->ranks) /* which all must call alike */
     {
       status = mcor_try_call(context, input, options, statistics, body, result);
     }

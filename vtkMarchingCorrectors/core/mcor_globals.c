@@ -4,7 +4,9 @@
 /* What is measured over all particles, handed out, and taken back where only some are at hand. */
 
 #include "mcor_input.h"
+#include "mcor_ranks.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +24,12 @@ void mcor_take_globals(mcor_context* context, const mcor_globals* globals)
   m->h_estimate = globals->smoothing_length;
   m->scalar_min = globals->scalar_min;
   m->scalar_max = globals->scalar_max;
+  m->h_median = globals->smoothing_length_median;
+  m->neighbours = globals->neighbours_median;
+  m->spacing = globals->spacing_median;
+  m->filled = globals->filled_median;
+  memcpy(m->x_low, globals->fluid_low, sizeof m->x_low);
+  memcpy(m->x_high, globals->fluid_high, sizeof m->x_high);
 }
 
 /* The other direction; what the measure does not hold is left. */
@@ -36,8 +44,45 @@ static void mcor_give_globals(const mcor_measure* m, mcor_globals* globals)
   globals->support_min = m->support_min;
   globals->support_max = m->support_max;
   globals->smoothing_length = m->h_estimate;
+  globals->cube_size = m->cube;
   globals->scalar_min = m->scalar_min;
   globals->scalar_max = m->scalar_max;
+  globals->smoothing_length_median = m->h_median;
+  globals->neighbours_median = m->neighbours;
+  globals->spacing_median = m->spacing;
+  globals->filled_median = m->filled;
+  memcpy(globals->fluid_low, m->x_low, sizeof m->x_low);
+  memcpy(globals->fluid_high, m->x_high, sizeof m->x_high);
+}
+
+/* Of an attribute, the first particle that is not finite, of the rank where it has the least number;
+ * -1: there is none. */
+static mcor_status mcor_measure_not_finite(
+  mcor_context* context, const mcor_input* input, const mcor_array* array, int64_t* particle)
+{
+  *particle = mcor_find_not_finite(array, input->solid, input->count);
+  *particle = *particle < 0 ? INT64_MAX : *particle;
+  MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, particle));
+  *particle = *particle == INT64_MAX ? -1 : *particle;
+  return MCOR_OK;
+}
+
+/* A component varies where it does on a rank, or ranks have unlike values. */
+static mcor_status mcor_merge_component(mcor_context* context, const mcor_input* input,
+  const mcor_array* array, int component, mcor_global_component* found)
+{
+  const bool some = input->count > 0;
+  const double first = some ? mcor_array_at(array, 0, component) : 0;
+  double least = some ? first : DBL_MAX;
+  double most[2] = { some ? first : -DBL_MAX,
+    mcor_largest(array, input->solid, input->count, component) };
+  int64_t varies = found->varies;
+  MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
+  MCOR_TRY(mcor_reduce_double(context, MCOR_LEAST, &least));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, 2));
+  found->varies = varies || least != most[0];
+  found->largest = found->varies ? most[1] : 0;
+  return MCOR_OK;
 }
 
 static mcor_status mcor_measure_components(
@@ -49,7 +94,8 @@ static mcor_status mcor_measure_components(
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    const int64_t not_finite = mcor_find_not_finite(array, input->solid, input->count);
+    int64_t not_finite;
+    MCOR_TRY(mcor_measure_not_finite(context, input, array, &not_finite));
     for (int c = 0; c < mcor_components(array); ++c)
     {
       mcor_global_component* found = &globals->components[globals->component_count++];
@@ -57,6 +103,8 @@ static mcor_status mcor_measure_components(
       if (not_finite < 0)
       {
         mcor_measure_component(input, a, c, found);
+        MCOR_TRY(context->options->ranks ? mcor_merge_component(context, input, array, c, found)
+                                         : MCOR_OK);
       }
     }
   }
@@ -71,11 +119,13 @@ static mcor_status mcor_measure_all(
   context->grid_valid = context->value_valid = context->nodes_valid = false;
   context->uses_solids = mcor_uses_solids(input, options);
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_RETURN_IF(
-    input->count == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
+  int64_t particles = input->count;
+  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));
+  MCOR_RETURN_IF(particles == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
   MCOR_TRY(mcor_measure_input(context, input, options));
   mcor_give_globals(&context->measure, globals);
   globals->mass_max = input->has_mass ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
+  MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {
     MCOR_TRY(mcor_find_median(context, input, &globals->scalar_shift));

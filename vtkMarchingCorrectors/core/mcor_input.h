@@ -68,6 +68,25 @@ static inline bool mcor_scalar_is_derived(const mcor_input* input)
 
 /* About the median of the scalar of fluid particles; measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
+/* One of a few particles that stand for all. h, volume: of fluid alone; 0 where volumes are computed. */
+typedef struct mcor_sample
+{
+  uint64_t hash;
+  double x[3], h, volume;
+} mcor_sample;
+
+#define MCOR_SAMPLES 256
+
+typedef struct mcor_samples_found
+{
+  int count, most; /* of these; at most MCOR_SAMPLES */
+  mcor_sample sample[MCOR_SAMPLES];
+} mcor_samples_found;
+
+/* mcor_measure_sample.c. Of all ranks' particles; chosen->most is given. */
+mcor_status mcor_choose_samples(
+  mcor_context* context, const mcor_input* input, bool fluid, mcor_samples_found* chosen);
+
 /* One for all particles, from their spacing. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
@@ -79,7 +98,8 @@ double mcor_median_of(double* values, int count);
 typedef struct mcor_watch mcor_watch;
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun);
 void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK]);
-void mcor_end_watch(mcor_watch* watch, int slices, mcor_measure* m);
+mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices);
+void mcor_free_watch(mcor_watch* watch);
 /* Smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);

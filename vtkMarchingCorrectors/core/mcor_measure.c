@@ -6,6 +6,7 @@
 #include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_ranks.h"
 
 #include <float.h>
 #include <math.h>
@@ -154,13 +155,49 @@ static mcor_status mcor_measure_particles(
   mcor_context* context, const mcor_input* input, double reach)
 {
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
-  MCOR_TRY(mcor_begin_watch(context, input, &job.watch));
-  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job);
-  for (int s = 0; s < slices; ++s)
+  mcor_status status = mcor_begin_watch(context, input, &job.watch);
+  if (status == MCOR_OK)
   {
-    mcor_merge_measure(&context->measure, &job.measures[s]);
+    const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job);
+    for (int s = 0; s < slices; ++s)
+    {
+      mcor_merge_measure(&context->measure, &job.measures[s]);
+    }
+    status = mcor_end_watch(context, job.watch, slices);
   }
-  mcor_end_watch(job.watch, slices, &context->measure);
+  mcor_free_watch(job.watch);
+  return status;
+}
+
+/* What all ranks have measured. Which particle is not finite is for its rank to say. */
+static mcor_status mcor_merge_ranks(mcor_context* context)
+{
+  mcor_measure* m = &context->measure;
+  double* least[] = { m->low, m->low + 1, m->low + 2, m->x_low, m->x_low + 1, m->x_low + 2,
+    &m->h_min, &m->support_min, &m->scalar_min };
+  double* most[] = { m->high, m->high + 1, m->high + 2, m->x_high, m->x_high + 1, m->x_high + 2,
+    &m->h_max, &m->support_max, &m->scalar_max };
+  enum
+  {
+    count = sizeof least / sizeof least[0]
+  };
+  int64_t particles[2] = { m->fluid_count, m->solid_count };
+  double low[count], high[count];
+  for (int i = 0; i < count; ++i)
+  {
+    low[i] = *least[i];
+    high[i] = *most[i];
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, particles, 2));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, count));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, count));
+  for (int i = 0; i < count; ++i)
+  {
+    *least[i] = low[i];
+    *most[i] = high[i];
+  }
+  m->fluid_count = particles[0];
+  m->solid_count = particles[1];
   return MCOR_OK;
 }
 
@@ -242,8 +279,9 @@ mcor_status mcor_measure_input(
   }
   MCOR_TRY(mcor_measure_particles(
     context, input, mcor_support_factor(options->sph_kernel) * options->h_scale));
+  MCOR_TRY(mcor_merge_ranks(context));
   MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
-    "None of the %lld particles is marked as fluid.", (long long)input->count);
+    "None of the %lld particles is marked as fluid.", (long long)m->solid_count);
   if (options->field == MCOR_WEIGHT_SUM)
   {
     m->scalar_min = 0;

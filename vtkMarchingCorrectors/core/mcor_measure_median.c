@@ -5,6 +5,7 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_ranks.h"
 
 #include <stdlib.h>
 
@@ -57,10 +58,31 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* The bins of all particles. */
-static mcor_bin* mcor_make_bins(mcor_bin_job* job)
+static mcor_status mcor_merge_bins(mcor_context* context, mcor_bin* bins)
+{
+  int64_t count[MCOR_MEDIAN_BINS];
+  double low[MCOR_MEDIAN_BINS], high[MCOR_MEDIAN_BINS];
+  for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
+  {
+    count[b] = bins[b].count;
+    low[b] = bins[b].low;
+    high[b] = bins[b].high;
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, count, MCOR_MEDIAN_BINS));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, MCOR_MEDIAN_BINS));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, MCOR_MEDIAN_BINS));
+  for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
+  {
+    bins[b] = (mcor_bin){ count[b], low[b], high[b] };
+  }
+  return MCOR_OK;
+}
+
+/* The bins of all particles, of all ranks, end in the first ones. */
+static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
 {
   mcor_bin* all = job->bins[0];
+  mcor_fill_bins(job, 0, 0, 0); /* where there are no particles, nobody does */
   const int slices = mcor_parallel_for(job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job);
   for (int s = 1; s < slices; ++s)
   {
@@ -72,13 +94,14 @@ static mcor_bin* mcor_make_bins(mcor_bin_job* job)
       all[b].high = bin->high > all[b].high ? bin->high : all[b].high;
     }
   }
-  return all;
+  return mcor_merge_bins(context, all);
 }
 
 /* Of the bin that holds the median, while many are in that bin. A bin ends where its values do, so
  * that a huge outlier does not move the median away from them. Counts, and least and greatest
  * values, do not depend on the order of the particles. */
-static double mcor_narrow_median(mcor_bin_job* job, int64_t fluid_count)
+static mcor_status mcor_narrow_median(
+  mcor_context* context, mcor_bin_job* job, int64_t fluid_count, double* median)
 {
   int64_t below = 0;
   for (int pass = 0; pass < MCOR_MEDIAN_PASSES; ++pass)
@@ -87,7 +110,8 @@ static double mcor_narrow_median(mcor_bin_job* job, int64_t fluid_count)
     {
       break;
     }
-    const mcor_bin* bin = mcor_make_bins(job);
+    MCOR_TRY(mcor_make_bins(context, job));
+    const mcor_bin* bin = job->bins[0];
     const mcor_bin* last = bin + MCOR_MEDIAN_BINS - 1;
     for (; bin < last && 2 * (below + bin->count) < fluid_count; ++bin)
     {
@@ -104,7 +128,8 @@ static double mcor_narrow_median(mcor_bin_job* job, int64_t fluid_count)
       break;
     }
   }
-  return 0.5 * job->low + 0.5 * job->high;
+  *median = 0.5 * job->low + 0.5 * job->high;
+  return MCOR_OK;
 }
 
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median)
@@ -113,9 +138,9 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
   mcor_bin_job job = { input, m->scalar_min, m->scalar_max,
     malloc(MCOR_SLICES * sizeof *job.bins) };
   MCOR_RETURN_IF(!job.bins, context, MCOR_OUT_OF_CAPACITY, "Host memory for the median ran out.");
-  *median = mcor_narrow_median(&job, m->fluid_count);
+  const mcor_status status = mcor_narrow_median(context, &job, m->fluid_count, median);
   free(job.bins);
-  return MCOR_OK;
+  return status;
 }
 
 static int mcor_compare_doubles(const void* a, const void* b)

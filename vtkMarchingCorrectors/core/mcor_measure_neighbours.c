@@ -7,10 +7,12 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_ranks.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define MCOR_WATCHED 32     /* fluid particles, bits of a mask */
 #define MCOR_WATCH_CELLS 64 /* along each axis of a coarse grid; the outermost are in no reach */
@@ -18,8 +20,6 @@
 /* Fluid particles, and whether any cell is in reach of each. */
 struct mcor_watch
 {
-  const mcor_input* input;
-  mcor_array positions;
   double low[3], cells_per_length[3];
   uint32_t* reached; /* [cells], bit s: of watched particle s */
   int count;
@@ -34,38 +34,20 @@ static int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
   return cell > 0 ? (cell < MCOR_WATCH_CELLS ? (int)cell : MCOR_WATCH_CELLS - 1) : 0;
 }
 
-/* The volume of particle i where the input has it, else 0. */
-static double mcor_given_volume(const mcor_input* input, int64_t i)
+static mcor_status mcor_choose_watched(
+  mcor_context* context, const mcor_input* input, mcor_watch* watch)
 {
-  return input->has_volume ? mcor_array_at(&input->volume, i, 0)
-    : input->has_mass && input->has_density
-    ? mcor_array_at(&input->mass, i, 0) / mcor_array_at(&input->density, i, 0)
-    : 0;
-}
-
-/* Chooses fluid particles at even distances in the order of the input. */
-static void mcor_choose_watched(const mcor_context* context, mcor_watch* watch)
-{
-  const mcor_input* input = watch->input;
-  for (int s = 0; s < MCOR_WATCHED; ++s)
+  mcor_samples_found chosen = { .most = MCOR_WATCHED };
+  MCOR_TRY(mcor_choose_samples(context, input, true, &chosen));
+  for (int s = 0; s < chosen.count; ++s)
   {
-    const int64_t first = input->count * s / MCOR_WATCHED;
-    const int64_t last = input->count * (s + 1) / MCOR_WATCHED;
-    int64_t i = first + (last - first) / 2;
-    while (i < last && input->solid && input->solid[i])
-    {
-      ++i;
-    }
-    if (i < last)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        watch->x[watch->count][a] = mcor_array_at(&watch->positions, i, a);
-      }
-      watch->volume[watch->count] = mcor_given_volume(input, i);
-      mcor_read_smoothing_length(context, input, i, 1, &watch->h[watch->count++]);
-    }
+    const mcor_sample* sample = &chosen.sample[s];
+    memcpy(watch->x[s], sample->x, sizeof watch->x[s]);
+    watch->h[s] = sample->h;
+    watch->volume[s] = sample->volume;
   }
+  watch->count = chosen.count;
+  return MCOR_OK;
 }
 
 /* Lays the grid over what is in reach of the watched. */
@@ -144,27 +126,42 @@ void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double 
 }
 
 /* The medians over watched particles. */
-static void mcor_sum_up_watch(mcor_watch* watch, int slices, mcor_measure* m)
+static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[MCOR_WATCHED],
+  const double nearest[MCOR_WATCHED], mcor_measure* m)
 {
-  double neighbours[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED];
+  double count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED], h[MCOR_WATCHED];
   for (int s = 0; s < watch->count; ++s)
   {
-    neighbours[s] = 0;
-    spacing[s] = DBL_MAX;
-    for (int slice = 0; slice < slices; ++slice)
-    {
-      neighbours[s] += (double)watch->neighbours[slice][s];
-      spacing[s] = fmin(spacing[s], sqrt(watch->nearest[slice][s]));
-    }
-    const double reach = watch->support * watch->h[s];
-    filled[s] = neighbours[s] * watch->volume[s] / (4.0 / 3 * 3.14159265358979323846) /
-      (reach * reach * reach);
-    spacing[s] = spacing[s] < reach ? spacing[s] : 0;
+    const double reach = watch->support * watch->h[s], distance = sqrt(nearest[s]);
+    count[s] = (double)neighbours[s];
+    filled[s] =
+      count[s] * watch->volume[s] / (4.0 / 3 * 3.14159265358979323846) / (reach * reach * reach);
+    spacing[s] = distance < reach ? distance : 0;
+    h[s] = watch->h[s];
   }
-  m->neighbours = mcor_median_of(neighbours, watch->count);
+  m->neighbours = mcor_median_of(count, watch->count);
   m->spacing = mcor_median_of(spacing, watch->count);
   m->filled = mcor_median_of(filled, watch->count);
-  m->h_median = mcor_median_of(watch->h, watch->count);
+  m->h_median = mcor_median_of(h, watch->count);
+}
+
+mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
+{
+  int64_t neighbours[MCOR_WATCHED] = { 0 };
+  double nearest[MCOR_WATCHED];
+  for (int s = 0; s < watch->count; ++s)
+  {
+    nearest[s] = DBL_MAX;
+    for (int slice = 0; slice < slices; ++slice)
+    {
+      neighbours[s] += watch->neighbours[slice][s];
+      nearest[s] = fmin(nearest[s], watch->nearest[slice][s]);
+    }
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, watch->count));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, nearest, watch->count));
+  mcor_sum_up_watch(watch, neighbours, nearest, &context->measure);
+  return MCOR_OK;
 }
 
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun)
@@ -179,12 +176,10 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
     return mcor_fail(
       context, MCOR_OUT_OF_CAPACITY, "Host memory for %d particles ran out.", MCOR_WATCHED);
   }
-  watch->input = input;
-  watch->positions = input->positions;
-  watch->positions.components = 3;
+  *begun = watch;
   watch->reached = reached;
   watch->support = mcor_support_factor(context->options->sph_kernel);
-  mcor_choose_watched(context, watch);
+  MCOR_TRY(mcor_choose_watched(context, input, watch));
   mcor_place_watch(watch);
   for (int s = 0; s < watch->count; ++s)
   {
@@ -194,13 +189,14 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
       watch->nearest[slice][s] = DBL_MAX;
     }
   }
-  *begun = watch;
   return MCOR_OK;
 }
 
-void mcor_end_watch(mcor_watch* watch, int slices, mcor_measure* m)
+void mcor_free_watch(mcor_watch* watch)
 {
-  mcor_sum_up_watch(watch, slices, m);
-  free(watch->reached);
-  free(watch);
+  if (watch)
+  {
+    free(watch->reached);
+    free(watch);
+  }
 }

@@ -5,83 +5,14 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_ranks.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The order of samples by a hash of their position, so that input order does not matter. */
-typedef struct mcor_sample
-{
-  uint64_t hash;
-  double x[3];
-} mcor_sample;
-
-static uint64_t mcor_hash_position(const double x[3])
-{
-  uint64_t hash = 0x9E3779B97F4A7C15u;
-  for (int a = 0; a < 3; ++a)
-  {
-    uint64_t bits;
-    memcpy(&bits, x + a, sizeof bits);
-    hash = (hash ^ bits) * 0xBF58476D1CE4E5B9u;
-    hash ^= hash >> 31;
-  }
-  return hash;
-}
-
-#define MCOR_SAMPLES 256
 #define MCOR_SAMPLE_NEIGHBOURS 32
-
-/* Those of a slice of the particles, in order. */
-typedef struct mcor_spacing_samples
-{
-  int count;
-  mcor_sample sample[MCOR_SAMPLES];
-} mcor_spacing_samples;
-
-typedef struct mcor_sampling
-{
-  const mcor_input* input;
-  mcor_array positions;
-  double scale;                  /* a power of 2 that brings all coordinates below 1 */
-  mcor_spacing_samples* samples; /* [MCOR_SLICES]; in the end the first has those of all */
-  double spacing[MCOR_SAMPLES];
-} mcor_sampling;
-
-/* Keeps a sample if it is among the first. */
-static void mcor_add_sample(mcor_spacing_samples* samples, const mcor_sample* sample)
-{
-  const bool full = samples->count == MCOR_SAMPLES;
-  if (full && sample->hash >= samples->sample[MCOR_SAMPLES - 1].hash)
-  {
-    return;
-  }
-  int to = full ? MCOR_SAMPLES - 1 : samples->count++;
-  for (; to > 0 && samples->sample[to - 1].hash > sample->hash; --to)
-  {
-    samples->sample[to] = samples->sample[to - 1];
-  }
-  samples->sample[to] = *sample;
-}
-
-static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_sampling* job = data;
-  mcor_spacing_samples* samples = &job->samples[slice];
-  samples->count = 0;
-  for (int64_t i = first; i < last; ++i)
-  {
-    mcor_sample sample;
-    for (int a = 0; a < 3; ++a)
-    {
-      sample.x[a] = mcor_array_at(&job->positions, i, a);
-    }
-    sample.hash = mcor_hash_position(sample.x);
-    mcor_add_sample(samples, &sample);
-  }
-}
 
 /* Squared distances, times the squared scale, from a sample to the particle itself and its 32 nearest
  * others, or all there are; the least first. */
@@ -108,13 +39,20 @@ static void mcor_add_neighbours(mcor_neighbours* nearest, const double* d2, int 
   }
 }
 
-/* The spacing at each sample of a slice: the distance of the farthest of these neighbours, over how
- * many lie within. */
-static void mcor_space_slice(void* data, int slice, int64_t first, int64_t last)
+typedef struct mcor_spacing
 {
-  mcor_sampling* job = data;
+  const mcor_input* input;
+  mcor_array positions;
+  double scale; /* a power of 2 that brings all coordinates below 1 */
+  mcor_samples_found samples;
+  mcor_neighbours nearest[MCOR_SAMPLES];
+} mcor_spacing;
+
+/* The nearest of this rank's particles to each sample of a slice. */
+static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_spacing* job = data;
   const double scale = job->scale;
-  mcor_neighbours nearest[MCOR_SAMPLES / MCOR_SLICES] = { 0 };
   double x[3][MCOR_CHUNK], d2[MCOR_CHUNK];
   for (int64_t begin = 0; begin < job->input->count; begin += MCOR_CHUNK)
   {
@@ -126,53 +64,119 @@ static void mcor_space_slice(void* data, int slice, int64_t first, int64_t last)
     }
     for (int64_t s = first; s < last; ++s)
     {
-      const double* at = job->samples[0].sample[s].x;
+      const double* at = job->samples.sample[s].x;
       for (int i = 0; i < count; ++i)
       {
         const double dx = x[0][i] * scale - at[0] * scale, dy = x[1][i] * scale - at[1] * scale,
                      dz = x[2][i] * scale - at[2] * scale;
         d2[i] = dx * dx + dy * dy + dz * dz;
       }
-      mcor_add_neighbours(&nearest[s - first], d2, count);
+      mcor_add_neighbours(&job->nearest[s], d2, count);
     }
-  }
-  for (int64_t s = first; s < last; ++s)
-  {
-    const mcor_neighbours* n = &nearest[s - first];
-    job->spacing[s] =
-      sqrt(n->d2[n->count - 1]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / n->count);
   }
   (void)slice;
 }
 
-/* 1.3 times the median, over a sample of particles, of the spacing of a lattice that has as many
- * particles within the distance of the 32nd neighbour. */
+/* How many of a list are not greater than the number of these bits: those of numbers not below 0 are
+ * in the numbers' order. */
+static int64_t mcor_count_up_to(const mcor_neighbours* nearest, int64_t bits)
+{
+  double limit;
+  memcpy(&limit, &bits, sizeof limit);
+  int count = 0;
+  while (count < nearest->count && nearest->d2[count] <= limit)
+  {
+    ++count;
+  }
+  return count;
+}
+
+/* Of each sample the farthest of its neighbours over all ranks, and how many these are: bit by bit, from
+ * counts. */
+static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing* job,
+  double farthest[MCOR_SAMPLES], int64_t neighbours[MCOR_SAMPLES])
+{
+  const int count = job->samples.count;
+  int64_t below[MCOR_SAMPLES] = { 0 }, found[MCOR_SAMPLES];
+  for (int s = 0; s < count; ++s)
+  {
+    neighbours[s] = job->nearest[s].count;
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, count));
+  for (int s = 0; s < count; ++s)
+  {
+    neighbours[s] =
+      neighbours[s] < MCOR_SAMPLE_NEIGHBOURS + 1 ? neighbours[s] : MCOR_SAMPLE_NEIGHBOURS + 1;
+  }
+  for (int bit = 62; bit >= 0; --bit)
+  {
+    for (int s = 0; s < count; ++s)
+    {
+      found[s] = mcor_count_up_to(&job->nearest[s], below[s] + ((INT64_C(1) << bit) - 1));
+    }
+    MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, found, count));
+    for (int s = 0; s < count; ++s)
+    {
+      below[s] += found[s] < neighbours[s] ? INT64_C(1) << bit : 0;
+    }
+  }
+  memcpy(farthest, below, (size_t)count * sizeof *farthest);
+  return MCOR_OK;
+}
+
+/* The power of 2 that brings all coordinates, of all ranks, below 1. */
+static mcor_status mcor_scale_positions(
+  mcor_context* context, const mcor_input* input, mcor_spacing* job)
+{
+  int exponent = 0, most = INT_MIN;
+  double largest[3];
+  job->input = input;
+  job->positions = input->positions;
+  job->positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    largest[a] = mcor_largest(&job->positions, NULL, input->count, a);
+  }
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
+  for (int a = 0; a < 3; ++a)
+  {
+    frexp(largest[a], &exponent);
+    most = exponent > most ? exponent : most;
+  }
+  job->scale = ldexp(1, most > -1000 ? -most : 1000);
+  return MCOR_OK;
+}
+
+/* 1.3 times the median, over the samples, of the spacing of a lattice that has as many particles
+ * within the distance of the 32nd neighbour. */
+static mcor_status mcor_find_spacing(
+  mcor_context* context, const mcor_input* input, mcor_spacing* job, double* estimate)
+{
+  double spacing[MCOR_SAMPLES];
+  int64_t neighbours[MCOR_SAMPLES];
+  job->samples.most = MCOR_SAMPLES;
+  MCOR_TRY(mcor_scale_positions(context, input, job));
+  MCOR_TRY(mcor_choose_samples(context, input, false, &job->samples));
+  const int count = job->samples.count;
+  mcor_parallel_for(count, 1, mcor_near_slice, job);
+  MCOR_TRY(mcor_find_farthest(context, job, spacing, neighbours));
+  for (int s = 0; s < count; ++s)
+  {
+    spacing[s] =
+      sqrt(spacing[s]) * cbrt(4.0 / 3.0 * 3.14159265358979323846 / (double)neighbours[s]);
+  }
+  *estimate = 1.3 * mcor_median_of(spacing, count) / job->scale;
+  return MCOR_OK;
+}
+
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate)
 {
-  mcor_sampling job = { .input = input, .positions = input->positions };
-  int exponent = 0, most = INT_MIN;
-  job.positions.components = 3;
-  for (int a = 0; a < 3; ++a)
-  {
-    frexp(mcor_largest(&job.positions, NULL, input->count, a), &exponent);
-    most = exponent > most ? exponent : most;
-  }
-  job.scale = ldexp(1, most > -1000 ? -most : 1000);
-  job.samples = malloc(MCOR_SLICES * sizeof *job.samples);
-  MCOR_RETURN_IF(!job.samples, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, &job);
-  for (int s = 1; s < slices; ++s)
-  {
-    for (int i = 0; i < job.samples[s].count; ++i)
-    {
-      mcor_add_sample(&job.samples[0], &job.samples[s].sample[i]);
-    }
-  }
-  const int count = job.samples[0].count;
-  mcor_parallel_for(count, 1, mcor_space_slice, &job);
-  free(job.samples);
-  *estimate = 1.3 * mcor_median_of(job.spacing, count) / job.scale;
+  mcor_spacing* job = calloc(1, sizeof *job);
+  MCOR_RETURN_IF(!job, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  const mcor_status status = mcor_find_spacing(context, input, job, estimate);
+  free(job);
+  MCOR_TRY(status);
   MCOR_RETURN_IF(!(*estimate > 0), context, MCOR_INVALID_DATA,
     "The smoothing length cannot be estimated: most particles lie at one point.");
   return MCOR_OK;

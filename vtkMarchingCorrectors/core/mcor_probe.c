@@ -413,6 +413,7 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
   options->iso_count = 0;
   options->has_box = 0;
   options->globals = NULL;
+  options->ranks = NULL;
   for (int i = 0; i < 6; ++i)
   {
     options->periodic[i] = 0;

@@ -1,0 +1,171 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core_ranks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The lock is held. */
+static void end_round_where_all_came(core_world* world)
+{
+  if (world->came > 0 && world->came >= world->count - world->left)
+  {
+    world->came = 0;
+    ++world->round;
+    pthread_cond_broadcast(&world->all_came);
+  }
+}
+
+/* Waits until all ranks that are left have come here; nonzero where one has gone. */
+static int wait_for_all(core_world* world)
+{
+  pthread_mutex_lock(&world->lock);
+  const int round = world->round;
+  ++world->came;
+  end_round_where_all_came(world);
+  while (world->round == round)
+  {
+    pthread_cond_wait(&world->all_came, &world->lock);
+  }
+  const int failed = world->left > 0;
+  pthread_mutex_unlock(&world->lock);
+  return failed;
+}
+
+void core_leave(core_rank* rank)
+{
+  core_world* world = rank->world;
+  pthread_mutex_lock(&world->lock);
+  ++world->left;
+  end_round_where_all_came(world);
+  pthread_mutex_unlock(&world->lock);
+}
+
+/* Shows a value to all ranks, until wait_for_all is called again. */
+static int show(core_rank* rank, const void* value, int64_t size)
+{
+  rank->world->value[rank->number] = value;
+  rank->world->size[rank->number] = size;
+  ++rank->world->calls[rank->number];
+  return wait_for_all(rank->world);
+}
+
+static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
+{
+  core_rank* rank = user;
+  double* result = malloc((size_t)count * sizeof *result);
+  int failed = !result || reduction == MCOR_SUM_OF || show(rank, values, count);
+  /* Whatever the order: here it is another one on each rank. */
+  for (int r = 0; r < rank->world->count && !failed; ++r)
+  {
+    const int from = (r + rank->number) % rank->world->count;
+    const double* other = rank->world->value[from];
+    failed = failed || rank->world->size[from] != count;
+    for (int i = 0; i < count && !failed; ++i)
+    {
+      const int take = reduction == MCOR_LEAST ? other[i] < result[i] : other[i] > result[i];
+      result[i] = r == 0 || take ? other[i] : result[i];
+    }
+  }
+  failed = wait_for_all(rank->world) || failed;
+  if (!failed)
+  {
+    memcpy(values, result, (size_t)count * sizeof *result);
+  }
+  free(result);
+  return failed;
+}
+
+static int reduce_counts(void* user, mcor_reduction reduction, int64_t* values, int count)
+{
+  core_rank* rank = user;
+  int64_t* result = malloc((size_t)count * sizeof *result);
+  int failed = !result || show(rank, values, count);
+  for (int r = 0; r < rank->world->count && !failed; ++r)
+  {
+    const int64_t* other = rank->world->value[r];
+    failed = failed || rank->world->size[r] != count;
+    for (int i = 0; i < count && !failed; ++i)
+    {
+      const int64_t last = r == 0 ? 0 : result[i];
+      const int take = reduction == MCOR_LEAST ? other[i] < last : other[i] > last;
+      result[i] = reduction == MCOR_SUM_OF ? last + other[i] : r == 0 || take ? other[i] : last;
+    }
+  }
+  failed = wait_for_all(rank->world) || failed;
+  if (!failed)
+  {
+    memcpy(values, result, (size_t)count * sizeof *result);
+  }
+  free(result);
+  return failed;
+}
+
+static int gather(void* user, const void* records, int64_t count, size_t width, const void** all,
+  int64_t* all_count)
+{
+  core_rank* rank = user;
+  int failed = show(rank, records, count);
+  int64_t total = 0;
+  for (int r = 0; r < rank->world->count && !failed; ++r)
+  {
+    total += rank->world->size[r];
+  }
+  free(rank->gathered);
+  rank->gathered = malloc((size_t)total * width + 1);
+  char* to = rank->gathered;
+  failed = failed || !to;
+  for (int r = 0; r < rank->world->count && !failed; ++r)
+  {
+    const int from = (r + rank->number) % rank->world->count;
+    const size_t bytes = (size_t)rank->world->size[from] * width;
+    if (bytes > 0)
+    {
+      memcpy(to, rank->world->value[from], bytes);
+    }
+    to += bytes;
+  }
+  *all = rank->gathered;
+  *all_count = total;
+  return wait_for_all(rank->world) || failed;
+}
+
+typedef struct core_thread
+{
+  core_rank rank;
+  core_rank_body body;
+  void* data;
+} core_thread;
+
+static void* run_rank(void* data)
+{
+  core_thread* thread = data;
+  thread->body(&thread->rank, thread->data);
+  free(thread->rank.gathered);
+  return NULL;
+}
+
+void core_run_ranks(int count, core_rank_body body, void* data, core_world* world)
+{
+  core_thread threads[CORE_MOST_RANKS];
+  pthread_t ids[CORE_MOST_RANKS];
+  *world = (core_world){ .count = count };
+  pthread_mutex_init(&world->lock, NULL);
+  pthread_cond_init(&world->all_came, NULL);
+  for (int r = 0; r < count; ++r)
+  {
+    threads[r] =
+      (core_thread){ .rank = { .world = world, .number = r }, .body = body, .data = data };
+    threads[r].rank.ranks = (mcor_ranks){ reduce_doubles, reduce_counts, gather, &threads[r].rank };
+    if (pthread_create(&ids[r], NULL, run_rank, &threads[r]) != 0)
+    {
+      abort();
+    }
+  }
+  for (int r = 0; r < count; ++r)
+  {
+    pthread_join(ids[r], NULL);
+  }
+  pthread_mutex_destroy(&world->lock);
+  pthread_cond_destroy(&world->all_came);
+}

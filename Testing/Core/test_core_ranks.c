@@ -1,0 +1,271 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Ranks, in threads: what is measured over all of them is, to the last bit, what is measured over one
+ * input, whoever has what. */
+
+#include "core_fixture.h"
+#include "core_ranks.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Who has what ---- */
+
+typedef int (*split_function)(const core_set* set, int64_t i, int ranks);
+
+static int split_scattered(const core_set* set, int64_t i, int ranks)
+{
+  (void)set;
+  uint64_t seed = (uint64_t)i + 1;
+  return (int)(random_bits(&seed) % (uint64_t)ranks);
+}
+
+static int split_to_last(const core_set* set, int64_t i, int ranks)
+{
+  (void)set;
+  (void)i;
+  return ranks - 1;
+}
+
+static int split_slabs(const core_set* set, int64_t i, int ranks)
+{
+  const double at = (set->position[3 * i] / 14 + 0.5) * ranks;
+  return at < 0 ? 0 : at < ranks ? (int)at : ranks - 1;
+}
+
+/* All but a few particles on the first one. */
+static int split_uneven(const core_set* set, int64_t i, int ranks)
+{
+  (void)set;
+  return i < ranks ? (int)i : 0;
+}
+
+static const split_function splits[] = { split_scattered, split_to_last, split_slabs,
+  split_uneven };
+static const char* const split_names[] = { "scattered", "all on one", "slabs", "uneven" };
+
+#define SPLITS (sizeof splits / sizeof splits[0])
+
+/* The particles of one rank, backwards. */
+static core_set take_part(const core_set* set, split_function split, int ranks, int rank)
+{
+  core_set part = core_make_set(set->count);
+  part.has_solids = set->has_solids;
+  part.count = 0;
+  for (int64_t i = set->count - 1; i >= 0; --i)
+  {
+    if (split(set, i, ranks) == rank)
+    {
+      memcpy(part.position + 3 * part.count, set->position + 3 * i, 3 * sizeof(double));
+      part.smoothing_length[part.count] = set->smoothing_length[i];
+      part.volume[part.count] = set->volume[i];
+      part.scalar[part.count] = set->scalar[i];
+      part.solid[part.count++] = set->solid[i];
+    }
+  }
+  return part;
+}
+
+/* ---- Global values ---- */
+
+/* What an input is made of besides a set. */
+typedef struct measure_case
+{
+  const char* name;
+  int estimate, mass, field;
+} measure_case;
+
+typedef struct measure_job
+{
+  const core_set* set;
+  const measure_case* what;
+  split_function split;
+  mcor_status status[CORE_MOST_RANKS];
+  mcor_globals globals[CORE_MOST_RANKS];
+  char error[CORE_MOST_RANKS][400];
+  int failing; /* a rank that has a particle that is not a number; -1: none */
+} measure_job;
+
+static mcor_input measure_input(
+  const core_set* set, const measure_case* what, mcor_array attributes[3])
+{
+  mcor_input input = core_input(set);
+  input.estimate_smoothing_length = what->estimate;
+  input.has_volume = !what->mass;
+  input.has_mass = what->mass;
+  input.mass = core_array(set->volume, 1);
+  attributes[0] = core_array(set->position, 3);
+  attributes[1] = core_array(set->scalar, 1);
+  attributes[2] = (mcor_array){ .constant = 3, .type = MCOR_FLOAT64, .components = 1 };
+  input.attributes = attributes;
+  input.attribute_count = 3;
+  return input;
+}
+
+static mcor_options measure_options(const measure_case* what)
+{
+  static const double iso = 0.5;
+  mcor_options options = core_options(&iso);
+  options.field = (mcor_field)what->field;
+  return options;
+}
+
+static void measure_part(core_rank* rank, void* data)
+{
+  measure_job* job = data;
+  mcor_array attributes[3];
+  const int r = rank->number;
+  core_set part = take_part(job->set, job->split, rank->world->count, r);
+  if (r == job->failing)
+  {
+    part.position[7] = NAN;
+  }
+  const mcor_input input = measure_input(&part, job->what, attributes);
+  mcor_options options = measure_options(job->what);
+  options.ranks = &rank->ranks;
+  mcor_context* context = NULL;
+  job->status[r] = mcor_create_context(NULL, &context);
+  if (job->status[r] == MCOR_OK)
+  {
+    job->status[r] = mcor_measure_globals(context, &input, &options, &job->globals[r]);
+  }
+  snprintf(job->error[r], sizeof job->error[r], "%s", mcor_last_error(context));
+  if (job->status[r] != MCOR_OK)
+  {
+    core_leave(rank);
+  }
+  mcor_free_context(context);
+  core_free_set(&part);
+}
+
+static int same_globals(const mcor_globals* a, const mcor_globals* b)
+{
+  int same = memcmp(a, b, offsetof(mcor_globals, component_count)) == 0 &&
+    a->component_count == b->component_count;
+  for (int i = 0; i < a->component_count && same; ++i)
+  {
+    const mcor_global_component *x = a->components + i, *y = b->components + i;
+    same = x->largest == y->largest && !x->varies == !y->varies &&
+      (x->not_finite < 0) == (y->not_finite < 0);
+  }
+  return same;
+}
+
+static void check_globals(mcor_context* context, const core_set* set, const measure_case* what)
+{
+  mcor_array attributes[3];
+  const mcor_input input = measure_input(set, what, attributes);
+  const mcor_options options = measure_options(what);
+  mcor_globals expected;
+  CORE_OK(context, mcor_measure_globals(context, &input, &options, &expected));
+  assert_true(expected.neighbours_median > 10 && expected.spacing_median > 0);
+  assert_int_equal(what->estimate, expected.smoothing_length > 0);
+  for (size_t s = 0; s < SPLITS; ++s)
+  {
+    for (int count = 1; count <= CORE_MOST_RANKS; count += count == 3 ? 5 : 1)
+    {
+      measure_job job = { .set = set, .what = what, .split = splits[s], .failing = -1 };
+      core_world world;
+      core_run_ranks(count, measure_part, &job, &world);
+      for (int r = 0; r < count; ++r)
+      {
+        CORE_CHECK(job.status[r] == MCOR_OK && same_globals(&job.globals[r], &expected),
+          "%s, %s: rank %d of %d differs: %s", what->name, split_names[s], r, count, job.error[r]);
+        assert_int_equal(world.calls[r], world.calls[0]);
+        mcor_free_globals(&job.globals[r]);
+      }
+    }
+  }
+  mcor_free_globals(&expected);
+}
+
+static core_set make_set(void)
+{
+  core_set set = core_make_random(3000, 14, 0.7, 2, 17);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] += core_ball(set.position + 3 * i);
+    set.solid[i] = i % 11 == 0;
+  }
+  set.has_solids = 1;
+  return set;
+}
+
+static void global_values(void** state)
+{
+  const measure_case cases[] = { { "volumes", 0, 0, MCOR_SHEPARD },
+    { "masses, estimate", 1, 1, MCOR_SHEPARD }, { "sum", 0, 1, MCOR_SUM },
+    { "free surface", 1, 0, MCOR_WEIGHT_SUM } };
+  core_set set = make_set();
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    check_globals(*state, &set, &cases[i]);
+  }
+  /* Outliers make the median narrow its bins; an attribute that a rank alone knows to vary, and one that
+   * is not finite there. */
+  const measure_case rough = { "outliers", 0, 1, MCOR_SHEPARD };
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = i == 5 ? 1e12 : 3 + 1e-3 * set.scalar[i];
+    set.position[3 * i + 2] = i % 2 ? 0 : set.position[3 * i + 2];
+  }
+  check_globals(*state, &set, &rough);
+  core_free_set(&set);
+}
+
+static void not_finite_attributes(void** state)
+{
+  const measure_case what = { "not finite", 0, 1, MCOR_WEIGHT_SUM };
+  core_set set = make_set();
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = i < 1500 ? 2 : 1; /* of slabs mostly both, of uneven ones one on a rank */
+  }
+  check_globals(*state, &set, &what);
+  set.scalar[1234] = INFINITY;
+  check_globals(*state, &set, &what);
+  core_free_set(&set);
+}
+
+/* One rank's fault is an error on all, and nobody waits. */
+static void faults(void** state)
+{
+  (void)state;
+  const measure_case what = { "fault", 0, 0, MCOR_SHEPARD };
+  core_set set = make_set();
+  for (int failing = 0; failing < 3; ++failing)
+  {
+    measure_job job = { .set = &set, .what = &what, .split = split_slabs, .failing = failing };
+    core_world world;
+    core_run_ranks(3, measure_part, &job, &world);
+    for (int r = 0; r < 3; ++r)
+    {
+      assert_int_equal(job.status[r], r == failing ? MCOR_INVALID_DATA : MCOR_CANCELLED);
+      CORE_CHECK(
+        strstr(job.error[r], r == failing ? "particle 2 is not a number" : "Another rank failed"),
+        "%s", job.error[r]);
+      assert_null(job.globals[r].components);
+    }
+  }
+  core_set none = core_make_set(0);
+  measure_job job = { .set = &none, .what = &what, .split = split_slabs, .failing = -1 };
+  core_world world;
+  core_run_ranks(2, measure_part, &job, &world);
+  for (int r = 0; r < 2; ++r)
+  {
+    assert_int_equal(job.status[r], MCOR_INVALID_DATA);
+    assert_non_null(strstr(job.error[r], "no particles to measure"));
+  }
+  core_free_set(&none);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
+    cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,52 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Ranks: what of a call's work takes all of them. Only numbers go around whose result does not depend
+ * on who has what: least and greatest ones, sums of whole numbers, and records that are sorted, or
+ * taken as a set, afterwards. */
+
+#include "mcor_ranks.h"
+
+static mcor_status mcor_heard(mcor_context* context, int failed)
+{
+  MCOR_RETURN_IF(failed != 0, context, MCOR_CANCELLED,
+    "Another rank failed, or the exchange with it. See that rank's message.");
+  return MCOR_OK;
+}
+
+mcor_status mcor_reduce_doubles(
+  mcor_context* context, mcor_reduction reduction, double* values, int count)
+{
+  const mcor_ranks* ranks = context->options->ranks;
+  return ranks ? mcor_heard(context, ranks->reduce_doubles(ranks->user, reduction, values, count))
+               : MCOR_OK;
+}
+
+mcor_status mcor_reduce_counts(
+  mcor_context* context, mcor_reduction reduction, int64_t* values, int count)
+{
+  const mcor_ranks* ranks = context->options->ranks;
+  return ranks ? mcor_heard(context, ranks->reduce_counts(ranks->user, reduction, values, count))
+               : MCOR_OK;
+}
+
+mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value)
+{
+  return mcor_reduce_doubles(context, reduction, value, 1);
+}
+
+mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value)
+{
+  return mcor_reduce_counts(context, reduction, value, 1);
+}
+
+mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
+  const void** all, int64_t* all_count)
+{
+  const mcor_ranks* ranks = context->options->ranks;
+  *all = records;
+  *all_count = count;
+  return ranks
+    ? mcor_heard(context, ranks->gather(ranks->user, records, count, width, all, all_count))
+    : MCOR_OK;
+}

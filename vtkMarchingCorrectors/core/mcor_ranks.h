@@ -1,0 +1,22 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_ranks_h
+#define mcor_ranks_h
+
+/* What ranks tell each other, by the functions of options.ranks. Alone, all is said already. */
+
+#include "mcor_internal.h"
+
+mcor_status mcor_reduce_doubles(
+  mcor_context* context, mcor_reduction reduction, double* values, int count);
+mcor_status mcor_reduce_counts(
+  mcor_context* context, mcor_reduction reduction, int64_t* values, int count);
+/* All ranks' records, valid until the next call of one of these; alone, the caller's. */
+mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
+  const void** all, int64_t* all_count);
+
+/* The least and the greatest over ranks, one number. */
+mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value);
+mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value);
+
+#endif

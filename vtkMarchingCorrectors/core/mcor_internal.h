@@ -436,6 +436,8 @@ extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 extern const char mcor_source_mcor_box_cl[];
 extern const char mcor_source_mcor_probe_cl[];
+extern const char mcor_source_mcor_probe_lanes_cl[];
+extern const char mcor_source_mcor_probe_point_cl[];
 extern const char mcor_source_mcor_derive_cl[];
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */

@@ -271,7 +271,9 @@ static mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t 
   MCOR_TRY(mcor_group_batch(context, &run->batch, run->count, run->inside, &run->group_count));
   MCOR_TRY(mcor_reserve(context, &run->weight, n * real));
   MCOR_TRY(mcor_reserve(context, &run->sums, n * arrays * real));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, run->group_count,
+  const int cluster = MCOR_CLUSTER_OF(context->cl.lanes);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY,
+    (run->group_count + cluster - 1) / cluster,
     MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
     MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
     MCOR_ATTRIBUTE_ARGS(context, &run->sums)));

@@ -186,6 +186,8 @@ typedef struct mcor_box
 {
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
+  bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
+  double points[6];
   mcor_buffer owned;      /* uchar per triangle of the mesh: 1 of an owned cell */
   mcor_buffer clipped;    /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;          /* per triangle of the surface: as owned; NULL: all are */

@@ -60,7 +60,7 @@ typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
 
 /* The lanes of a group of particles that are kept, as a mask, and their packing into an array's
  * next elements. The array needs room for MCOR_LANES elements. */
-#if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                  \
+#if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                    \
   __has_builtin(__builtin_ia32_compresssf512_mask) &&                                              \
   __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask)
 /* A vector unit that packs by itself: a third of a gather's time. */
@@ -93,7 +93,7 @@ void mcor_interleave4(realv a, realv b, realv c, realv d, real* to)
   vstore16(__builtin_shufflevector(ef, gh, MCOR_LOW_PAIRS), 2, to);
   vstore16(__builtin_shufflevector(ef, gh, MCOR_HIGH_PAIRS), 3, to);
 }
-#elif MCOR_LANES == 8 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX2__) && defined(__BMI2__) &&  \
+#elif MCOR_LANES == 8 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX2__) && defined(__BMI2__) && \
   __has_builtin(__builtin_ia32_movmskps256) && __has_builtin(__builtin_ia32_permvarsf256) &&       \
   __has_builtin(__builtin_ia32_pdep_di) && __has_builtin(__builtin_ia32_pext_di)
 /* One that permutes: the numbers of the lanes that are kept, in front. */

@@ -118,8 +118,7 @@ __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   for (int k = 0; k < count; ++k)
   {
     const int i = list[k];
-    mcor_points_from(
-      at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
+    mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
     const mcor_length length = mcor_length_of(d);
     weight[k] =
       tile->weight[i] * mcor_weight_gradient(d, &length, (realv)(tile->inv_h[i]), &slope, along);

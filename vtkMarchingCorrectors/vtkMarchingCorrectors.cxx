@@ -111,6 +111,9 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.topology = this->Topology == TOPOLOGY_FIELD ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   options.cube_size_factor = this->CubeSizeFactor;
   options.cube_size = this->CubeSize;
+  options.cube_size_mode =
+    this->CubeSizeMode == ADAPTIVE ? MCOR_CUBES_ADAPTIVE : MCOR_CUBES_UNIFORM;
+  options.level_limit = this->CubeLevelLimit;
   options.has_box = this->UseBox;
   std::copy(this->Box, this->Box + 6, options.box);
   std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
@@ -271,6 +274,9 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   this->FreeSurfaceValues->PrintSelf(os, indent.GetNextIndent());
   os << indent << "Cube Size Factor: " << this->CubeSizeFactor << "\n";
   os << indent << "Cube Size: " << this->CubeSize << "\n";
+  os << indent << "Cube Size Mode: " << (this->CubeSizeMode == ADAPTIVE ? "adaptive" : "uniform")
+     << "\n";
+  os << indent << "Cube Level Limit: " << this->CubeLevelLimit << "\n";
   os << indent << "Use Box: " << this->UseBox << "\n";
   const auto printSides = [&](const char* name, const double(&sides)[6])
   {

@@ -139,6 +139,12 @@ public:
     PAIRS = 1     ///< cells between particle pairs on both sides of the iso value
   };
 
+  enum CubeSizeModeType
+  {
+    UNIFORM = 0, ///< the cube size everywhere
+    ADAPTIVE = 1 ///< that times a power of 2, as fine as the particles are
+  };
+
   enum TopologyType
   {
     TOPOLOGY_TABLE = 0, ///< Marching Cubes' table alone
@@ -268,6 +274,23 @@ public:
    */
   vtkSetMacro(CubeSize, double);
   vtkGetMacro(CubeSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether cubes are alike, see CubeSizeModeType; UNIFORM by default. ADAPTIVE: where all particles
+   * that reach a brick of 4^3 cubes have at least 2, 4, ... times the smallest smoothing length, its
+   * cubes are as many times larger; bricks that touch differ by a factor of 2 at most. The surface is
+   * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
+   * for all, the same as UNIFORM. Ambiguous cells are then connected as the table says. Not with
+   * pairs as seeds, a box or periodic bounds. CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default.
+   */
+  vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
+  vtkGetMacro(CubeSizeMode, int);
+  void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
+  void SetCubeSizeModeToAdaptive() { this->SetCubeSizeMode(ADAPTIVE); }
+  vtkSetClampMacro(CubeLevelLimit, int, 0, 24);
+  vtkGetMacro(CubeLevelLimit, int);
   ///@}
 
   ///@{
@@ -561,6 +584,8 @@ protected:
   double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   int SeedMode = COMPLETE;
+  int CubeSizeMode = UNIFORM;
+  int CubeLevelLimit = 24;
   int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
   vtkTypeBool Trim = 1;

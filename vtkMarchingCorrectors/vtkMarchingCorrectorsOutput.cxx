@@ -17,6 +17,7 @@
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -215,6 +216,26 @@ void vtkMarchingCorrectorsOutput::BuildFieldData(vtkFieldData* fieldData) const
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+/// Counts of adaptive cubes, up to the last level that has any.
+void AddLevels(vtkFieldData* fieldData, const char* name, const int64_t counts[MCOR_CUBE_LEVELS])
+{
+  int levels = MCOR_CUBE_LEVELS;
+  while (levels > 1 && counts[levels - 1] == 0)
+  {
+    --levels;
+  }
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  for (int l = 0; l < levels; ++l)
+  {
+    array->InsertNextValue(counts[l]);
+  }
+  vtkSPHAddArray(fieldData, name, array);
+}
+}
+
+//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 {
   const mcor_statistics& s = this->Surface.statistics;
@@ -235,6 +256,12 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "SeedCells", { s.seed_cells });
   vtkSPHAddCount(fieldData, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
   vtkSPHAddCount(fieldData, "CellsUsed", { s.cells_used });
+  if (this->Options.cube_size_mode == MCOR_CUBES_ADAPTIVE)
+  {
+    AddLevels(fieldData, "CellsOfLevel", s.cells_of_level);
+    AddLevels(fieldData, "TrianglesOfLevel", s.triangles_of_level);
+    vtkSPHAddCount(fieldData, "FlatCaps", { s.flat_caps });
+  }
   vtkSPHAddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });
   vtkSPHAddCount(fieldData, "JoinedFaces", { s.joined_faces });
   vtkSPHAddCount(fieldData, "AmbiguousCells", { s.ambiguous_cells });
@@ -289,6 +316,11 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddText(fieldData, "Topology", o.topology == MCOR_TOPOLOGY_FIELD ? "field" : "table");
   vtkSPHAddText(fieldData, "Precision", o.precision == MCOR_FLOAT64 ? "double" : "single");
   vtkSPHAddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
+  if (o.cube_size_mode == MCOR_CUBES_ADAPTIVE)
+  {
+    vtkSPHAddText(fieldData, "CubeSizeMode", "adaptive");
+    vtkSPHAddCount(fieldData, "CubeLevelLimit", { o.level_limit });
+  }
   const double* p = o.periodic;
   if (p[0] < p[1] || p[2] < p[3] || p[4] < p[5])
   {

@@ -260,6 +260,12 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.CubeFactor = ToPositive(n, v); } },
     { "--cube-size", "D", "cube size itself, in the unit of the positions",
       [](Options& o, Text n, Text v) { o.CubeSize = ToPositive(n, v); } },
+    { "--cubes", "uniform|adaptive", "cubes alike (default), or as fine as the particles are",
+      [](Options& o, Text n, Text v) {
+        o.Cubes = ToChoice(n, v, { "uniform", "adaptive" });
+      } },
+    { "--max-level", "N", "adaptive cubes are up to 2^N times as large, 0 to 24 (default 24)",
+      [](Options& o, Text n, Text v) { o.MaxLevel = std::min(ToCount(n, v, 0), 24); } },
     { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
       [](Options& o, Text n, Text v) { o.Box = ToBox(n, v); } },
     { "--periodic", "LX,LY,LZ|BOUNDS", "particles repeat; lengths (0: open), or x0,x1,y0,y1,z0,z1",

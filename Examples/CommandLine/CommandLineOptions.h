@@ -45,7 +45,9 @@ struct CommandLineOptions
   std::string Precision = "single";
   double HScale = 1.0;
   double CubeFactor = 0.5;
-  double CubeSize = 0.0;        ///< 0: CubeFactor times the smallest smoothing length
+  double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
+  std::string Cubes = "uniform";
+  int MaxLevel = 24;            ///< of adaptive cubes
   std::vector<double> Box;      ///< x0, x1, y0, y1, z0, z1; empty: all
   std::vector<double> Periodic; ///< three lengths, or bounds like those of Box; empty: open
   bool Preview = false;

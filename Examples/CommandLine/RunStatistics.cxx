@@ -24,16 +24,17 @@ const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArra
   "DensityArray" };
 const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
   "Mass", "Density", "IsoValues", "Field", "Kernel", "SeedMode", "Topology", "Precision",
-  "CubeSize", "Box", "PeriodicBounds", "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
-  "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview" };
+  "CubeSize", "CubeSizeMode", "CubeLevelLimit", "Box", "PeriodicBounds", "CubeSizeFactor",
+  "HScaleFactor", "NodeThreshold", "BoundaryDetection", "VertexThreshold", "Tolerance",
+  "IterationLimit", "Preview" };
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",
   "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
-  "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "Bricks", "NodesEvaluated", "MarchRounds",
-  "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles",
-  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
-  "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",
-  "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak",
-  "MedianNeighbors", "MedianSpacing" };
+  "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
+  "FlatCaps", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces", "JoinedFaces",
+  "AmbiguousCells", "Tunnels", "Points", "Triangles", "TrianglesBeforeTrimming", "CorrectionMean",
+  "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance",
+  "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices",
+  "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

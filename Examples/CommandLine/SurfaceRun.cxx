@@ -128,6 +128,9 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
                                                   : vtkMarchingCorrectors::TOPOLOGY_TABLE);
   filter->SetCubeSizeFactor(options.CubeFactor);
   filter->SetCubeSize(options.CubeSize);
+  filter->SetCubeSizeMode(
+    options.Cubes == "adaptive" ? vtkMarchingCorrectors::ADAPTIVE : vtkMarchingCorrectors::UNIFORM);
+  filter->SetCubeLevelLimit(options.MaxLevel);
   filter->SetUseBox(!options.Box.empty());
   if (!options.Box.empty())
   {

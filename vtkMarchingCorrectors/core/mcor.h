@@ -92,6 +92,20 @@ extern "C"
                               * a cube are those of the field */
   } mcor_topology;
 
+  /* How large the cubes of the virtual grid are. */
+  typedef enum mcor_cube_size_mode
+  {
+    MCOR_CUBES_UNIFORM = 0, /* all alike; the default */
+    MCOR_CUBES_ADAPTIVE =
+      1 /* as fine as the particles are: an edge of 2^L times the cube size where
+                             * all particles that reach a brick of 4^3 such cubes have 2^L times the
+                             * smallest smoothing length or more; bricks that touch differ by one
+                             * level at most. The surface is closed across levels. With one
+                             * smoothing length for all, the same as uniform, to the last bit. */
+  } mcor_cube_size_mode;
+
+#define MCOR_CUBE_LEVELS 25 /* of adaptive cubes, 0 to 24 */
+
   /* How trimming tells where the fluid ends. Both are about 1 inside and have no unit. */
   typedef enum mcor_boundary_detection
   {
@@ -224,7 +238,9 @@ extern "C"
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
-    const double* iso_values; /* [iso_count], finite; none give an empty surface */
+    mcor_cube_size_mode cube_size_mode; /* mcor_probe and mcor_derive do not read it */
+    int level_limit;                    /* of adaptive cubes, 0 (uniform) to 24; default 24 */
+    const double* iso_values;           /* [iso_count], finite; none give an empty surface */
     int iso_count;
     double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. So
                             * are Shepard cells with a node of a fluid weight below 0.001. */
@@ -274,7 +290,7 @@ extern "C"
     int normals; /* default on */
     int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag;
     int iso_value, nearest_particle;
-    int point_keys; /* see MCOR_POINT_KEY */
+    int point_keys;       /* see MCOR_POINT_KEY */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
@@ -320,6 +336,11 @@ extern "C"
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t march_rounds;
+    /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. Loops
+     * of a cell's triangles that lie in one side of it, next to finer cells, whose part of the surface
+     * they cut off. */
+    int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
+    int64_t flat_caps;
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
      * table; cells with two loops that might be a tunnel, and those where they are. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;

@@ -6,6 +6,7 @@
  * at hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values,
  * often masses or smoothing lengths, is that value. */
 
+#include "mcor_graded.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
@@ -277,15 +278,42 @@ static void mcor_store_constants(
   }
 }
 
-/* Evaluates the components on the device at all vertices. */
-static mcor_status mcor_evaluate_attributes(mcor_context* context, int groups)
+/* Launches something for all groups of vertices. */
+typedef mcor_status (*mcor_group_body)(mcor_context* context, int groups);
+
+static mcor_status mcor_launch_groups(mcor_context* context, mcor_group_body launch)
 {
-  mcor_mesh* mesh = &context->mesh;
-  MCOR_TRY(mcor_reserve(context, &mesh->means,
-    (size_t)mesh->vertex_count * (size_t)context->attributes.count * context->cl.real_size));
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    MCOR_TRY(mcor_view_level(context, l));
+    for (int boundary = 0; boundary < 2; ++boundary)
+    {
+      int first, count, groups;
+      mcor_level_vertices(context, boundary, l, &first, &count);
+      MCOR_TRY(mcor_make_groups(context, &context->mesh.node, first, count, &groups));
+      MCOR_TRY(launch(context, groups));
+    }
+  }
+  return mcor_view_level(context, 0);
+}
+
+/* Evaluates the components on the device at vertices. */
+static mcor_status mcor_launch_means(mcor_context* context, int groups)
+{
+  const mcor_mesh* mesh = &context->mesh;
   return MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
     MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+}
+
+static mcor_status mcor_launch_nearest(mcor_context* context, int groups)
+{
+  const mcor_mesh* mesh = &context->mesh;
+  return MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->offset),
+    MCOR_INT(context->measure.support_min == context->measure.support_max),
+    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(&context->attributes.nearest));
 }
 
 typedef struct mcor_nearest
@@ -309,17 +337,13 @@ static void mcor_store_nearest(void* data, int slice, int64_t first, int64_t las
 }
 
 static mcor_status mcor_add_nearest(
-  mcor_context* context, const cl_int* scanned, int groups, mcor_surface* surface)
+  mcor_context* context, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_mesh* mesh = &context->mesh;
   mcor_buffer* indices = &context->attributes.nearest;
   const size_t bytes = (size_t)mesh->vertex_count * sizeof(cl_int);
   MCOR_TRY(mcor_reserve(context, indices, bytes));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, groups,
-    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
-    MCOR_INT(context->measure.support_min == context->measure.support_max),
-    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(indices)));
+  MCOR_TRY(mcor_launch_groups(context, mcor_launch_nearest));
   void* view;
   MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
   mcor_nearest job = { scanned, view, context->source,
@@ -333,25 +357,23 @@ mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
   const mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* means = &context->mesh.means;
   const int varying = context->attributes.varying_count;
-  int groups;
   mcor_store_constants(context, input, scanned[mesh->vertex_count], surface);
   if (varying > 0)
   {
     MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
   }
-  if (mcor_attributes_remain(context))
-  {
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, mesh->vertex_count, &groups));
-  }
   if (context->options->nearest_particle)
   {
-    MCOR_TRY(mcor_add_nearest(context, scanned, groups, surface));
+    MCOR_TRY(mcor_add_nearest(context, scanned, surface));
   }
   for (int first = MCOR_ATTRIBUTE_LIMIT; first < varying; first += MCOR_ATTRIBUTE_LIMIT)
   {
     MCOR_TRY(mcor_load_attributes(context, input, first));
-    MCOR_TRY(mcor_evaluate_attributes(context, groups));
+    MCOR_TRY(mcor_reserve(context, means,
+      (size_t)mesh->vertex_count * (size_t)context->attributes.count * context->cl.real_size));
+    MCOR_TRY(mcor_launch_groups(context, mcor_launch_means));
     MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
   }
   return MCOR_OK;

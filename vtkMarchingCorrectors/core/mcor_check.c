@@ -47,6 +47,22 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   return MCOR_OK;
 }
 
+/* What adaptive cubes do not go with. */
+static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options* options)
+{
+  const bool periodic = options->periodic[0] < options->periodic[1] ||
+    options->periodic[2] < options->periodic[3] || options->periodic[4] < options->periodic[5];
+  const char* other = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM
+    ? "pairs as seeds"
+    : options->has_box    ? "a box"
+    : periodic            ? "a period"
+    : options->point_keys ? "keys of points"
+                          : NULL;
+  MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && other, context,
+    MCOR_INVALID_ARGUMENT, "Adaptive cubes do not go with %s. Use uniform cubes.", other);
+  return MCOR_OK;
+}
+
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
 #define MCOR_NEED(condition, ...)                                                                  \
@@ -59,6 +75,11 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     (int)options->seeds);
   MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD, "There is no topology number %d.",
     (int)options->topology);
+  MCOR_NEED((unsigned)options->cube_size_mode <= MCOR_CUBES_ADAPTIVE,
+    "There is no cube size mode number %d.", (int)options->cube_size_mode);
+  MCOR_NEED(options->level_limit >= 0 && options->level_limit < MCOR_CUBE_LEVELS,
+    "The highest level of adaptive cubes is %d; it must be 0 to %d.", options->level_limit,
+    MCOR_CUBE_LEVELS - 1);
   MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
     "There is no boundary detection number %d.", (int)options->boundary_detection);
   MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64, "There is no precision number %d.",
@@ -95,6 +116,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       options->iso_values[i]);
   }
 #undef MCOR_NEED
+  MCOR_TRY(mcor_check_adaptive(context, options));
   return mcor_check_box(context, options);
 }
 

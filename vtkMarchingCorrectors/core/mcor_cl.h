@@ -38,6 +38,7 @@ typedef enum mcor_program
   MCOR_PROGRAM_FIELD,   /* what every surface of the build needs */
   MCOR_PROGRAM_OPTIONS, /* what options need */
   MCOR_PROGRAM_PROBE,   /* mcor_probe and mcor_derive */
+  MCOR_PROGRAM_GRADED,  /* adaptive cubes */
   MCOR_PROGRAM_COUNT
 } mcor_program;
 

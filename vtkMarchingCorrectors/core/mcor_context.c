@@ -5,6 +5,7 @@
  * when; and how any call on it runs. */
 
 #include "mcor_box.h"
+#include "mcor_graded.h"
 #include "mcor_internal.h"
 
 #include <stdlib.h>
@@ -21,6 +22,8 @@ void mcor_set_default_options(mcor_options* options)
     .topology = MCOR_TOPOLOGY_TABLE,
     .h_scale = 1,
     .cube_size_factor = 0.5,
+    .cube_size_mode = MCOR_CUBES_UNIFORM,
+    .level_limit = MCOR_CUBE_LEVELS - 1,
     .node_threshold = 0.1,
     .vertex_threshold = 0.5,
     .boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM,
@@ -80,6 +83,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_trim(context);
   mcor_release_attributes(context);
   mcor_release_box(context);
+  mcor_release_graded(context);
   mcor_release(context, &context->sort.sums);
   free(context->source);
   context->source = NULL;
@@ -140,6 +144,7 @@ static void mcor_check_reuse(
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
+    options->cube_size_mode == o->cube_size_mode && options->level_limit == o->level_limit &&
     mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
   context->grid_valid =
     context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
@@ -169,6 +174,7 @@ mcor_status mcor_prepare(
   MCOR_TRY(mcor_choose_build(context, &build));
   if (!context->grid_valid)
   {
+    mcor_release_graded(context);
     MCOR_TRY(mcor_make_grid(context, input));
   }
   if (!context->value_valid)
@@ -198,6 +204,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->fraction_end = 0.1;
   context->cl.build_seconds = 0;
   context->correction_count = context->correction_sum = context->correction_squares = 0;
+  context->grid.view = 0;
   context->cl.bytes_peak = context->cl.bytes;
   const mcor_status status = body(context, input, options, result);
   context->last_input = *input;

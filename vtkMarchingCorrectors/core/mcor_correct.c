@@ -3,7 +3,7 @@
 
 /* Correction [III-D.2]. */
 
-#include "mcor_internal.h"
+#include "mcor_graded.h"
 
 /* Vertices get room for those that trimming adds, so that nothing is copied then. */
 mcor_status mcor_reserve_vertices(mcor_context* context, int count)
@@ -45,18 +45,24 @@ mcor_status mcor_correct(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->options;
-  const int count = mesh->march_count;
-  int groups;
+  int count = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_reserve_vertices(context, count));
-  MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, count, &groups));
-  MCOR_TRY(
-    MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-      MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
-      MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
-      MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
-      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    int first, groups;
+    mcor_level_vertices(context, false, l, &first, &count);
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
+    MCOR_TRY(
+      MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+        MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
+        MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
+        MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+        MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
+        MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+  }
+  MCOR_TRY(mcor_view_level(context, 0));
   return options->preview ? MCOR_OK : mcor_count_iterations(context);
 }

@@ -5,6 +5,7 @@
  * are those of the paper named in mcor.h. */
 
 #include "mcor_box.h"
+#include "mcor_graded.h"
 
 /* One iso value's surface, appended. */
 static mcor_status mcor_extract_iso(
@@ -16,10 +17,11 @@ static mcor_status mcor_extract_iso(
   context->iso_number = i;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
-  MCOR_TRY(mcor_select_seeds(context, iso));
+  const bool graded = mcor_is_graded(context);
+  MCOR_TRY(graded ? mcor_select_leaves(context, input, iso) : mcor_select_seeds(context, iso));
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
-  MCOR_TRY(mcor_march(context, iso));
+  MCOR_TRY(graded ? mcor_march_leaves(context, iso) : mcor_march(context, iso));
   if (last && input->scalar_version == 0)
   {
     mcor_release_nodes(context);

@@ -12,6 +12,9 @@
 
 #define MCOR_LEVEL_LIMIT 32
 
+/* Highest level of adaptive cubes. */
+#define MCOR_TREE_LEVEL_LIMIT 24
+
 #define MCOR_TRY(call)                                                                             \
   do                                                                                               \
   {                                                                                                \
@@ -54,6 +57,7 @@ typedef struct mcor_lattice
   int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
   int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
   int fix_bits;
+  int top; /* highest level of adaptive cubes; 0: uniform */
   int blocks[3];
   int period[3], period_first[3]; /* cells, 0: open; where one begins, from origin */
 } mcor_lattice;
@@ -77,6 +81,9 @@ typedef struct mcor_grid
   mcor_buffer level_buffer, buckets, cell_keys, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
   mcor_buffer value;
+  /* As seen from a level of adaptive cubes, in its cells' edges; see mcor_view_level. */
+  int view;
+  mcor_buffer view_levels, view_inv_h;
   int most_in_cell;       /* particles, at least MCOR_USUAL_IN_CELL */
   mcor_buffer side_flags; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
   bool has_solids;
@@ -118,14 +125,52 @@ typedef struct mcor_bricks
 typedef struct mcor_mesh
 {
   mcor_buffer used, edges, vertex_base, triangle_base;
-  int march_count;  /* vertices on lattice edges */
+  int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same and those of the trim boundary */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer means; /* real [vertex_count][attributes.count] */
   mcor_buffer triangles;
-  mcor_buffer scanned; /* of the output, see mcor_is_output */
+  mcor_buffer scanned;                           /* of the output, see mcor_is_output */
+  int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
 } mcor_mesh;
+
+/* A set of bricks of adaptive cubes, each by its key: base of its level + its number there. */
+typedef struct mcor_brick_set
+{
+  uint64_t* slots; /* [capacity], MCOR_NO_BRICK where free */
+  size_t capacity; /* a power of 2, or 0 */
+  size_t count;
+} mcor_brick_set;
+
+/* Leaves of adaptive cubes; see mcor_tree.h. */
+typedef struct mcor_tree
+{
+  int top;                                    /* highest level of leaves */
+  mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 2]; /* up to one above */
+  uint64_t key_limit;
+  mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
+  cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */
+  int leaf_count, first_leaf[MCOR_TREE_LEVEL_LIMIT + 2];
+} mcor_tree;
+
+/* Marching of leaves; see mcor_graded.c. Slots are those of mcor_brick_data. */
+typedef struct mcor_graded
+{
+  int count;                                 /* leaves where there may be surface */
+  int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
+  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
+  mcor_buffer rungs;                   /* mcor_rung, of all levels of leaves */
+  mcor_buffer leaves, states;          /* int4, uchar: of all leaves of the tree */
+  mcor_buffer cells;                   /* int4: those where there may be surface, in order */
+  mcor_buffer finer;                   /* uint: where their neighbours are finer */
+  mcor_buffer wanted, requests, index; /* keys of bricks with nodes of theirs */
+  mcor_buffer keys, buckets;           /* of slots */
+  int bucket_shift;
+  mcor_buffer tables;    /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
+  mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
+  mcor_buffer flat;      /* int, of each leaf, scanned */
+} mcor_graded;
 
 /* Of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
@@ -186,8 +231,6 @@ typedef struct mcor_box
 {
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
-  bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
-  double points[6];
   mcor_buffer owned;      /* uchar per triangle of the mesh: 1 of an owned cell */
   mcor_buffer clipped;    /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;          /* per triangle of the surface: as owned; NULL: all are */
@@ -211,6 +254,8 @@ struct mcor_context
   mcor_buffer case_table;
   mcor_attributes attributes;
   mcor_box box;
+  mcor_tree tree;
+  mcor_graded graded;
   int32_t* source;           /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift;        /* A0 */
   double largest_weight;     /* no particle has a greater V / (scaled h)^3 */
@@ -360,12 +405,13 @@ mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
+mcor_status mcor_find_side_flags(mcor_context* context, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
 mcor_status mcor_count_resolved(mcor_context* context);
 mcor_status mcor_emit_resolved(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context, double iso);
-mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
-  const mcor_buffer* offset, int count, mcor_buffer* eigenvalue);
+mcor_status mcor_evaluate_boundary(
+  mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
@@ -438,9 +484,10 @@ extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 extern const char mcor_source_mcor_box_cl[];
 extern const char mcor_source_mcor_probe_cl[];
-extern const char mcor_source_mcor_probe_lanes_cl[];
-extern const char mcor_source_mcor_probe_point_cl[];
 extern const char mcor_source_mcor_derive_cl[];
+extern const char mcor_source_mcor_graded_cell_h[];
+extern const char mcor_source_mcor_graded_cl[];
+extern const char mcor_source_mcor_graded_march_cl[];
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \
@@ -450,10 +497,11 @@ extern const char mcor_source_mcor_derive_cl[];
 /* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
 #define MCOR_GRID_ARGS(c)                                                                          \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
-    MCOR_INT((c)->lattice.fix_bits), MCOR_BUFFER(&(c)->grid.level_buffer),                         \
+    MCOR_INT((c)->lattice.fix_bits + (c)->grid.view),                                              \
+    MCOR_BUFFER((c)->grid.view > 0 ? &(c)->grid.view_levels : &(c)->grid.level_buffer),            \
     MCOR_BUFFER(&(c)->grid.buckets), MCOR_BUFFER(&(c)->grid.cell_keys),                            \
     MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py), MCOR_BUFFER(&(c)->grid.pz),            \
-    MCOR_BUFFER(&(c)->grid.inv_h),                                                                 \
+    MCOR_BUFFER((c)->grid.view > 0 ? &(c)->grid.view_inv_h : &(c)->grid.inv_h),                    \
     MCOR_BUFFER((c)->grid.has_solids ? &(c)->grid.fluid_weight : &(c)->grid.trim_weight),          \
     MCOR_BUFFER(&(c)->grid.trim_weight), MCOR_BUFFER(&(c)->grid.value)
 

@@ -7,6 +7,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>
@@ -234,6 +235,9 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   MCOR_TRY(mcor_fit_period(context, options, &cube));
   lattice->cube = m->cube = cube;
+  lattice->top = mcor_tree_top(m, options);
+  /* Whole bricks of all levels; with space around, so that finer bricks beside it have a place. */
+  const int64_t unit = lattice->top > 0 ? (int64_t)MCOR_BRICK << (lattice->top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)
   {
@@ -245,6 +249,10 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       "Use a larger cube size, or remove particles that are far away from the rest.",
       cube, last - first, a, MCOR_LATTICE_LIMIT);
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
+    if (unit > 0)
+    {
+      lattice->origin[a] = ((int64_t)floor(first / (double)unit) - 1) * unit;
+    }
     lattice->first[a] = (int64_t)first - lattice->origin[a];
     lattice->last[a] = (int64_t)last - lattice->origin[a];
     lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
@@ -254,7 +262,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  while ((extent + 64) << lattice->fix_bits >= INT64_C(1)
+  while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1)
       << (options->precision == MCOR_FLOAT64 ? 62 : 30))
   {
     --lattice->fix_bits;

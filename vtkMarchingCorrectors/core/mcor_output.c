@@ -4,9 +4,9 @@
 /* Output [III-D.4]: hands the vertices that triangles use, renumbered, and the triangles to the
  * caller's surface, and adds up what the correction did. */
 
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_box.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -176,11 +176,18 @@ static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int
   return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
 }
 
+/* What node and offset of vertex v are counted in, unit L: see mcor_graded.h. */
+static double mcor_cube_of(const mcor_context* context, const mcor_download* d, int64_t v)
+{
+  const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
+  return level > 0 ? ldexp(context->lattice.cube, level) : context->lattice.cube;
+}
+
 /* How far the correction moved vertex v, unit L. */
 static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
   return v < context->mesh.march_count
-    ? fabs(mcor_get_real(context, d->linear, v)) * context->lattice.cube
+    ? fabs(mcor_get_real(context, d->linear, v)) * mcor_cube_of(context, d, v)
     : 0;
 }
 
@@ -242,11 +249,14 @@ static void mcor_store_normal(const double gradient[3], float normal[3])
 static void mcor_store_point(const mcor_context* context, const mcor_download* d, int64_t v,
   double iso, mcor_surface* s, int64_t to)
 {
-  const double cube = context->lattice.cube;
+  const double cube = mcor_cube_of(context, d, v);
+  const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
   double gradient[3];
   for (int a = 0; a < 3; ++a)
   {
-    const double node = (double)(context->lattice.origin[a] + d->node[4 * v + a]);
+    /* The origin is a whole number of cells of all levels. */
+    const double node =
+      (double)(context->lattice.origin[a] / ((int64_t)1 << level) + d->node[4 * v + a]);
     s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) * cube;
     gradient[a] = mcor_get_real(context, d->gradient, 4 * v + a);
     if (s->gradients)
@@ -368,7 +378,9 @@ static mcor_status mcor_add_boundary_eigenvalue(
     return MCOR_OK;
   }
   mcor_buffer* values = &context->trim.eigenvalue;
-  MCOR_TRY(mcor_evaluate_boundary(context, &mesh->node, &mesh->offset, vertices, values));
+  MCOR_TRY(mcor_reserve(context, values, (size_t)vertices * context->cl.real_size));
+  MCOR_TRY(mcor_evaluate_boundary(context, false, values));
+  MCOR_TRY(mcor_evaluate_boundary(context, true, values));
   void* view;
   MCOR_TRY(mcor_map(context, values, (size_t)vertices * context->cl.real_size, false, &view));
   float* to = surface->boundary_eigenvalue + surface->point_count;

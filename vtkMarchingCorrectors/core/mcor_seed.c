@@ -88,7 +88,7 @@ double mcor_side_margin(const mcor_context* context)
 }
 
 /* The sides of the iso value on which particles are, where the field has values at particles. */
-static mcor_status mcor_find_side_flags(mcor_context* context, double iso)
+mcor_status mcor_find_side_flags(mcor_context* context, double iso)
 {
   mcor_grid* grid = &context->grid;
   const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;

@@ -84,6 +84,23 @@ typedef struct mcor_cell_row
   MCOR_TYPE(uchar) unused;
 } mcor_cell_row;
 
+/* Adaptive cubes: where the keys of one level's bricks begin, and how many there are along x, y, z. */
+typedef struct mcor_rung
+{
+  MCOR_TYPE(ulong) base;
+  MCOR_TYPE(int) n[3];
+  MCOR_TYPE(int) unused;
+} mcor_rung;
+
+/* A vertex's level is above so many bits of its edge's last number. */
+#define MCOR_LEVEL_SHIFT 8
+
+/* Slots that hold the nodes of a leaf: of its level 2^3, of the next finer one 3^3. */
+#define MCOR_LEAF_SLOTS (8 + 27)
+
+/* Which cells around the edges of a brick are used: [axis][quadrant] masks, as pairs of uints. */
+#define MCOR_QUADRANT_WORDS 24
+
 /* Points that one work-item cuts into groups. */
 #define MCOR_GROUPED_POINTS_OF(lanes) ((lanes) == 1 ? 1 : 512)
 
@@ -95,9 +112,6 @@ typedef struct mcor_cell_row
  * shorter the larger their support is (mcor_stage.c) that they are exact, as reals, this much beyond
  * it. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
-
-/* Groups of points of which one work-item evaluates those together that are near each other. */
-#define MCOR_CLUSTER_OF(lanes) ((lanes) == 1 ? 1 : 16)
 
 /* Components of attributes that are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 12

@@ -7,6 +7,7 @@
 #include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>
@@ -252,18 +253,18 @@ static int mcor_images_of(
   double at[3];
   for (int a = 0; a < 3; ++a)
   {
-    at[a] = chunk->x[a][i] * job->reach->unit;
+    at[a] = ldexp(chunk->x[a][i], -job->reach->fix_bits);
   }
   return mcor_list_images(job->reach, at, chunk->h[i] * job->reach->support, images);
 }
 
 /* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
  * MCOR_POINT_EXTENT. */
-static int mcor_spared_bits(const mcor_context* context, double support)
+static int mcor_spared_bits(const mcor_context* context, double support, int level)
 {
   const int digits = context->cl.real_size == sizeof(float) ? FLT_MANT_DIG : DBL_MANT_DIG;
   int exponent;
-  frexp(1.0001 * support / context->lattice.cube + MCOR_POINT_EXTENT, &exponent);
+  frexp(1.0001 * support / context->lattice.cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
   const int bits = exponent + context->lattice.fix_bits - digits;
   return bits > 0 ? bits : 0;
 }
@@ -274,7 +275,8 @@ static void mcor_round_positions(const mcor_context* context, double reach, mcor
 {
   for (int i = 0; i < chunk->count; ++i)
   {
-    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach));
+    const int level = mcor_tree_level_of(chunk->h[i], context->measure.h_min, context->lattice.top);
+    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, level));
     for (int a = 0; a < 3; ++a)
     {
       chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
@@ -290,7 +292,7 @@ static void mcor_store_stage_chunk(const mcor_context* context, const mcor_input
   const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
   const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
   uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
-  if (mcor_spared_bits(context, m->support_max) > 0)
+  if (mcor_spared_bits(context, m->support_max, context->lattice.top) > 0)
   {
     mcor_round_positions(context, reach, chunk);
   }
@@ -357,23 +359,18 @@ static void mcor_stage_images(
   mcor_stage_job* job, int slice, const mcor_stage_chunk* chunk, int64_t* to)
 {
   mcor_stage_chunk out;
-  mcor_images images = { 0 };
-  double period[3] = { 0 };
-  for (int a = 0; a < 3 && job->reach; ++a)
-  {
-    period[a] = ldexp(job->reach->period[a], job->reach->fix_bits);
-  }
+  mcor_images images;
   out.count = 0;
   for (int i = 0; i < chunk->count; ++i)
   {
-    const bool none = job->images && !job->images[chunk->source[i]];
-    const int count = none ? 0 : mcor_images_of(job, chunk, i, &images);
+    const int count = mcor_images_of(job, chunk, i, &images);
     int k[3] = { images.first[0], images.first[1], images.first[2] };
     for (int n = 0; n < count; ++n)
     {
       for (int a = 0; a < 3; ++a)
       {
-        out.x[a][out.count] = chunk->x[a][i] + k[a] * period[a];
+        const double period = job->reach ? ldexp(job->reach->period[a], job->reach->fix_bits) : 0;
+        out.x[a][out.count] = chunk->x[a][i] + k[a] * period;
       }
       out.h[out.count] = chunk->h[i];
       out.size[out.count] = chunk->size[i];

@@ -4,19 +4,25 @@
 /* Trimming [III-D.3]. */
 
 #include "mcor_box.h"
+#include "mcor_graded.h"
 
 #define MCOR_TRIM_STEPS 25
 
-/* Evaluates the boundary eigenvalue at `count` points. */
-mcor_status mcor_evaluate_boundary(mcor_context* context, const mcor_buffer* node,
-  const mcor_buffer* offset, int count, mcor_buffer* eigenvalue)
+/* Evaluates the boundary eigenvalue at vertices: on lattice edges, or of the trim boundary. */
+mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue)
 {
-  int groups;
-  MCOR_TRY(mcor_reserve(context, eigenvalue, (size_t)count * context->cl.real_size));
-  MCOR_TRY(mcor_make_groups(context, node, 0, count, &groups));
-  return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(node), MCOR_BUFFER(offset),
-    MCOR_BUFFER(eigenvalue));
+  const mcor_mesh* mesh = &context->mesh;
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    int first, count, groups;
+    mcor_level_vertices(context, of_boundary, l, &first, &count);
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups,
+      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
+      MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(eigenvalue)));
+  }
+  return mcor_view_level(context, 0);
 }
 
 /* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
@@ -64,7 +70,8 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
   const int count = mesh->march_count;
   if (mcor_trims_by_eigenvalue(context))
   {
-    MCOR_TRY(mcor_evaluate_boundary(context, &mesh->node, &mesh->offset, count, &trim->eigenvalue));
+    MCOR_TRY(mcor_reserve(context, &trim->eigenvalue, (size_t)count * context->cl.real_size));
+    MCOR_TRY(mcor_evaluate_boundary(context, false, &trim->eigenvalue));
   }
   if (!mcor_ends_at_solids(context))
   {
@@ -107,6 +114,30 @@ static mcor_status mcor_extend_vertices(mcor_context* context, int old, int coun
   return mcor_extend(context, &mesh->flag, o, n);
 }
 
+/* Finds where the cut vertices of each level begin: a cut vertex has that of the lower one of its edge's
+ * vertices, by which they are sorted. */
+static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const mcor_buffer* keys = &context->trim.distinct;
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    int low = 0, high = cut_count;
+    while (low < high)
+    {
+      const int middle = low + (high - low) / 2;
+      cl_ulong key;
+      MCOR_TRY(mcor_read(context, keys, (size_t)middle * sizeof key, &key, sizeof key));
+      const bool before = (int64_t)(key >> 32) < mesh->level_first[0][l + 1];
+      low = before ? middle + 1 : low;
+      high = before ? high : middle;
+    }
+    mesh->level_first[1][l + 1] = mesh->march_count + low;
+  }
+  mesh->level_first[1][0] = mesh->march_count;
+  return MCOR_OK;
+}
+
 /* Places the cut vertices: linear cut, then both equations at once. */
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double iso)
 {
@@ -114,7 +145,6 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   mcor_trim_data* trim = &context->trim;
   const mcor_options* options = context->options;
   const int vertices = mesh->march_count;
-  int groups;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_RETURN_IF(cut_count > MCOR_COUNT_LIMIT - vertices, context, MCOR_OUT_OF_CAPACITY,
     "The surface is too large: with the trim boundary it would have %lld vertices, %d is the "
@@ -127,16 +157,27 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(mcor_trim_quantity(context))));
-  MCOR_TRY(mcor_make_groups(context, &mesh->node, vertices, cut_count, &groups));
+  if (mcor_is_graded(context))
+  {
+    MCOR_TRY(mcor_find_cut_levels(context, cut_count));
+  }
   const char* solve =
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
-  return MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context), MCOR_INT(groups),
-    MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
-    MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
-    MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
-    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    int first, count, groups;
+    mcor_level_vertices(context, true, l, &first, &count);
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
+    MCOR_TRY(MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+      MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
+      MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
+      MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+  }
+  return mcor_view_level(context, 0);
 }
 
 /* iso: relative to A0. */

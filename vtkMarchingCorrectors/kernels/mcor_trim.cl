@@ -163,10 +163,12 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
   const real wa = weight[a], wb = weight[b];
   const real s = clamp((threshold - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
-  const int4 d = node[b] - node[a];
-  const real4 to = offset[b] + (real4)(d.x, d.y, d.z, 0);
+  /* In cells of a's level; b's, of adaptive cubes, may be higher. */
   const int4 n = node[a];
-  node[vertex_count + i] = (int4)(n.x, n.y, n.z, 0);
+  const int level = n.w >> MCOR_LEVEL_SHIFT, above = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
+  const int4 d = (node[b] << above) - n;
+  const real4 to = offset[b] * (real)(1 << above) + (real4)(d.x, d.y, d.z, 0);
+  node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
   offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
 }
 

@@ -1,0 +1,425 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: marching the leaves of the tree.
+ *
+ * Seeds: of each leaf, sides included, bounds of the sums tell whether all its nodes are on one side of
+ * the iso value, or of too low a weight. The others' cells are all examined, and no more than these:
+ * nodes that they share with a leaf that is certain are evaluated for them. The rest is as on the
+ * uniform lattice: values of nodes in slots, masks, edges, vertices, triangles. Slots are sorted by
+ * level, and so are vertices; what evaluates the field goes level by level, and sees the search grid
+ * in cells of that level (mcor_view_level). */
+
+#include "mcor_graded.h"
+#include "mcor_tree.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Levels ---- */
+
+mcor_status mcor_view_level(mcor_context* context, int level)
+{
+  mcor_grid* grid = &context->grid;
+  if (grid->view == level)
+  {
+    return MCOR_OK;
+  }
+  grid->view = level;
+  if (level == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_level levels[MCOR_LEVEL_LIMIT];
+  const int count = grid->count + MCOR_PADDING;
+  memcpy(levels, grid->levels, sizeof levels);
+  for (int l = 0; l < grid->level_count; ++l)
+  {
+    levels[l].support = ldexpf(levels[l].support, -level);
+  }
+  MCOR_TRY(
+    mcor_write(context, &grid->view_levels, levels, (size_t)grid->level_count * sizeof levels[0]));
+  MCOR_TRY(mcor_reserve(context, &grid->view_inv_h, (size_t)count * context->cl.real_size));
+  return MCOR_LAUNCH(context, "mcor_graded_scale", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
+}
+
+void mcor_level_vertices(
+  const mcor_context* context, bool boundary, int level, int* first, int* count)
+{
+  const mcor_mesh* mesh = &context->mesh;
+  const bool one = context->lattice.top == 0;
+  const int begin = boundary ? mesh->march_count : 0;
+  const int end = boundary ? mesh->vertex_count : mesh->march_count;
+  *first = one ? begin : mesh->level_first[boundary][level];
+  *count = (one ? end : mesh->level_first[boundary][level + 1]) - *first;
+}
+
+/* ---- Seeds ---- */
+
+/* States of all leaves. */
+static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t n = (size_t)tree->leaf_count;
+  if (!graded->leaves.mem)
+  {
+    MCOR_TRY(mcor_write(context, &graded->leaves, tree->leaves, n * 4 * sizeof(cl_int)));
+    MCOR_TRY(mcor_write(
+      context, &graded->rungs, tree->rungs, (size_t)(tree->top + 1) * sizeof tree->rungs[0]));
+  }
+  MCOR_TRY(mcor_reserve(context, &graded->states, n));
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
+    if (count == 0)
+    {
+      continue;
+    }
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves), MCOR_SEED_ARGS(context, iso),
+      MCOR_BUFFER(&graded->states)));
+  }
+  return mcor_view_level(context, 0);
+}
+
+/* Which of the bricks around a leaf are finer, see MCOR_DIRECTION. */
+static cl_uint mcor_finer_around(const mcor_tree* tree, const cl_int* leaf)
+{
+  cl_uint finer = 0;
+  const int level = leaf[3];
+  for (int d = 0; d < 27 && level > 0; ++d)
+  {
+    const int b[3] = { leaf[0] + d % 3 - 1, leaf[1] + d / 3 % 3 - 1, leaf[2] + d / 9 - 1 };
+    bool within = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      within = within && b[a] >= 0 && b[a] < tree->rungs[level].n[a];
+    }
+    finer |= (cl_uint)(within && mcor_tree_is_split(tree, level, b)) << d;
+  }
+  return finer;
+}
+
+/* A leaf by its key, to be sorted. */
+typedef struct mcor_keyed_leaf
+{
+  uint64_t key;
+  const cl_int* leaf;
+} mcor_keyed_leaf;
+
+static int mcor_compare_leaves(const void* a, const void* b)
+{
+  const uint64_t x = ((const mcor_keyed_leaf*)a)->key, y = ((const mcor_keyed_leaf*)b)->key;
+  return (x > y) - (x < y);
+}
+
+/* Sorts the leaves that are to be examined, and takes them and what is beside them to the device. */
+static mcor_status mcor_write_examined(
+  mcor_context* context, mcor_keyed_leaf* examined, cl_int (*cells)[4], cl_uint* finer)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t n = (size_t)graded->count;
+  qsort(examined, n, sizeof *examined, mcor_compare_leaves);
+  memset(graded->first_leaf, 0, sizeof graded->first_leaf);
+  for (size_t i = 0; i < n; ++i)
+  {
+    memcpy(cells[i], examined[i].leaf, sizeof cells[i]);
+    finer[i] = mcor_finer_around(tree, examined[i].leaf);
+    ++graded->first_leaf[cells[i][3] + 1];
+  }
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    graded->first_leaf[l + 1] += graded->first_leaf[l];
+  }
+  MCOR_TRY(mcor_write(context, &graded->cells, cells, n * sizeof *cells));
+  return mcor_write(context, &graded->finer, finer, n * sizeof *finer);
+}
+
+static mcor_status mcor_list_examined(mcor_context* context)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t n = (size_t)tree->leaf_count;
+  uint8_t* states = malloc(n + 1);
+  MCOR_RETURN_IF(!states, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  mcor_status status = mcor_read(context, &graded->states, 0, states, n);
+  size_t count = 0;
+  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  {
+    count += states[i] == MCOR_EXAMINE;
+  }
+  mcor_keyed_leaf* examined = malloc((count + 1) * sizeof *examined);
+  cl_int(*cells)[4] = malloc((count + 1) * sizeof *cells);
+  cl_uint* finer = malloc((count + 1) * sizeof *finer);
+  graded->count = (int)count;
+  if (status == MCOR_OK && examined && cells && finer)
+  {
+    size_t to = 0;
+    for (size_t i = 0; i < n; ++i)
+    {
+      if (states[i] == MCOR_EXAMINE)
+      {
+        const cl_int* leaf = tree->leaves + 4 * i;
+        examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), leaf };
+      }
+    }
+    status = mcor_write_examined(context, examined, cells, finer);
+  }
+  else if (status == MCOR_OK)
+  {
+    status = mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  }
+  free(states);
+  free(examined);
+  free(cells);
+  free(finer);
+  return status;
+}
+
+/* ---- Nodes ---- */
+
+#define MCOR_SLOT_ARGS(c)                                                                          \
+  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->graded.bucket_shift),                             \
+    MCOR_BUFFER(&(c)->graded.keys), MCOR_BUFFER(&(c)->graded.buckets)
+
+/* Keys of all bricks whose nodes the leaves need. */
+static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
+{
+  mcor_graded* graded = &context->graded;
+  const mcor_tree* tree = &context->tree;
+  const int count = graded->count;
+  int wanted;
+  MCOR_TRY(mcor_reserve(context, &graded->wanted, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_count_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->wanted)));
+  MCOR_TRY(mcor_scan(context, &graded->wanted, count, &wanted));
+  MCOR_TRY(mcor_reserve(context, &graded->requests, (size_t)wanted * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_fill_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells), MCOR_BUFFER(&graded->finer),
+    MCOR_BUFFER(&graded->wanted), MCOR_BUFFER(&graded->requests)));
+  MCOR_TRY(mcor_unique(
+    context, &graded->requests, wanted, tree->key_limit, &graded->keys, &graded->index, slots));
+  MCOR_RELEASE(context, &graded->requests, &graded->index);
+  mcor_release_sort(context);
+  return mcor_index_keys(
+    context, &graded->keys, *slots, tree->key_limit, &graded->buckets, &graded->bucket_shift);
+}
+
+/* The first slot of each level, from their keys. */
+static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  void* view;
+  MCOR_TRY(mcor_map(context, &graded->keys, (size_t)slots * sizeof(cl_ulong), false, &view));
+  const cl_ulong* keys = view;
+  for (int l = 0; l <= tree->top + 1; ++l)
+  {
+    int low = 0, high = slots;
+    while (low < high)
+    {
+      const int middle = low + (high - low) / 2;
+      const bool before = keys[middle] < tree->rungs[l].base;
+      low = before ? middle + 1 : low;
+      high = before ? high : middle;
+    }
+    graded->first_slot[l] = low;
+  }
+  return mcor_unmap(context, &graded->keys, &view);
+}
+
+/* Slots for the bricks; those known before keep their values. */
+static mcor_status mcor_fill_slots(mcor_context* context, const mcor_brick_data* last, int count)
+{
+  mcor_graded* graded = &context->graded;
+  mcor_brick_data* now = &context->bricks.now;
+  const size_t n = (size_t)count, real = context->cl.real_size;
+  now->count = count;
+  MCOR_TRY(mcor_reserve(context, &now->bricks, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &now->known, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &now->above, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &now->valid, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &now->value, n * 64 * real));
+  MCOR_TRY(mcor_reserve(context, &now->weight, n * 64 * real));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_bricks", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(context->tree.top), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->keys),
+    MCOR_BUFFER(&now->bricks)));
+  return MCOR_LAUNCH(context, "mcor_graded_move", MCOR_MEDIUM, last->count, MCOR_SLOT_ARGS(context),
+    MCOR_INT(last->count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&last->bricks),
+    MCOR_BUFFER(&last->known), MCOR_INT((int)(64 * real / sizeof(cl_uint))),
+    MCOR_BUFFER(&last->value), MCOR_BUFFER(&last->weight), MCOR_BUFFER(&now->known),
+    MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
+}
+
+/* Evaluates the nodes of all slots that are not known. */
+static mcor_status mcor_evaluate_slots(mcor_context* context)
+{
+  const mcor_graded* graded = &context->graded;
+  const mcor_brick_data* now = &context->bricks.now;
+  for (int l = 0; l <= context->tree.top; ++l)
+  {
+    const int first = graded->first_slot[l], count = graded->first_slot[l + 1] - first;
+    if (count == 0)
+    {
+      continue;
+    }
+    MCOR_TRY(mcor_view_level(context, l));
+    const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
+      MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight)));
+  }
+  MCOR_TRY(mcor_view_level(context, 0));
+  return mcor_fill(
+    context, &context->bricks.now.known, 0xff, (size_t)now->count * sizeof(cl_ulong));
+}
+
+/* Ends with all nodes of leaves where there may be surface. iso: relative to A0. */
+mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso)
+{
+  mcor_graded* graded = &context->graded;
+  int slots = 0;
+  if (!context->tree.leaves)
+  {
+    mcor_release(context, &graded->leaves);
+    MCOR_TRY(mcor_make_tree(context, input));
+  }
+  MCOR_TRY(mcor_find_side_flags(context, iso));
+  MCOR_TRY(mcor_find_leaf_states(context, iso));
+  MCOR_TRY(mcor_list_examined(context));
+  if (graded->count > 0)
+  {
+    MCOR_TRY(mcor_want_bricks(context, &slots));
+  }
+  MCOR_TRY(mcor_find_slot_levels(context, slots));
+  mcor_brick_data last = context->bricks.now;
+  context->bricks.now = (mcor_brick_data){ 0 };
+  const mcor_status status = mcor_fill_slots(context, &last, slots);
+  mcor_release_brick_data(context, &last);
+  MCOR_TRY(status);
+  MCOR_TRY(mcor_evaluate_slots(context));
+  MCOR_TRY(mcor_sign_nodes(context, iso, &context->bricks.now.known));
+  context->statistics->seed_cells += 64 * (int64_t)graded->count;
+  return MCOR_OK;
+}
+
+/* ---- Cells ---- */
+
+#define MCOR_LEAF_ARGS(c)                                                                          \
+  MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
+    MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
+    MCOR_BUFFER(&(c)->case_table)
+
+/* Finds the used cells; counts vertices and triangles. */
+static mcor_status mcor_count_leaves(mcor_context* context)
+{
+  mcor_graded* graded = &context->graded;
+  mcor_mesh* mesh = &context->mesh;
+  const int count = graded->count, slots = context->bricks.now.count;
+  const size_t n = (size_t)count, s = (size_t)slots;
+  MCOR_TRY(mcor_reserve(context, &graded->tables, n * MCOR_LEAF_SLOTS * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
+  MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->used, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells),
+    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&graded->flat)));
+  return MCOR_LAUNCH(context, "mcor_graded_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
+    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
+}
+
+/* Element `at` of an array of ints. */
+static mcor_status mcor_read_int(
+  mcor_context* context, const mcor_buffer* buffer, int at, cl_int* element)
+{
+  return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
+}
+
+/* Where the vertices of each level begin, and how many cells and triangles it has. */
+static mcor_status mcor_count_by_level(mcor_context* context)
+{
+  mcor_graded* graded = &context->graded;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_statistics* s = context->statistics;
+  int caps, used;
+  MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
+  MCOR_TRY(mcor_count_bits(context, &mesh->used, graded->count, &used));
+  s->flat_caps += caps;
+  s->cells_used += used;
+  s->seed_cells_not_intersected += 64 * (int64_t)graded->count - used;
+  cl_int cells[2] = { 0, 0 }, triangles[2] = { 0, 0 };
+  for (int l = 0; l <= context->tree.top; ++l)
+  {
+    MCOR_TRY(mcor_read_int(
+      context, &mesh->vertex_base, graded->first_slot[l + 1], &mesh->level_first[0][l + 1]));
+    MCOR_TRY(
+      mcor_read_int(context, &context->bricks.bit_counts, graded->first_leaf[l + 1], &cells[1]));
+    MCOR_TRY(
+      mcor_read_int(context, &mesh->triangle_base, graded->first_leaf[l + 1], &triangles[1]));
+    s->cells_of_level[l] += cells[1] - cells[0];
+    s->triangles_of_level[l] += triangles[1] - triangles[0];
+    cells[0] = cells[1];
+    triangles[0] = triangles[1];
+  }
+  mesh->level_first[0][0] = 0;
+  return MCOR_OK;
+}
+
+static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
+{
+  mcor_graded* graded = &context->graded;
+  mcor_mesh* mesh = &context->mesh;
+  const mcor_brick_data* now = &context->bricks.now;
+  const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
+  MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_vertices", MCOR_MEDIUM, now->count,
+    MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
+    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&mesh->triangles));
+}
+
+/* Vertices and triangles. iso: relative to A0. */
+mcor_status mcor_march_leaves(mcor_context* context, double iso)
+{
+  mcor_mesh* mesh = &context->mesh;
+  mesh->march_count = mesh->vertex_count = mesh->triangle_count = 0;
+  memset(mesh->level_first, 0, sizeof mesh->level_first);
+  ++context->statistics->march_rounds;
+  if (context->graded.count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_count_leaves(context));
+  MCOR_TRY(mcor_scan(context, &mesh->vertex_base, context->bricks.now.count, &mesh->march_count));
+  MCOR_TRY(mcor_scan(context, &mesh->triangle_base, context->graded.count, &mesh->triangle_count));
+  mesh->vertex_count = mesh->march_count;
+  MCOR_TRY(mcor_count_by_level(context));
+  context->statistics->triangles_before_trimming += mesh->triangle_count;
+  return mcor_emit_leaves(context, iso);
+}
+
+void mcor_release_graded(mcor_context* context)
+{
+  mcor_graded* g = &context->graded;
+  MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->states, &g->cells, &g->finer, &g->wanted,
+    &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
+    &context->grid.view_levels, &context->grid.view_inv_h);
+  mcor_release_tree(&context->tree);
+}

@@ -1,0 +1,38 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_graded_h
+#define mcor_graded_h
+
+/* Adaptive cubes, as the phases see them. Vertices are on edges of their level's lattice: node, offset,
+ * gradient and correction are in its cells, 2^level cubes. */
+
+#include "mcor_internal.h"
+
+/* Whether this call's cubes are of several levels. */
+static inline bool mcor_is_graded(const mcor_context* context)
+{
+  return context->lattice.top > 0;
+}
+
+/* The leaves where there may be surface, with their nodes' values; then their vertices and
+ * triangles. iso: relative to A0. */
+mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);
+mcor_status mcor_march_leaves(mcor_context* context, double iso);
+void mcor_release_graded(mcor_context* context);
+
+/* What evaluates the field at vertices does so level by level:
+ *
+ *   for (int l = 0; l <= context->lattice.top; ++l)
+ *     mcor_level_vertices(context, boundary, l, &first, &count);
+ *     mcor_view_level(context, l);
+ *     ...
+ *   mcor_view_level(context, 0); */
+
+/* Vertices of a level, on lattice edges or of the trim boundary. */
+void mcor_level_vertices(
+  const mcor_context* context, bool boundary, int level, int* first, int* count);
+
+/* From now on MCOR_GRID_ARGS are in cells of a level. */
+mcor_status mcor_view_level(mcor_context* context, int level);
+
+#endif

@@ -95,7 +95,8 @@ struct ChunkProgress
   }
 };
 
-/** A version that no kept run has: without it, each chunk would make the search grid anew. */
+/** A version that no kept run has: without it, each of several chunks would make the search grid
+ * anew. One chunk alone gets none, so that only particles near its points are taken to the device. */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 
 mcor_status ProbeChunks(mcor_context* context, const mcor_input& particles, mcor_options options,
@@ -103,7 +104,7 @@ mcor_status ProbeChunks(mcor_context* context, const mcor_input& particles, mcor
 {
   const vtkIdType total = points->GetNumberOfPoints();
   mcor_input input = particles;
-  if (input.particles_version == 0)
+  if (input.particles_version == 0 && total > ChunkSize)
   {
     input.particles_version = input.scalar_version = VersionOfOneRun;
   }

@@ -176,6 +176,63 @@ static void test_bits_do_not_depend_on_other_points(void** state)
   probe_in_another_order(*state, 30, 0.25, 16);
 }
 
+/* Probes at points in a cube of edge `size` around (x, 0, 0), with only the particles nearby, and with all
+ * as for another call to take: the same bits. Returns how many points are valid. */
+static int probe_near(
+  mcor_context* context, const core_set* set, bool volumes, double x, double size)
+{
+  const int64_t count = 300;
+  double* points = probe_points(count, size, 4);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    points[3 * i] += x;
+  }
+  mcor_input near = core_input(set), all = core_input_to_keep(set);
+  const mcor_array attribute = near.scalar, at = core_array(points, 3);
+  near.attributes = all.attributes = &attribute;
+  near.attribute_count = all.attribute_count = 1;
+  near.has_volume = all.has_volume = volumes;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.gradients = 1;
+  mcor_samples one, other;
+  CORE_OK(context, mcor_probe(context, &near, &options, &at, count, &one));
+  const int staged = context->grid.count;
+  CORE_OK(context, mcor_probe(context, &all, &options, &at, count, &other));
+  assert_true(staged < set->count / 2);
+  assert_int_equal(context->grid.count, set->count);
+  assert_memory_equal(one.weight_sum, other.weight_sum, (size_t)count * sizeof(double));
+  assert_memory_equal(one.values[0], other.values[0], (size_t)count * sizeof(double));
+  assert_memory_equal(one.gradients[0], other.gradients[0], (size_t)count * 3 * sizeof(double));
+  int valid = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    valid += one.valid[i];
+  }
+  mcor_free_samples(&one);
+  mcor_free_samples(&other);
+  free(points);
+  return valid;
+}
+
+static void test_only_particles_nearby_are_needed(void** state)
+{
+  core_set set = core_make_random(4000, 12, 0.3, 1.2, 17);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.position[3 * i] += i % 2 ? 40 : 0;
+    set.volume[i] = 0.8;
+  }
+  for (int volumes = 0; volumes < 2; ++volumes)
+  {
+    assert_true(probe_near(*state, &set, volumes, 0, 2) > 0);
+    assert_true(probe_near(*state, &set, volumes, 41, 1e-9) > 0);
+    assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);   /* between them */
+    assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0); /* outside of everything */
+  }
+  core_free_set(&set);
+}
+
 static void test_odd_points(void** state)
 {
   mcor_context* context = *state;
@@ -216,6 +273,7 @@ static void test_odd_points(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_against_oracle),
-    cmocka_unit_test(test_bits_do_not_depend_on_other_points), cmocka_unit_test(test_odd_points) };
+    cmocka_unit_test(test_bits_do_not_depend_on_other_points),
+    cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -14,6 +14,8 @@
  * were, but what they say of nodes within holds. Nothing is examined there: cubes and bricks are
  * made void.
  *
+ * A probe whose search grid nobody keeps owns the cells around its points.
+ *
  * Pairs [III-C] find their cells from cell to cell, from seeds that may be anywhere: their cells are
  * found on the whole lattice, and only the rest is the box's. */
 
@@ -31,6 +33,9 @@
 
 /* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
 #define MCOR_BOX_MARGIN 1.25
+
+/* The same of a probe's points: what rounding moves particles by. */
+#define MCOR_POINTS_MARGIN 0.25
 
 /* Kernel arguments of MCOR_BOX_PARAMS, `ring` cells added. */
 #define MCOR_BOX_ARGS(r, ring)                                                                     \
@@ -57,6 +62,12 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     {
       const double at = ceil(options->box[2 * a + s] / lattice->cube - 0.5);
       side[s] = fmin(fmax(at - (double)lattice->origin[a], first), last);
+    }
+    for (int s = 0; s < 2 && box->of_points; ++s)
+    {
+      /* All cells that a point is in. */
+      const double at = floor(box->points[2 * a + s] / lattice->cube) - (double)lattice->origin[a];
+      side[s] = fmin(fmax(at + s, first), last);
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
@@ -223,7 +234,10 @@ static bool mcor_needs_all(const mcor_context* context, const mcor_input* input)
 bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach)
 {
   const mcor_box* box = &context->box;
-  *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits, .is_empty = box->is_empty };
+  const double margin = box->of_points ? MCOR_POINTS_MARGIN : MCOR_BOX_RING + MCOR_BOX_MARGIN;
+  *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits,
+    .unit = ldexp(1, -context->lattice.fix_bits),
+    .is_empty = box->is_empty };
   if (!mcor_is_limited(context) || (mcor_needs_all(context, input) && !box->is_empty))
   {
     return false;
@@ -232,8 +246,8 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     context->lattice.cube;
   for (int a = 0; a < 3; ++a)
   {
-    reach->low[a] = box->first[a] - MCOR_BOX_RING - MCOR_BOX_MARGIN;
-    reach->high[a] = box->last[a] + MCOR_BOX_RING + MCOR_BOX_MARGIN;
+    reach->low[a] = box->first[a] - margin;
+    reach->high[a] = box->last[a] + margin;
     reach->period[a] = context->lattice.period[a];
     reach->first[a] = context->lattice.period_first[a];
   }
@@ -426,6 +440,7 @@ void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);
   context->box.kept = NULL;
+  context->box.of_points = false;
 }
 
 void mcor_release_box(mcor_context* context)

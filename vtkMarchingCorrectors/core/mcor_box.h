@@ -22,6 +22,7 @@ typedef struct mcor_reach_box
   double low[3], high[3]; /* where the field is evaluated */
   double support;         /* support radius / smoothing length */
   double radius;          /* as if no support radius were less */
+  double unit;            /* 2^-fix_bits */
   int period[3], first[3], fix_bits;
   bool is_empty; /* none matters */
 } mcor_reach_box;

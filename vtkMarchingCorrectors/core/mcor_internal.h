@@ -231,6 +231,8 @@ typedef struct mcor_box
 {
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
+  bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
+  double points[6];
   mcor_buffer owned;      /* uchar per triangle of the mesh: 1 of an owned cell */
   mcor_buffer clipped;    /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;          /* per triangle of the surface: as owned; NULL: all are */
@@ -274,6 +276,7 @@ struct mcor_context
   double fraction, fraction_end; /* last reported; where what runs ends */
   double report_time;            /* of the last report */
   double report_interval;        /* between launches, seconds; at least that */
+  int probe_batch;               /* points; 0 before the first probe */
   bool building_told;            /* in this phase */
   double correction_count, correction_sum, correction_squares;
   char error[4096];
@@ -484,6 +487,8 @@ extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 extern const char mcor_source_mcor_box_cl[];
 extern const char mcor_source_mcor_probe_cl[];
+extern const char mcor_source_mcor_probe_lanes_cl[];
+extern const char mcor_source_mcor_probe_point_cl[];
 extern const char mcor_source_mcor_derive_cl[];
 extern const char mcor_source_mcor_graded_cell_h[];
 extern const char mcor_source_mcor_graded_cl[];

@@ -5,6 +5,7 @@
  * gradients. On the device an array is A' = (A - A0) s, with A0 in the middle of its range, so that
  * single precision keeps the digits of one with a large offset. */
 
+#include "mcor_probe.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_stage.h"
@@ -13,147 +14,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points that are on the device at a time. Of fewer, in no order, fewer are near each other: a
- * fourth takes a tenth longer. */
-#define MCOR_PROBE_BATCH (1 << 20)
+/* Points that are on the device at a time: so many that a batch takes about so long, as a run may be
+ * cancelled between two. Of fewer, in no order, fewer are near each other: a fourth takes a tenth longer. */
+#define MCOR_MOST_IN_BATCH (1 << 20)
+#define MCOR_LEAST_IN_BATCH (1 << 14)
+#define MCOR_BATCH_SECONDS 0.1
 
 /* Fluid weight below which a mean has no digits, MCOR_LEAST_SUM of mcor_attribute.cl. */
 #define MCOR_LEAST_WEIGHT 1e-30
-
-typedef struct mcor_probe_run
-{
-  mcor_context* context;
-  const mcor_input* input;
-  const mcor_array* points;
-  mcor_samples* samples;
-  bool is_sum;
-  mcor_point_batch batch;
-  mcor_buffer weight, sums, weight_gradient, gradients;
-  int64_t first;     /* point of the batch */
-  int count, inside; /* points of the batch; those of them that particles may reach */
-  int group_count;
-} mcor_probe_run;
 
 static void mcor_release_probe(mcor_probe_run* run)
 {
   mcor_release_batch(run->context, &run->batch);
   MCOR_RELEASE(run->context, &run->weight, &run->sums, &run->weight_gradient, &run->gradients);
-}
-
-/* ---- points ------------------------------------------------------------------------------- */
-
-/* Whether point i of the caller's is where particles may reach it; then its node and offset. */
-static bool mcor_locate_point(
-  const mcor_probe_run* run, int64_t i, int64_t node[3], double offset[3])
-{
-  const mcor_lattice* lattice = &run->context->lattice;
-  mcor_array points = *run->points;
-  points.components = 3;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double x = mcor_array_at(&points, i, a) / lattice->cube - (double)lattice->origin[a];
-    if (!(x >= (double)lattice->first[a] && x <= (double)lattice->last[a]))
-    {
-      return false;
-    }
-    node[a] = (int64_t)x;
-    offset[a] = x - (double)node[a];
-  }
-  return true;
-}
-
-/* A batch's points on their way to the device, and what each slice of them found. */
-typedef struct mcor_point_job
-{
-  const mcor_probe_run* run;
-  void *node, *offset; /* views */
-  int inside[MCOR_SLICES];
-  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
-} mcor_point_job;
-
-static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_point_job* job = data;
-  const mcor_probe_run* run = job->run;
-  const bool single = run->context->cl.real_size == sizeof(float);
-  cl_int low[3] = { CL_INT_MAX, CL_INT_MAX, CL_INT_MAX }, high[3] = { 0 };
-  int inside = 0;
-  for (int64_t i = first; i < last; ++i)
-  {
-    int64_t node[3] = { -1, -1, -1 };
-    double offset[3] = { 0 };
-    const bool located = mcor_locate_point(run, run->first + i, node, offset);
-    inside += located;
-    for (int a = 0; a < 3; ++a)
-    {
-      const cl_int n = located ? (cl_int)node[a] : -1;
-      ((cl_int*)job->node)[4 * i + a] = n;
-      low[a] = located && n < low[a] ? n : low[a];
-      high[a] = n > high[a] ? n : high[a];
-      if (single)
-      {
-        ((float*)job->offset)[4 * i + a] = (float)offset[a];
-      }
-      else
-      {
-        ((double*)job->offset)[4 * i + a] = offset[a];
-      }
-    }
-  }
-  job->inside[slice] = inside;
-  memcpy(job->low[slice], low, sizeof low);
-  memcpy(job->high[slice], high, sizeof high);
-}
-
-/* How many points particles may reach, and their bricks. */
-static void mcor_bound_points(mcor_probe_run* run, const mcor_point_job* job, int slices)
-{
-  run->inside = 0;
-  for (int s = 0; s < slices; ++s)
-  {
-    run->inside += job->inside[s];
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    cl_int low = CL_INT_MAX, high = 0;
-    for (int s = 0; s < slices; ++s)
-    {
-      low = job->low[s][a] < low ? job->low[s][a] : low;
-      high = job->high[s][a] > high ? job->high[s][a] : high;
-    }
-    run->batch.first[a] = low >> 2;
-    run->batch.bricks[a] = (high >> 2) - (low >> 2) + 1;
-  }
-}
-
-/* Takes the caller's points [first, last) to the device. */
-static mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
-{
-  mcor_context* context = run->context;
-  const size_t n = (size_t)(last - first), real = context->cl.real_size;
-  mcor_point_job job = { .run = run };
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
-  mcor_status status =
-    mcor_map(context, &run->batch.in_node, n * 4 * sizeof(cl_int), true, &job.node);
-  if (status == MCOR_OK)
-  {
-    status = mcor_map(context, &run->batch.in_offset, n * 4 * real, true, &job.offset);
-  }
-  run->first = first;
-  run->count = (int)n;
-  if (status == MCOR_OK)
-  {
-    const int slices = mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job);
-    mcor_bound_points(run, &job, slices);
-  }
-  const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.in_node, &job.node),
-    mcor_unmap(context, &run->batch.in_offset, &job.offset) };
-  for (int i = 0; i < 2; ++i)
-  {
-    status = status == MCOR_OK ? unmapped[i] : status;
-  }
-  return status;
 }
 
 /* ---- evaluation --------------------------------------------------------------------------- */
@@ -271,10 +144,12 @@ static mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t 
   MCOR_TRY(mcor_group_batch(context, &run->batch, run->count, run->inside, &run->group_count));
   MCOR_TRY(mcor_reserve(context, &run->weight, n * real));
   MCOR_TRY(mcor_reserve(context, &run->sums, n * arrays * real));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, run->group_count,
-    MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
-    MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
-    MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
+  const int cluster = MCOR_CLUSTER_OF(context->cl.lanes);
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, (run->group_count + cluster - 1) / cluster,
+      MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
+      MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
+      MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
   if (run->samples->weight_gradient)
   {
     MCOR_TRY(mcor_reserve(context, &run->weight_gradient, n * 3 * real));
@@ -292,6 +167,22 @@ static mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t 
   return mcor_deliver_samples(run);
 }
 
+/* How many points the next batch has, after one that was evaluated since `begin`. Kept for the next
+ * call. */
+static void mcor_fit_batch(mcor_context* context, double begin, double built)
+{
+  const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
+  int* size = &context->probe_batch;
+  if (seconds > 1.5 * MCOR_BATCH_SECONDS && *size > MCOR_LEAST_IN_BATCH)
+  {
+    *size /= 2;
+  }
+  else if (seconds < 0.5 * MCOR_BATCH_SECONDS && *size < MCOR_MOST_IN_BATCH)
+  {
+    *size *= 2;
+  }
+}
+
 /* All arrays, some at a time, at all points, some at a time. */
 static mcor_status mcor_probe_all(mcor_probe_run* run)
 {
@@ -300,17 +191,27 @@ static mcor_status mcor_probe_all(mcor_probe_run* run)
   const int arrays = context->attributes.varying_count;
   const double rounds = ceil(fmax(arrays, 1) / MCOR_ATTRIBUTE_LIMIT);
   double done = 0.2;
+  if (context->probe_batch == 0)
+  {
+    context->probe_batch = MCOR_MOST_IN_BATCH / 4;
+  }
   for (int array = 0; array == 0 || array < arrays; array += MCOR_ATTRIBUTE_LIMIT)
   {
     MCOR_TRY(mcor_load_attributes(context, run->input, array));
-    for (int64_t first = 0; first < points; first += MCOR_PROBE_BATCH)
+    int64_t count = 0;
+    for (int64_t first = 0; first < points; first += count)
     {
-      const int64_t rest = points - first,
-                    count = rest < MCOR_PROBE_BATCH ? rest : MCOR_PROBE_BATCH;
-      const double begin = done;
+      const int64_t rest = points - first;
+      const double before = done, begin = mcor_seconds(), built = context->cl.build_seconds;
+      const int size = context->probe_batch;
+      count = rest < size ? rest : size;
       done += 0.8 * (double)count / (double)points / rounds;
-      MCOR_TRY(mcor_report(context, "probe", begin, done));
+      MCOR_TRY(mcor_report(context, "probe", before, done));
       MCOR_TRY(mcor_probe_batch(run, first, first + count));
+      if (count == size)
+      {
+        mcor_fit_batch(context, begin, built);
+      }
     }
   }
   return MCOR_OK;
@@ -388,6 +289,10 @@ static mcor_status mcor_run_probe(
   {
     return MCOR_OK;
   }
+  if (input->particles_version == 0)
+  {
+    mcor_bound_probe(context, call->points, call->count); /* no other call takes the search grid */
+  }
   MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   mcor_probe_run run = { .context = context,
@@ -395,7 +300,7 @@ static mcor_status mcor_run_probe(
     .points = call->points,
     .samples = samples,
     .is_sum = call->is_sum };
-  const mcor_status status = mcor_probe_all(&run);
+  const mcor_status status = context->grid.count > 0 ? mcor_probe_all(&run) : MCOR_OK;
   mcor_release_probe(&run);
   mcor_release(context, &context->attributes.sorted);
   MCOR_TRY(status);

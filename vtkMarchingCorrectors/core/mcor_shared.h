@@ -113,6 +113,9 @@ typedef struct mcor_rung
  * it. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
+/* Groups of points of which one work-item evaluates those together that are near each other. */
+#define MCOR_CLUSTER_OF(lanes) ((lanes) == 1 ? 1 : 16)
+
 /* Components of attributes that are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 12
 

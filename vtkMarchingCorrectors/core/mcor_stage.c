@@ -253,7 +253,7 @@ static int mcor_images_of(
   double at[3];
   for (int a = 0; a < 3; ++a)
   {
-    at[a] = ldexp(chunk->x[a][i], -job->reach->fix_bits);
+    at[a] = chunk->x[a][i] * job->reach->unit;
   }
   return mcor_list_images(job->reach, at, chunk->h[i] * job->reach->support, images);
 }
@@ -359,18 +359,23 @@ static void mcor_stage_images(
   mcor_stage_job* job, int slice, const mcor_stage_chunk* chunk, int64_t* to)
 {
   mcor_stage_chunk out;
-  mcor_images images;
+  mcor_images images = { 0 };
+  double period[3] = { 0 };
+  for (int a = 0; a < 3 && job->reach; ++a)
+  {
+    period[a] = ldexp(job->reach->period[a], job->reach->fix_bits);
+  }
   out.count = 0;
   for (int i = 0; i < chunk->count; ++i)
   {
-    const int count = mcor_images_of(job, chunk, i, &images);
+    const bool none = job->images && !job->images[chunk->source[i]];
+    const int count = none ? 0 : mcor_images_of(job, chunk, i, &images);
     int k[3] = { images.first[0], images.first[1], images.first[2] };
     for (int n = 0; n < count; ++n)
     {
       for (int a = 0; a < 3; ++a)
       {
-        const double period = job->reach ? ldexp(job->reach->period[a], job->reach->fix_bits) : 0;
-        out.x[a][out.count] = chunk->x[a][i] + k[a] * period;
+        out.x[a][out.count] = chunk->x[a][i] + k[a] * period[a];
       }
       out.h[out.count] = chunk->h[i];
       out.size[out.count] = chunk->size[i];

@@ -60,7 +60,7 @@ typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
 
 /* The lanes of a group of particles that are kept, as a mask, and their packing into an array's
  * next elements. The array needs room for MCOR_LANES elements. */
-#if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                  \
+#if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                    \
   __has_builtin(__builtin_ia32_compresssf512_mask) &&                                              \
   __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask)
 /* A vector unit that packs by itself: a third of a gather's time. */
@@ -93,6 +93,32 @@ void mcor_interleave4(realv a, realv b, realv c, realv d, real* to)
   vstore16(__builtin_shufflevector(ef, gh, MCOR_LOW_PAIRS), 2, to);
   vstore16(__builtin_shufflevector(ef, gh, MCOR_HIGH_PAIRS), 3, to);
 }
+#elif MCOR_LANES == 8 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX2__) && defined(__BMI2__) && \
+  __has_builtin(__builtin_ia32_movmskps256) && __has_builtin(__builtin_ia32_permvarsf256) &&       \
+  __has_builtin(__builtin_ia32_pdep_di) && __has_builtin(__builtin_ia32_pext_di)
+/* One that permutes: the numbers of the lanes that are kept, in front. */
+typedef struct
+{
+  int8 kept;
+  int count;
+} mcor_mask;
+typedef realv __attribute__((aligned(4))) mcor_loose_realv;
+typedef fixv __attribute__((aligned(4))) mcor_loose_lanes;
+
+mcor_mask mcor_mask_of(fixv keep, int lanes)
+{
+  const uint bits = (uint)__builtin_ia32_movmskps256(as_float8(keep != 0)) & ((1u << lanes) - 1);
+  const ulong bytes = __builtin_ia32_pdep_di(bits, 0x0101010101010101UL) * 0xff;
+  mcor_mask mask;
+  mask.kept = convert_int8(as_uchar8(__builtin_ia32_pext_di(0x0706050403020100UL, bytes)));
+  mask.count = (int)popcount(bits);
+  return mask;
+}
+#define MCOR_MASK mcor_mask_of
+#define MCOR_PACK_REAL(mask, v, to)                                                                \
+  (*(mcor_loose_realv*)(to) = __builtin_ia32_permvarsf256((v), (mask).kept))
+#define MCOR_PACK_INDEX(mask, first, to) (*(mcor_loose_lanes*)(to) = (first) + (mask).kept)
+#define MCOR_MASK_COUNT(mask) ((mask).count)
 #elif MCOR_LANES > 1
 typedef struct
 {

@@ -38,16 +38,20 @@ typedef struct
   int4 low, high; /* of the group's nodes */
 } mcor_grouping;
 
+/* Whether nodes that are so far apart may share one gather of particles, which is to stay small. */
+bool mcor_group_fits(int4 extent)
+{
+  return extent.x + extent.y + extent.z <= MCOR_GROUP_EDGES &&
+    max(extent.x, max(extent.y, extent.z)) <= MCOR_GROUP_EDGE;
+}
+
 /* Takes the next point, at `node`; `before` is the one before it. Returns false where it does not
- * fit the group, which the caller then starts anew. The parts of a group share one gather of
- * particles, so it is to stay small. */
+ * fit the group, which the caller then starts anew. */
 bool mcor_group_add(mcor_grouping* grouping, int4 before, int4 node)
 {
-  const int4 low = min(grouping->low, node), high = max(grouping->high, node), extent = high - low;
+  const int4 low = min(grouping->low, node), high = max(grouping->high, node);
   const bool new_part = grouping->size == MCOR_PART || !mcor_same_brick(before, node);
-  if (grouping->part + new_part >= MCOR_PARTS ||
-    extent.x + extent.y + extent.z > MCOR_GROUP_EDGES ||
-    max(extent.x, max(extent.y, extent.z)) > MCOR_GROUP_EDGE)
+  if (grouping->part + new_part >= MCOR_PARTS || !mcor_group_fits(high - low))
   {
     return false;
   }
@@ -171,10 +175,9 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
-/* Loads the group of points from begin to before end and their offsets, and fits the query to them,
- * `margin` added. */
-void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const int4* node,
-  __global const real4* offset, real margin, mcor_points* points, mcor_query* query)
+/* Loads the group of points from begin to before end and their offsets. */
+void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const int4* node,
+  __global const real4* offset, mcor_points* points)
 {
   int from[MCOR_LANES];
   mcor_points_place(node, begin, end, points, from);
@@ -186,6 +189,13 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
     MCOR_SET(points->oy, lane) = o.y;
     MCOR_SET(points->oz, lane) = o.z;
   }
+}
+
+/* The same, and fits the query to them, `margin` added. */
+void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const int4* node,
+  __global const real4* offset, real margin, mcor_points* points, mcor_query* query)
+{
+  mcor_group_points(grid, begin, end, node, offset, points);
   const realv low[3] = { points->ox - margin, points->oy - margin, points->oz - margin };
   const realv high[3] = { points->ox + margin, points->oy + margin, points->oz + margin };
   mcor_points_bound(grid, low, high, points, query);

@@ -32,13 +32,17 @@
 #if MCOR_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double real;
+typedef double2 real2;
 typedef double4 real4;
+typedef double8 mcor_real8;
 typedef long fix;
 #define MCOR_REAL_NAME double
 #define MCOR_FIX_NAME long
 #else
 typedef float real;
+typedef float2 real2;
 typedef float4 real4;
+typedef float8 mcor_real8;
 typedef int fix;
 #define MCOR_REAL_NAME float
 #define MCOR_FIX_NAME int
@@ -96,6 +100,7 @@ real mcor_lane_sum(realv v)
 }
 
 #define MCOR_BATCH MCOR_BATCH_OF(MCOR_LANES)
+#define MCOR_CLUSTER MCOR_CLUSTER_OF(MCOR_LANES)
 #define MCOR_GROUPED_POINTS MCOR_GROUPED_POINTS_OF(MCOR_LANES)
 
 /* Masks of a brick's nodes or cells, see mcor_shared.h. */

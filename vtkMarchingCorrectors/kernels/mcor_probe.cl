@@ -37,33 +37,13 @@ __kernel void mcor_probe_order(const int count, __global const int* order,
   }
 }
 
-/* One work-item = one group of points. Writes their weight sums, and the sums of weight times array
- * over the particles. */
-__kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
-  __global const int4* node, __global const real4* offset, __global real* weight_sum,
-  MCOR_ATTRIBUTE_PARAMS)
+/* Writes the sums at a group of points. */
+void mcor_probe_put(const mcor_points* points, realv weight, const realv* sums,
+  __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
-  realv sums[MCOR_ATTRIBUTE_LIMIT], w;
-  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c)
-  {
-    sums[c] = 0;
-  }
-  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
-  mcor_tile_init(&reach.tile);
-  mcor_attribute_sums(
-    &grid, &query, &points, 0, &reach, false, attribute_count, stride, attributes, sums, &w);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    const long v = points.index[lane];
+    const long v = points->index[lane];
     for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
     {
       if (c < attribute_count && v >= 0)
@@ -73,10 +53,26 @@ __kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global 
     }
     if (v >= 0)
     {
-      weight_sum[v] = MCOR_GET(w, lane);
+      weight_sum[v] = MCOR_GET(weight, lane);
     }
   }
 }
+
+/* Evaluates a group of points that shares no particles with others. */
+void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
+  mcor_reach* reach, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
+{
+  realv sums[MCOR_ATTRIBUTE_LIMIT], w;
+  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c)
+  {
+    sums[c] = 0;
+  }
+  mcor_attribute_sums(
+    grid, query, points, 0, reach, false, attribute_count, stride, attributes, sums, &w);
+  mcor_probe_put(points, w, sums, weight_sum, MCOR_ATTRIBUTE_ARGS);
+}
+
+/* mcor_probe_sums, which launches them, is in mcor_probe_lanes.cl and mcor_probe_point.cl. */
 
 /* Gradients, per cube, of the weight sum and of sums of up to MCOR_ARRAY_STEP arrays. */
 typedef struct

@@ -1,0 +1,31 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_probe_h
+#define mcor_probe_h
+
+/* A probe under way. */
+
+#include "mcor_internal.h"
+
+typedef struct mcor_probe_run
+{
+  mcor_context* context;
+  const mcor_input* input;
+  const mcor_array* points;
+  mcor_samples* samples;
+  bool is_sum;
+  mcor_point_batch batch;
+  mcor_buffer weight, sums, weight_gradient, gradients;
+  int64_t first;     /* point of the batch */
+  int count, inside; /* points of the batch; those of them that particles may reach */
+  int group_count;
+} mcor_probe_run;
+
+/* mcor_probe_points.c. The box around the finite points of the caller, which only particles nearby are
+ * needed for. */
+void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count);
+
+/* Takes the caller's points [first, last) to the device. */
+mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);
+
+#endif

@@ -1,0 +1,171 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The points of a probe: the box around them, and their way to the device. */
+
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_probe.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct mcor_bound_job
+{
+  mcor_array points;
+  double low[MCOR_SLICES][3], high[MCOR_SLICES][3];
+} mcor_bound_job;
+
+static void mcor_bound_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_bound_job* job = data;
+  for (int a = 0; a < 3; ++a)
+  {
+    double x[MCOR_CHUNK], low = DBL_MAX, high = -DBL_MAX;
+    for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+    {
+      const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+      mcor_read_array(&job->points, begin, count, a, x);
+      for (int i = 0; i < count; ++i)
+      {
+        low = x[i] < low ? x[i] : low; /* not where it is no number */
+        high = x[i] > high ? x[i] : high;
+      }
+    }
+    job->low[slice][a] = low;
+    job->high[slice][a] = high;
+  }
+}
+
+void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count)
+{
+  mcor_bound_job job = { .points = *points };
+  mcor_box* box = &context->box;
+  job.points.components = 3;
+  const int slices = mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_bound_slice, &job);
+  for (int a = 0; a < 3; ++a)
+  {
+    box->points[2 * a] = DBL_MAX;
+    box->points[2 * a + 1] = -DBL_MAX;
+    for (int s = 0; s < slices; ++s)
+    {
+      box->points[2 * a] = fmin(box->points[2 * a], job.low[s][a]);
+      box->points[2 * a + 1] = fmax(box->points[2 * a + 1], job.high[s][a]);
+    }
+  }
+  box->of_points = true;
+}
+
+/* Whether point i of the caller's is where particles may reach it; then its node and offset. */
+static bool mcor_locate_point(
+  const mcor_probe_run* run, int64_t i, int64_t node[3], double offset[3])
+{
+  const mcor_lattice* lattice = &run->context->lattice;
+  mcor_array points = *run->points;
+  points.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double x = mcor_array_at(&points, i, a) / lattice->cube - (double)lattice->origin[a];
+    if (!(x >= (double)lattice->first[a] && x <= (double)lattice->last[a]))
+    {
+      return false;
+    }
+    node[a] = (int64_t)x;
+    offset[a] = x - (double)node[a];
+  }
+  return true;
+}
+
+/* A batch's points on their way to the device, and what each slice of them found. */
+typedef struct mcor_point_job
+{
+  const mcor_probe_run* run;
+  void *node, *offset; /* views */
+  int inside[MCOR_SLICES];
+  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
+} mcor_point_job;
+
+static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_point_job* job = data;
+  const mcor_probe_run* run = job->run;
+  const bool single = run->context->cl.real_size == sizeof(float);
+  cl_int low[3] = { CL_INT_MAX, CL_INT_MAX, CL_INT_MAX }, high[3] = { 0 };
+  int inside = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    int64_t node[3] = { -1, -1, -1 };
+    double offset[3] = { 0 };
+    const bool located = mcor_locate_point(run, run->first + i, node, offset);
+    inside += located;
+    for (int a = 0; a < 3; ++a)
+    {
+      const cl_int n = located ? (cl_int)node[a] : -1;
+      ((cl_int*)job->node)[4 * i + a] = n;
+      low[a] = located && n < low[a] ? n : low[a];
+      high[a] = n > high[a] ? n : high[a];
+      if (single)
+      {
+        ((float*)job->offset)[4 * i + a] = (float)offset[a];
+      }
+      else
+      {
+        ((double*)job->offset)[4 * i + a] = offset[a];
+      }
+    }
+  }
+  job->inside[slice] = inside;
+  memcpy(job->low[slice], low, sizeof low);
+  memcpy(job->high[slice], high, sizeof high);
+}
+
+/* How many points particles may reach, and their bricks. */
+static void mcor_bound_points(mcor_probe_run* run, const mcor_point_job* job, int slices)
+{
+  run->inside = 0;
+  for (int s = 0; s < slices; ++s)
+  {
+    run->inside += job->inside[s];
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    cl_int low = CL_INT_MAX, high = 0;
+    for (int s = 0; s < slices; ++s)
+    {
+      low = job->low[s][a] < low ? job->low[s][a] : low;
+      high = job->high[s][a] > high ? job->high[s][a] : high;
+    }
+    run->batch.first[a] = low >> 2;
+    run->batch.bricks[a] = (high >> 2) - (low >> 2) + 1;
+  }
+}
+
+mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
+{
+  mcor_context* context = run->context;
+  const size_t n = (size_t)(last - first), real = context->cl.real_size;
+  mcor_point_job job = { .run = run };
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
+  mcor_status status =
+    mcor_map(context, &run->batch.in_node, n * 4 * sizeof(cl_int), true, &job.node);
+  if (status == MCOR_OK)
+  {
+    status = mcor_map(context, &run->batch.in_offset, n * 4 * real, true, &job.offset);
+  }
+  run->first = first;
+  run->count = (int)n;
+  if (status == MCOR_OK)
+  {
+    const int slices = mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job);
+    mcor_bound_points(run, &job, slices);
+  }
+  const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.in_node, &job.node),
+    mcor_unmap(context, &run->batch.in_offset, &job.offset) };
+  for (int i = 0; i < 2; ++i)
+  {
+    status = status == MCOR_OK ? unmapped[i] : status;
+  }
+  return status;
+}

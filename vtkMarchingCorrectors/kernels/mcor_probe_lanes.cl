@@ -1,0 +1,229 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Sums at many points, as a CPU wants it; see mcor_probe.cl. Points of a slice or a volume lie so close
+ * together that most particles that reach one group of them reach the next ones, too: these are a cluster, with
+ * one tile of particles. */
+
+typedef struct
+{
+  int count; /* groups */
+  mcor_points points[MCOR_CLUSTER];
+  realv weight[MCOR_CLUSTER], sums[MCOR_CLUSTER][MCOR_ATTRIBUTE_LIMIT];
+} mcor_cluster;
+
+/* The first groups of those from begin to before end that fit into one cluster: returns how many, one
+ * at least, and the box around their points, in cubes from the first one's node. */
+int mcor_cluster_bound(__global const int* groups, int begin, int end, __global const int4* node,
+  __global const real4* offset, real4* least, real4* most)
+{
+  const int4 base = node[groups[begin]];
+  int4 low = base, high = base;
+  int g = begin;
+  *least = *most = offset[groups[begin]];
+  for (; g < end; ++g)
+  {
+    int4 group_low = low, group_high = high;
+    real4 group_least = *least, group_most = *most;
+    for (int i = groups[g]; i < groups[g + 1]; ++i)
+    {
+      const real4 at = MCOR_CAT(convert_, MCOR_CAT(MCOR_REAL_NAME, 4))(node[i] - base) + offset[i];
+      group_low = min(group_low, node[i]);
+      group_high = max(group_high, node[i]);
+      group_least = fmin(group_least, at);
+      group_most = fmax(group_most, at);
+    }
+    if (g > begin && !mcor_group_fits(group_high - group_low))
+    {
+      break;
+    }
+    low = group_low;
+    high = group_high;
+    *least = group_least;
+    *most = group_most;
+  }
+  return g - begin;
+}
+
+/* Fits a query to the box of a cluster whose first node is `base`. Its origin is a node in the
+ * middle. */
+void mcor_cluster_place(
+  const mcor_grid* grid, int4 base, const real4 least, const real4 most, mcor_query* query)
+{
+  fix origin[3];
+  const fix first[3] = { (fix)base.x << grid->fix_bits, (fix)base.y << grid->fix_bits,
+    (fix)base.z << grid->fix_bits };
+  query->radius = -1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const real low = MCOR_GET(least, a), high = MCOR_GET(most, a);
+    origin[a] = first[a] + ((fix)floor((real)0.5 * (low + high)) << grid->fix_bits);
+    query->low[a] = first[a] + (fix)floor(ldexp(low, grid->fix_bits)) - 1;
+    query->high[a] = first[a] + (fix)ceil(ldexp(high, grid->fix_bits)) + 1;
+  }
+  mcor_query_place(grid, query, origin);
+}
+
+/* Middle and half size of what lanes are between. */
+real2 mcor_lane_range(realv v)
+{
+#if MCOR_LANES == 16
+  const mcor_real8 low8 = fmin(v.lo, v.hi), high8 = fmax(v.lo, v.hi);
+#else
+  const mcor_real8 low8 = v, high8 = v;
+#endif
+  const real4 low4 = fmin(low8.lo, low8.hi), high4 = fmax(high8.lo, high8.hi);
+  const real2 low2 = fmin(low4.lo, low4.hi), high2 = fmax(high4.lo, high4.hi);
+  const real low = fmin(low2.x, low2.y), high = fmax(high2.x, high2.y);
+  return (real)0.5 * (real2)(low + high, high - low);
+}
+
+/* Places in the tile of the particles that reach a group of points; `at` is of
+ * mcor_points_relative. Returns how many. */
+int mcor_cluster_list(
+  const mcor_tile* tile, const mcor_points* points, const realv at[3], int* list)
+{
+  const real2 x = mcor_lane_range(at[0] + points->ox), y = mcor_lane_range(at[1] + points->oy),
+              z = mcor_lane_range(at[2] + points->oz);
+  int count = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i),
+      MCOR_TILE(tile, z, i), MCOR_TILE(tile, inv_h, i), x.x, y.x, z.x, x.y, y.y, z.y, 1);
+    const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
+    MCOR_PACK_INDEX(mask, i, list + count);
+    count += MCOR_MASK_COUNT(mask);
+  }
+  return count;
+}
+
+/* Values of the arrays at the particles of a tile. */
+typedef struct
+{
+  real of[MCOR_ATTRIBUTE_LIMIT][MCOR_TILE_SIZE + 16];
+} mcor_cluster_values;
+
+/* Sets the weights of the listed particles at a group's points, and adds them, and the first `step`
+ * arrays times them, in one loop: each sum alone would wait for its last addition. `step` is a
+ * constant. */
+__attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
+  const mcor_points* points, const realv at[3], const mcor_cluster_values* values, const int* list,
+  int count, const int step, realv* weight, realv* weight_sum, realv* sums)
+{
+  realv d[3], along[3], slope, w = *weight_sum, s[MCOR_ATTRIBUTE_STEP];
+  for (int c = 0; c < step; ++c)
+  {
+    s[c] = sums[c];
+  }
+  for (int k = 0; k < count; ++k)
+  {
+    const int i = list[k];
+    mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
+    const mcor_length length = mcor_length_of(d);
+    weight[k] =
+      tile->weight[i] * mcor_weight_gradient(d, &length, (realv)(tile->inv_h[i]), &slope, along);
+    w += weight[k];
+    for (int c = 0; c < step; ++c)
+    {
+      s[c] = MCOR_FMA(weight[k], values->of[c][i], s[c]);
+    }
+  }
+  *weight_sum = w;
+  for (int c = 0; c < step; ++c)
+  {
+    sums[c] = s[c];
+  }
+}
+
+/* Adds a tile's particles at group g's points, of `arrays` arrays. */
+void mcor_cluster_add(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
+  const mcor_cluster_values* values, int arrays, int g, mcor_cluster* cluster)
+{
+  const mcor_points* points = cluster->points + g;
+  realv at[3], weight[MCOR_TILE_SIZE], *sums = cluster->sums[g], *weight_sum = cluster->weight + g;
+  int list[MCOR_TILE_SIZE + 16];
+  mcor_points_relative(grid, query, points, at);
+  const int count = mcor_cluster_list(tile, points, at, list);
+  const int step = arrays < MCOR_ATTRIBUTE_STEP ? min(arrays, 1) : MCOR_ATTRIBUTE_STEP;
+  step == 0 ? mcor_cluster_begin(tile, points, at, values, list, count, 0, weight, weight_sum, sums)
+    : step == 1
+    ? mcor_cluster_begin(tile, points, at, values, list, count, 1, weight, weight_sum, sums)
+    : mcor_cluster_begin(
+        tile, points, at, values, list, count, MCOR_ATTRIBUTE_STEP, weight, weight_sum, sums);
+  for (int c = step; c < arrays; ++c)
+  {
+    realv s = sums[c];
+    for (int k = 0; k < count; ++k)
+    {
+      s = MCOR_FMA(weight[k], values->of[c][list[k]], s);
+    }
+    sums[c] = s;
+  }
+}
+
+/* Evaluates a cluster whose points are loaded. */
+void mcor_cluster_sums(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
+  mcor_cluster* cluster, MCOR_ATTRIBUTE_PARAMS)
+{
+  mcor_cluster_values values;
+  for (int g = 0; g < cluster->count; ++g)
+  {
+    cluster->weight[g] = 0;
+    for (int c = 0; c < attribute_count; ++c)
+    {
+      cluster->sums[g][c] = 0;
+    }
+  }
+  mcor_tile_init(tile);
+  for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
+  {
+    for (int c = 0; c < attribute_count; ++c)
+    {
+      mcor_tile_values(tile, attributes + c * (long)stride, values.of[c]);
+    }
+    for (int g = 0; g < cluster->count; ++g)
+    {
+      mcor_cluster_add(grid, query, tile, &values, attribute_count, g, cluster);
+    }
+  }
+  (void)means;
+}
+
+/* One work-item = MCOR_CLUSTER groups of points. Writes their weight sums, and the sums of weight
+ * times array over the particles. */
+__kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
+  __global const int4* node, __global const real4* offset, __global real* weight_sum,
+  MCOR_ATTRIBUTE_PARAMS)
+{
+  const mcor_grid grid = MCOR_GRID;
+  const int end = min((int)(get_global_id(0) + 1) * MCOR_CLUSTER, group_count);
+  mcor_cluster cluster;
+  mcor_query query;
+  mcor_reach reach;
+  for (int begin = get_global_id(0) * MCOR_CLUSTER; begin < end; begin += cluster.count)
+  {
+    real4 least, most;
+    cluster.count = mcor_cluster_bound(groups, begin, end, node, offset, &least, &most);
+    mcor_group_load(
+      &grid, groups[begin], groups[begin + 1], node, offset, 0, cluster.points, &query);
+    if (!mcor_reach_is_tile(&grid, &query, cluster.points))
+    {
+      cluster.count = 1;
+      mcor_tile_init(&reach.tile);
+      mcor_probe_alone(&grid, &query, cluster.points, &reach, weight_sum, MCOR_ATTRIBUTE_ARGS);
+      continue;
+    }
+    for (int g = 1; g < cluster.count; ++g)
+    {
+      mcor_group_points(
+        &grid, groups[begin + g], groups[begin + g + 1], node, offset, cluster.points + g);
+    }
+    mcor_cluster_place(&grid, node[groups[begin]], least, most, &query);
+    mcor_cluster_sums(&grid, &query, &reach.tile, &cluster, MCOR_ATTRIBUTE_ARGS);
+    for (int g = 0; g < cluster.count; ++g)
+    {
+      mcor_probe_put(
+        cluster.points + g, cluster.weight[g], cluster.sums[g], weight_sum, MCOR_ATTRIBUTE_ARGS);
+    }
+  }
+}

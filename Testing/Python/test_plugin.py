@@ -1,9 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin in pvpython and pvbatch, or with --server PROGRAM in a pvserver. Renders nothing."""
+"""The plugin in pvpython and pvbatch, or in the pvserver of with_pvserver.py. Renders nothing."""
+import faulthandler
 import os
-import subprocess
-import sys
 
 from paraview import servermanager, smtrace
 from paraview.simple import (Connect, Delete, Disconnect, FindSource, LoadPlugin, LoadState,
@@ -11,18 +10,6 @@ from paraview.simple import (Connect, Delete, Disconnect, FindSource, LoadPlugin
 
 PLUGIN = os.environ["MCOR_TEST_PLUGIN"]
 DATA = os.environ["MCOR_TEST_DATA"]
-
-
-def connect_to_new_server(program):
-    """Starts a server on a free port. The server waits for one client, and ends with it."""
-    port = 20000 + os.getpid() % 20000
-    server = subprocess.Popen([program, "--server-port=%d" % port], stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, universal_newlines=True)
-    for line in server.stdout:
-        if "Accepting connection" in line:
-            break
-    Connect("localhost", port)
-    return server
 
 
 def names_offered(proxy, name):
@@ -233,16 +220,13 @@ def check_plugin(remote):
 
 
 def main():
-    if "--server" not in sys.argv:
-        check_plugin(remote=False)
-    else:
-        server = connect_to_new_server(sys.argv[sys.argv.index("--server") + 1])
-        try:
-            check_plugin(remote=True)
-            Disconnect()
-        finally:
-            server.terminate()
-            server.wait()
+    faulthandler.dump_traceback_later(500, file=2)  # where it stands, if it stands
+    server = os.environ.get("MCOR_TEST_SERVER")
+    if server:
+        Connect(server.split(":")[0], int(server.split(":")[1]))
+    check_plugin(remote=bool(server))
+    if server:
+        Disconnect()
     print("plugin works in", servermanager.vtkSMProxyManager.GetParaViewSourceVersion())
 
 

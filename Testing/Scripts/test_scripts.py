@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -69,16 +70,18 @@ class Steps(unittest.TestCase):
 
     def run_steps(self, commands, interrupt_after=None):
         """Runs commands in bash with the steps; Ctrl-C goes to all processes of the terminal."""
-        with subprocess.Popen(
+        with tempfile.TemporaryFile("w+") as output, subprocess.Popen(
                 ["bash", "-c", "set -euo pipefail; . .ci/steps.sh; " + commands, "script"], cwd=SOURCE,
-                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                start_new_session=True,
+                stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
                 preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)) as process:
             if interrupt_after is not None:
+                while process.poll() is None and os.fstat(output.fileno()).st_size == 0:
+                    time.sleep(0.05)  # a busy machine may have done nothing at all so far
                 time.sleep(interrupt_after)
                 os.killpg(process.pid, signal.SIGINT)
-            output = process.communicate(timeout=300)[0]
-            return process.returncode, output
+            process.wait(timeout=300)
+            output.seek(0)
+            return process.returncode, output.read()
 
     def test_a_good_step_says_one_line(self):
         status, output = self.run_steps("mcor_step Working echo hidden; echo after")

@@ -58,30 +58,53 @@ void mcor_level_vertices(
 
 /* ---- Seeds ---- */
 
+/* Takes the tree to the device. */
+static mcor_status mcor_write_tree(mcor_context* context)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  MCOR_TRY(mcor_write(
+    context, &graded->leaves, tree->leaves, (size_t)tree->leaf_count * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(
+    context, &graded->regions, tree->regions, ((size_t)tree->region_count + 1) * sizeof(cl_int)));
+  return mcor_write(
+    context, &graded->rungs, tree->rungs, (size_t)(tree->top + 1) * sizeof tree->rungs[0]);
+}
+
 /* States of all leaves. */
 static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
 {
   const mcor_tree* tree = &context->tree;
   mcor_graded* graded = &context->graded;
-  const size_t n = (size_t)tree->leaf_count;
-  if (!graded->leaves.mem)
-  {
-    MCOR_TRY(mcor_write(context, &graded->leaves, tree->leaves, n * 4 * sizeof(cl_int)));
-    MCOR_TRY(mcor_write(
-      context, &graded->rungs, tree->rungs, (size_t)(tree->top + 1) * sizeof tree->rungs[0]));
-  }
-  MCOR_TRY(mcor_reserve(context, &graded->states, n));
   for (int l = 0; l <= tree->top; ++l)
   {
     const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
-    if (count == 0)
-    {
-      continue;
-    }
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
       MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves), MCOR_SEED_ARGS(context, iso),
       MCOR_BUFFER(&graded->states)));
+  }
+  return mcor_view_level(context, 0);
+}
+
+/* The same, and the values of nodes of those that are to be examined, as all their particles are at
+ * hand: `found` becomes what is known of leaves. */
+static mcor_status mcor_find_leaf_nodes(mcor_context* context, double iso, mcor_brick_data* found)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t n = (size_t)tree->leaf_count, values = n * 64 * context->cl.real_size;
+  MCOR_TRY(mcor_reserve(context, &found->known, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &found->value, values));
+  MCOR_TRY(mcor_reserve(context, &found->weight, values));
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    const int first = tree->first_region[l], count = tree->first_region[l + 1] - first;
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_regions", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->regions), MCOR_BUFFER(&graded->leaves),
+      MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&graded->states), MCOR_BUFFER(&found->known),
+      MCOR_BUFFER(&found->value), MCOR_BUFFER(&found->weight)));
   }
   return mcor_view_level(context, 0);
 }
@@ -233,8 +256,8 @@ static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
   return mcor_unmap(context, &graded->keys, &view);
 }
 
-/* Slots for the bricks; those known before keep their values. */
-static mcor_status mcor_fill_slots(mcor_context* context, const mcor_brick_data* last, int count)
+/* Slots for the bricks, of which nothing is known. */
+static mcor_status mcor_fill_slots(mcor_context* context, int count)
 {
   mcor_graded* graded = &context->graded;
   mcor_brick_data* now = &context->bricks.now;
@@ -246,13 +269,20 @@ static mcor_status mcor_fill_slots(mcor_context* context, const mcor_brick_data*
   MCOR_TRY(mcor_reserve(context, &now->valid, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &now->value, n * 64 * real));
   MCOR_TRY(mcor_reserve(context, &now->weight, n * 64 * real));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_bricks", MCOR_LIGHT, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_graded_bricks", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(context->tree.top), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->keys),
-    MCOR_BUFFER(&now->bricks)));
-  return MCOR_LAUNCH(context, "mcor_graded_move", MCOR_MEDIUM, last->count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(last->count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&last->bricks),
-    MCOR_BUFFER(&last->known), MCOR_INT((int)(64 * real / sizeof(cl_uint))),
-    MCOR_BUFFER(&last->value), MCOR_BUFFER(&last->weight), MCOR_BUFFER(&now->known),
+    MCOR_BUFFER(&now->bricks));
+}
+
+/* Takes over what is known of the nodes of `count` bricks. */
+static mcor_status mcor_take_nodes(
+  mcor_context* context, int count, const mcor_buffer* bricks, const mcor_brick_data* from)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  return MCOR_LAUNCH(context, "mcor_graded_move", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&context->graded.rungs), MCOR_BUFFER(bricks),
+    MCOR_BUFFER(&from->known), MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))),
+    MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight), MCOR_BUFFER(&now->known),
     MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
 }
 
@@ -261,13 +291,9 @@ static mcor_status mcor_evaluate_slots(mcor_context* context)
 {
   const mcor_graded* graded = &context->graded;
   const mcor_brick_data* now = &context->bricks.now;
-  for (int l = 0; l <= context->tree.top; ++l)
+  for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
   {
     const int first = graded->first_slot[l], count = graded->first_slot[l + 1] - first;
-    if (count == 0)
-    {
-      continue;
-    }
     MCOR_TRY(mcor_view_level(context, l));
     const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
@@ -279,32 +305,55 @@ static mcor_status mcor_evaluate_slots(mcor_context* context)
     context, &context->bricks.now.known, 0xff, (size_t)now->count * sizeof(cl_ulong));
 }
 
-/* Ends with all nodes of leaves where there may be surface. iso: relative to A0. */
-mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso)
+/* Leaves whose nodes are evaluated along with their states: more take much memory. */
+#define MCOR_LEAVES_AT_ONCE (1 << 19)
+
+/* Slots of all nodes that the leaves where there may be surface need. `found` becomes what is known of
+ * leaves. iso: relative to A0. */
+static mcor_status mcor_place_leaves(mcor_context* context, double iso, mcor_brick_data* found)
 {
   mcor_graded* graded = &context->graded;
+  const int leaves = context->tree.leaf_count;
   int slots = 0;
-  if (!context->tree.leaves)
-  {
-    mcor_release(context, &graded->leaves);
-    MCOR_TRY(mcor_make_tree(context, input));
-  }
-  MCOR_TRY(mcor_find_side_flags(context, iso));
-  MCOR_TRY(mcor_find_leaf_states(context, iso));
+  const bool at_once =
+    context->cl.lanes > 1 && context->bricks.now.count == 0 && leaves <= MCOR_LEAVES_AT_ONCE;
+  MCOR_TRY(mcor_reserve(context, &graded->states, (size_t)leaves));
+  MCOR_TRY(
+    at_once ? mcor_find_leaf_nodes(context, iso, found) : mcor_find_leaf_states(context, iso));
   MCOR_TRY(mcor_list_examined(context));
   if (graded->count > 0)
   {
     MCOR_TRY(mcor_want_bricks(context, &slots));
+    MCOR_TRY(mcor_find_slot_levels(context, slots));
   }
-  MCOR_TRY(mcor_find_slot_levels(context, slots));
   mcor_brick_data last = context->bricks.now;
   context->bricks.now = (mcor_brick_data){ 0 };
-  const mcor_status status = mcor_fill_slots(context, &last, slots);
+  mcor_status status = mcor_fill_slots(context, slots);
+  if (status == MCOR_OK && slots > 0)
+  {
+    status = at_once ? mcor_take_nodes(context, leaves, &graded->leaves, found)
+                     : mcor_take_nodes(context, last.count, &last.bricks, &last);
+  }
   mcor_release_brick_data(context, &last);
+  return status;
+}
+
+/* Ends with all nodes of leaves where there may be surface. iso: relative to A0. */
+mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso)
+{
+  if (!context->tree.leaves)
+  {
+    MCOR_TRY(mcor_make_tree(context, input));
+    MCOR_TRY(mcor_write_tree(context));
+  }
+  MCOR_TRY(mcor_find_side_flags(context, iso));
+  mcor_brick_data found = { 0 };
+  const mcor_status status = mcor_place_leaves(context, iso, &found);
+  mcor_release_brick_data(context, &found);
   MCOR_TRY(status);
   MCOR_TRY(mcor_evaluate_slots(context));
   MCOR_TRY(mcor_sign_nodes(context, iso, &context->bricks.now.known));
-  context->statistics->seed_cells += 64 * (int64_t)graded->count;
+  context->statistics->seed_cells += 64 * (int64_t)context->graded.count;
   return MCOR_OK;
 }
 
@@ -418,8 +467,8 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
 void mcor_release_graded(mcor_context* context)
 {
   mcor_graded* g = &context->graded;
-  MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->states, &g->cells, &g->finer, &g->wanted,
-    &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
+  MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->regions, &g->states, &g->cells, &g->finer,
+    &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
     &context->grid.view_levels, &context->grid.view_inv_h);
   mcor_release_tree(&context->tree);
 }

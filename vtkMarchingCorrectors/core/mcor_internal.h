@@ -152,6 +152,9 @@ typedef struct mcor_tree
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */
   int leaf_count, first_leaf[MCOR_TREE_LEVEL_LIMIT + 2];
+  /* Leaves that are parts of one brick follow each other: first of each such region. */
+  cl_int* regions; /* [region_count + 1] */
+  int region_count, first_region[MCOR_TREE_LEVEL_LIMIT + 2];
 } mcor_tree;
 
 /* Marching of leaves; see mcor_graded.c. Slots are those of mcor_brick_data. */
@@ -161,7 +164,8 @@ typedef struct mcor_graded
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
   mcor_buffer rungs;                   /* mcor_rung, of all levels of leaves */
-  mcor_buffer leaves, states;          /* int4, uchar: of all leaves of the tree */
+  mcor_buffer leaves, regions;         /* int4, int: of the tree */
+  mcor_buffer states;                  /* uchar: of all leaves */
   mcor_buffer cells;                   /* int4: those where there may be surface, in order */
   mcor_buffer finer;                   /* uint: where their neighbours are finer */
   mcor_buffer wanted, requests, index; /* keys of bricks with nodes of theirs */

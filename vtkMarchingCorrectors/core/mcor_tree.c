@@ -312,6 +312,12 @@ static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
       return false;
     }
     tree->leaves = leaves;
+    cl_int* regions = realloc(tree->regions, (2 * most + 1) * sizeof *regions);
+    if (!regions)
+    {
+      return false;
+    }
+    tree->regions = regions;
     *room = 2 * most;
   }
   for (size_t i = 0; i < set->capacity; ++i)
@@ -322,6 +328,7 @@ static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
     }
     int parent[3];
     mcor_brick_of_key(&tree->rungs[level + 1], set->slots[i], parent);
+    const int first = tree->leaf_count;
     for (int d = 0; d < 8; ++d)
     {
       const int b[3] = { 2 * parent[0] + (d & 1), 2 * parent[1] + (d >> 1 & 1),
@@ -334,6 +341,10 @@ static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
         leaf[2] = b[2];
         leaf[3] = level;
       }
+    }
+    if (tree->leaf_count > first)
+    {
+      tree->regions[tree->region_count++] = first;
     }
   }
   return true;
@@ -353,11 +364,14 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   for (int l = 0; l <= tree->top && made; ++l)
   {
     tree->first_leaf[l] = tree->leaf_count;
+    tree->first_region[l] = tree->region_count;
     made = mcor_list_leaves(tree, l, &room);
     tree->first_leaf[l + 1] = tree->leaf_count;
+    tree->first_region[l + 1] = tree->region_count;
   }
   MCOR_RETURN_IF(!made, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for the leaves of adaptive cubes could not be allocated. Use a larger cube size.");
+  tree->regions[tree->region_count] = tree->leaf_count;
   return MCOR_OK;
 }
 
@@ -368,5 +382,6 @@ void mcor_release_tree(mcor_tree* tree)
     mcor_set_free(&tree->split[l]);
   }
   free(tree->leaves);
+  free(tree->regions);
   *tree = (mcor_tree){ 0 };
 }

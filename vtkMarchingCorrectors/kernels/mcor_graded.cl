@@ -49,6 +49,47 @@ __kernel void mcor_graded_states(MCOR_GRID_PARAMS, const int first, const int co
   states[first + i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
 }
 
+#if MCOR_LANES > 1
+/* One work-item = one region, of `count` from `first` on: the leaves that are parts of one brick, the
+ * particles of which are gathered once. Reads the particles that reach it. Writes the leaves' states
+ * and, of those to be examined, their nodes' values and weights. */
+__kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int* regions, __global const int4* leaves, MCOR_SEED_PARAMS,
+  __global uchar* states, __global ulong* known, __global real* node_value,
+  __global real* node_weight)
+{
+  const int region = first + get_global_id(0);
+  if (region >= first + count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
+  const int4 brick = leaves[regions[region]] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
+  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES);
+  mcor_tile wide, tile;
+  mcor_tile_init(&wide);
+  mcor_tile_next(&grid, &query, &wide, true);
+  for (int i = regions[region]; i < regions[region + 1]; ++i)
+  {
+    query = mcor_seed_query(&grid, leaves[i], MCOR_BRICK);
+    mcor_tile_init(&tile);
+    if (wide.complete)
+    {
+      mcor_tile_narrow(&wide, &query, &tile);
+    }
+    states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
+    known[i] = states[i] == MCOR_EXAMINE ? ~0UL : 0;
+    if (known[i])
+    {
+      mcor_node_sums sums;
+      mcor_node_sum(&grid, &query, &tile, &sums);
+      mcor_node_store(&sums, node_value + 64L * i, node_weight + 64L * i);
+    }
+  }
+}
+#endif
+
 /* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, reads
  * the particles that reach them. Writes their values and weights. */
 __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int count,

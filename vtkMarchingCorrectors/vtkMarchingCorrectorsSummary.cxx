@@ -43,9 +43,21 @@ double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_op
     if (!input.solid || !input.solid[i])
     {
       const double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
-      cubes += h * h * h;
       smallest = std::min(smallest, h);
       count += 1.0;
+    }
+  }
+  const bool isAdaptive = options.cube_size_mode == MCOR_CUBES_ADAPTIVE;
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    if (!input.solid || !input.solid[i])
+    {
+      double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
+      for (int level = 0; isAdaptive && level < options.level_limit && h >= 2.0 * smallest; ++level)
+      {
+        h *= 0.5; // its cubes are larger
+      }
+      cubes += h * h * h;
     }
   }
   const bool isKnown = !input.estimate_smoothing_length || options.cube_size <= 0.0;

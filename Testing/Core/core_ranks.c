@@ -11,6 +11,7 @@ static void end_round_where_all_came(core_world* world)
   if (world->came > 0 && world->came >= world->count - world->left)
   {
     world->came = 0;
+    world->failed = world->left > 0;
     ++world->round;
     pthread_cond_broadcast(&world->all_came);
   }
@@ -27,7 +28,7 @@ static int wait_for_all(core_world* world)
   {
     pthread_cond_wait(&world->all_came, &world->lock);
   }
-  const int failed = world->left > 0;
+  const int failed = world->failed; /* as when the round ended: others may have left since */
   pthread_mutex_unlock(&world->lock);
   return failed;
 }

@@ -16,7 +16,7 @@ typedef struct core_world
   int count;
   pthread_mutex_t lock;
   pthread_cond_t all_came;
-  int came, round, left; /* left: ranks that gave up, and take no part any more */
+  int came, round, failed, left; /* left: ranks that gave up, and take no part any more */
   int64_t calls[CORE_MOST_RANKS];
   const void* value[CORE_MOST_RANKS]; /* of each rank's call that is under way */
   int64_t size[CORE_MOST_RANKS];

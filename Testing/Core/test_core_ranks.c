@@ -263,9 +263,180 @@ static void faults(void** state)
   core_free_set(&set);
 }
 
+/* ---- Pairs in rounds ---- */
+
+/* Corners of triangles: positions and normals. */
+typedef struct triangle
+{
+  double x[9];
+  float normal[9];
+} triangle;
+
+typedef struct triangle_list
+{
+  triangle* triangles;
+  int64_t count;
+} triangle_list;
+
+static void add_triangles(triangle_list* list, const mcor_surface* s)
+{
+  list->triangles =
+    realloc(list->triangles, (size_t)(list->count + s->triangle_count + 1) * sizeof(triangle));
+  assert_non_null(list->triangles);
+  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
+  {
+    triangle* to = list->triangles + list->count + i / 3;
+    if (i % 3 == 0)
+    {
+      memset(to, 0, sizeof *to);
+    }
+    memcpy(to->x + 3 * (i % 3), s->points + 3 * s->triangles[i], 3 * sizeof(double));
+    memcpy(to->normal + 3 * (i % 3), s->normals + 3 * s->triangles[i], 3 * sizeof(float));
+  }
+  list->count += s->triangle_count;
+}
+
+static int compare_triangles(const void* a, const void* b)
+{
+  return memcmp(a, b, sizeof(triangle));
+}
+
+typedef struct pairs_job
+{
+  const core_set* set;
+  const mcor_options* options;
+  const double* sides; /* [ranks - 1], along x */
+  mcor_globals globals;
+  mcor_surface surface[CORE_MOST_RANKS];
+  mcor_status status[CORE_MOST_RANKS];
+  int thirsty; /* a rank whose memory does not suffice; -1: none */
+} pairs_job;
+
+static core_set take_near(const core_set* set, const double box[6], double margin)
+{
+  core_set near = core_make_set(set->count);
+  near.count = 0;
+  for (int64_t i = set->count - 1; i >= 0; --i)
+  {
+    const double x = set->position[3 * i];
+    if (x > box[0] - margin && x < box[1] + margin)
+    {
+      memcpy(near.position + 3 * near.count, set->position + 3 * i, 3 * sizeof x);
+      near.smoothing_length[near.count] = set->smoothing_length[i];
+      near.volume[near.count] = set->volume[i];
+      near.scalar[near.count++] = set->scalar[i];
+    }
+  }
+  return near;
+}
+
+static void extract_part(core_rank* rank, void* data)
+{
+  pairs_job* job = data;
+  const int r = rank->number, last = rank->world->count - 1;
+  mcor_options options = *job->options;
+  const double box[6] = { r > 0 ? job->sides[r - 1] : -INFINITY,
+    r < last ? job->sides[r] : INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY };
+  memcpy(options.box, box, sizeof box);
+  options.has_box = 1;
+  options.globals = &job->globals;
+  options.ranks = &rank->ranks;
+  options.memory_limit = r == job->thirsty ? 300000 : 0;
+  core_set near = take_near(job->set, box, 9);
+  const mcor_input input = core_input(&near);
+  mcor_context* context = NULL;
+  job->status[r] = mcor_create_context(NULL, &context);
+  if (job->status[r] == MCOR_OK)
+  {
+    job->status[r] = mcor_extract(context, &input, &options, &job->surface[r]);
+  }
+  if (job->status[r] != MCOR_OK)
+  {
+    print_message("rank %d: %s\n", r, mcor_last_error(context));
+    core_leave(rank);
+  }
+  mcor_free_context(context);
+  core_free_set(&near);
+}
+
+/* Only at one end have particles another one within the smoothing length: from there, all of the
+ * surface is grown to, which winds. */
+static core_set make_band(void)
+{
+  core_set set = core_make_block(14, 0.2, 3, core_slope);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double* x = set.position + 3 * i;
+    set.smoothing_length[i] = x[0] < -5.6 && x[1] < 0 ? 1.3 : 0.6;
+    set.scalar[i] = 4 * sin(0.7 * x[0]) + 3 * sin(0.9 * x[1]) + x[2];
+  }
+  return set;
+}
+
+static void check_pairs(mcor_context* context, const core_set* set, const mcor_options* options,
+  int ranks, const double* sides)
+{
+  const mcor_input input = core_input(set);
+  triangle_list whole = { 0 }, all = { 0 };
+  pairs_job job = { .set = set, .options = options, .sides = sides, .thirsty = -1 };
+  mcor_surface surface = core_extract(context, &input, options);
+  assert_true(surface.statistics.seed_cells < surface.statistics.cells_used / 8);
+  CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
+  add_triangles(&whole, &surface);
+  core_world world;
+  core_run_ranks(ranks, extract_part, &job, &world);
+  mcor_statistics sum = { 0 };
+  for (int r = 0; r < ranks; ++r)
+  {
+    assert_int_equal(job.status[r], MCOR_OK);
+    add_triangles(&all, &job.surface[r]);
+    sum.seed_cells += job.surface[r].statistics.seed_cells;
+    sum.cells_used += job.surface[r].statistics.cells_used;
+    assert_int_equal(world.calls[r], world.calls[0]);
+    mcor_free_surface(&job.surface[r]);
+  }
+  CORE_CHECK(whole.count > 1000 && all.count == whole.count, "%d ranks: %lld triangles, not %lld",
+    ranks, (long long)all.count, (long long)whole.count);
+  assert_int_equal(sum.seed_cells, surface.statistics.seed_cells);
+  assert_int_equal(sum.cells_used, surface.statistics.cells_used);
+  qsort(whole.triangles, (size_t)whole.count, sizeof(triangle), compare_triangles);
+  qsort(all.triangles, (size_t)all.count, sizeof(triangle), compare_triangles);
+  assert_memory_equal(all.triangles, whole.triangles, (size_t)all.count * sizeof(triangle));
+  free(whole.triangles);
+  free(all.triangles);
+  mcor_free_surface(&surface);
+  mcor_free_globals(&job.globals);
+}
+
+static void pairs_in_rounds(void** state)
+{
+  const double iso[2] = { 0.3, 2 };
+  const double two[] = { 0.4 }, three[] = { -1.2, -1.0 },
+               eight[] = { -1000, -7, -3, -0.05, 0.1, 4.4, 1000 };
+  core_set set = make_band();
+  mcor_options options = core_options(iso);
+  options.iso_count = 2;
+  options.seeds = MCOR_PAIRS;
+  options.h_scale = 2.5;
+  check_pairs(*state, &set, &options, 1, NULL);
+  check_pairs(*state, &set, &options, 2, two);
+  check_pairs(*state, &set, &options, 3, three);
+  check_pairs(*state, &set, &options, 8, eight);
+  pairs_job job = { .set = &set, .options = &options, .sides = two, .thirsty = 1 };
+  const mcor_input input = core_input(&set);
+  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
+  core_world world;
+  core_run_ranks(2, extract_part, &job, &world);
+  assert_int_equal(job.status[0], MCOR_CANCELLED);
+  assert_int_equal(job.status[1], MCOR_OUT_OF_CAPACITY);
+  mcor_free_globals(&job.globals);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
-    cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults) };
+    cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults),
+    cmocka_unit_test(pairs_in_rounds) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

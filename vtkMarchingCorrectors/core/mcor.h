@@ -260,9 +260,9 @@ extern "C"
     /* With has_box, the surface is that of the cells whose centres are in the box, box[2 a] <= x <
      * box[2 a + 1] along axis a, to the last bit: boxes side by side make the whole surface. Sides
      * may be infinite. What is global (lattice, ranges, smallest h) is measured over all particles;
-     * those alone that reach the box are evaluated. Not with MCOR_PAIRS, whose cells are found from
-     * cell to cell, wherever they begin: there, evaluation is that of the whole surface up to the
-     * correction. mcor_probe and mcor_derive do not read it. */
+     * those alone that reach the box are evaluated. Not with MCOR_PAIRS, unless there are ranks: their
+     * cells are found from cell to cell, wherever they begin, so that evaluation is that of the whole
+     * surface up to the correction. mcor_probe and mcor_derive do not read it. */
     int has_box;
     double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
 
@@ -270,20 +270,22 @@ extern "C"
      * with that period: each is taken to where it is between x0 and x1, and its images count. The
      * surface is that of one period, open at its sides, where it meets itself up to rounding. All
      * periods are whole numbers of cubes: the cube size is made to fit, smaller by less than a
-     * half. x0 = x1, the default 0: open. Not with MCOR_PAIRS; mcor_probe and mcor_derive do not
-     * read it. */
+     * half. x0 = x1, the default 0: open. mcor_probe and mcor_derive do not read it. */
     double periodic[6];
 
     /* NULL: measured over the input. Else of all particles, of which the input holds some: at least
      * those that reach the box by 3 cubes or less, with computed volumes also all within the
-     * (unscaled) support of these. The surface is, to the last bit, that from all of them. Borrowed
+     * (unscaled) support of these, with MCOR_PAIRS also all within the (unscaled) smoothing length of
+     * the box, and of these. The surface is, to the last bit, that from all of them. Borrowed
      * until return; mcor_probe and mcor_derive do not read it. See mcor_measure_globals. */
     const mcor_globals* globals;
 
     /* NULL: alone. mcor_measure_globals measures over all ranks' inputs, each particle being in one of
      * them (a rank without any has count 0, and data that are not NULL where others have data): what it
      * returns are, to the last bit, the globals of all particles in one input, but for not_finite, a
-     * number on the rank that has the least. Borrowed until return; others do not read it. */
+     * number on the rank that has the least. mcor_extract with these globals, and MCOR_PAIRS, lets cells
+     * grow from box to box; each cell is to be in the box of one rank. Borrowed until return; others do
+     * not read it. */
     const mcor_ranks* ranks;
 
     /* What the surface carries besides points and triangles. */

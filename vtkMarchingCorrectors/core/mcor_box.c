@@ -16,8 +16,9 @@
  *
  * A probe whose search grid nobody keeps owns the cells around its points.
  *
- * Pairs [III-C] find their cells from cell to cell, from seeds that may be anywhere: their cells are
- * found on the whole lattice, and only the rest is the box's. */
+ * Pairs [III-C] find their cells from cell to cell, from seeds that may be anywhere: alone, their cells
+ * are found on the whole lattice, and only the rest is the box's; ranks tell each other, see
+ * mcor_pair_rounds.c. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
@@ -29,19 +30,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_BOX_RING 1
-
 /* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
 #define MCOR_BOX_MARGIN 1.25
 
 /* The same of a probe's points: what rounding moves particles by. */
 #define MCOR_POINTS_MARGIN 0.25
 
-/* Kernel arguments of MCOR_BOX_PARAMS, `ring` cells added. */
-#define MCOR_BOX_ARGS(r, ring)                                                                     \
-  MCOR_INT((r)->first[0] - (ring)), MCOR_INT((r)->first[1] - (ring)),                              \
-    MCOR_INT((r)->first[2] - (ring)), MCOR_INT((r)->last[0] + (ring)),                             \
-    MCOR_INT((r)->last[1] + (ring)), MCOR_INT((r)->last[2] + (ring))
+/* How far apart particles of a pair may be, in smoothing lengths, and a little more. */
+#define MCOR_PAIR_REACH 1.001
+
+/* Kernel arguments of MCOR_BOX_PARAMS: owned cells, those whose particles are at hand; some more on
+ * the lower and the upper sides. */
+#define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
+  MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
+    MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
+#define MCOR_BOX_ARGS(r, ring) MCOR_CELL_ARGS((r)->first, (r)->last, ring, ring)
+#define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->begin, (r)->end, MCOR_BOX_RING, MCOR_BOX_RING)
 
 /* ---- Cells ---- */
 
@@ -51,6 +55,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
   mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
+  const bool everywhere = mcor_uses_pairs(context) && !options->ranks && !box->of_points;
   box->is_part = box->is_empty = false;
   for (int a = 0; a < 3; ++a)
   {
@@ -71,15 +76,24 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
+    box->begin[a] = everywhere ? (int)first : box->first[a];
+    box->end[a] = everywhere ? (int)last : box->last[a];
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
     box->is_empty = box->is_empty || side[0] >= side[1];
   }
 }
 
-/* Whether the device lacks the particles that are far from the box. */
-static bool mcor_is_limited(const mcor_context* context)
+bool mcor_is_limited(const mcor_context* context)
 {
-  return context->box.is_empty || (context->box.is_part && !mcor_uses_pairs(context));
+  const mcor_box* box = &context->box;
+  const mcor_lattice* lattice = &context->lattice;
+  bool limited = box->is_empty;
+  for (int a = 0; a < 3; ++a)
+  {
+    limited = limited || lattice->period[a] > 0 || box->begin[a] > lattice->first[a] ||
+      box->end[a] < lattice->last[a];
+  }
+  return limited;
 }
 
 mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size)
@@ -89,8 +103,8 @@ mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, bricks->block_count,
         MCOR_INT(bricks->block_count), MCOR_INT(cubes_x), MCOR_INT(cubes_y),
-        MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size),
-        MCOR_BOX_ARGS(&context->box, MCOR_BOX_RING), MCOR_BUFFER(&bricks->block_states));
+        MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size), MCOR_NEAR_ARGS(&context->box),
+        MCOR_BUFFER(&bricks->block_states));
 }
 
 mcor_status mcor_void_bricks(mcor_context* context)
@@ -101,8 +115,21 @@ mcor_status mcor_void_bricks(mcor_context* context)
     : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
         (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
         MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
-        MCOR_BUFFER(&bricks->block_keys), MCOR_BOX_ARGS(&context->box, MCOR_BOX_RING),
+        MCOR_BUFFER(&bricks->block_keys), MCOR_NEAR_ARGS(&context->box),
         MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
+}
+
+/* One more node than cells. */
+mcor_status mcor_void_nodes(mcor_context* context)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  const mcor_box* box = &context->box;
+  return !mcor_is_limited(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+        MCOR_BUFFER(&now->bricks),
+        MCOR_CELL_ARGS(box->begin, box->end, MCOR_BOX_RING, MCOR_BOX_RING + 1),
+        MCOR_BUFFER(&now->valid), MCOR_BUFFER(&now->valid));
 }
 
 static mcor_status mcor_clip(
@@ -215,12 +242,14 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
 }
 
 /* A volume is the sum over all within the support of the particle, not scaled; the nearest particle
- * may be any that is nearer than one that reaches. */
+ * may be any that is nearer than one that reaches; the other particle of a pair is within the smoothing
+ * length. */
 static double mcor_reach_beyond(
   const mcor_options* options, const mcor_input* input, double farthest)
 {
   const double volumes = mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
-  const double nearest = options->nearest_particle ? farthest + 2 : 0;
+  const double nearest =
+    options->nearest_particle || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
   return farthest > 0 ? fmax(volumes, nearest) : 0;
 }
 
@@ -242,16 +271,18 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   {
     return false;
   }
-  reach->support = mcor_support_factor(context->options->sph_kernel) * context->options->h_scale /
-    context->lattice.cube;
+  const bool pairs = mcor_uses_pairs(context) && !box->of_points;
+  reach->support = mcor_support_factor(context->options->sph_kernel) * context->options->h_scale;
+  reach->support =
+    (pairs ? fmax(reach->support, MCOR_PAIR_REACH) : reach->support) / context->lattice.cube;
   for (int a = 0; a < 3; ++a)
   {
-    reach->low[a] = box->first[a] - margin;
-    reach->high[a] = box->last[a] + margin;
+    reach->low[a] = box->begin[a] - margin;
+    reach->high[a] = box->end[a] + margin;
     reach->period[a] = context->lattice.period[a];
     reach->first[a] = context->lattice.period_first[a];
   }
-  if (mcor_needs_density(input) || context->options->nearest_particle)
+  if (mcor_needs_density(input) || context->options->nearest_particle || pairs)
   {
     mcor_reach_job job = { .context = context, .input = input, .box = reach };
     const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
@@ -441,6 +472,7 @@ void mcor_end_box(mcor_context* context)
   free(context->box.kept);
   context->box.kept = NULL;
   context->box.of_points = false;
+  mcor_end_rounds(context);
 }
 
 void mcor_release_box(mcor_context* context)

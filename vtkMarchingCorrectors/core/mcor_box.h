@@ -41,11 +41,25 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
 
+/* Cells around the owned ones that are examined, too. */
+#define MCOR_BOX_RING 1
+
+/* Whether the device lacks particles that are far from the box, or has images of some. */
+bool mcor_is_limited(const mcor_context* context);
+
+/* mcor_pair_rounds.c. *grown is false when no box has a new cell. */
+mcor_status mcor_exchange_cells(mcor_context* context, bool* grown);
+mcor_status mcor_attend_rounds(mcor_context* context, int first);
+void mcor_end_rounds(mcor_context* context);
+
 /* Seeds: of cubes of a size, and of bricks, those off the box become void. */
 mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction: leaves used cells of the box and its ring; counts owned ones of any cells, and owned
+/* Extraction: nodes off the box and its ring, of evaluated bricks, are no more valid; so that pairs
+ * do not grow there. */
+mcor_status mcor_void_nodes(mcor_context* context);
+/* Leaves used cells of the box and its ring; counts owned ones of any cells, and owned
  * triangles. */
 mcor_status mcor_clip_used(mcor_context* context);
 mcor_status mcor_count_cells(mcor_context* context, const mcor_buffer* cells, int* count);

@@ -23,9 +23,6 @@ static mcor_status mcor_check_period(
       'x' + a, from, to);
     some = some || from < to;
   }
-  MCOR_RETURN_IF(some && options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM, context,
-    MCOR_INVALID_ARGUMENT,
-    "Pairs as seeds are not made across periodic sides. Use complete seeds, or no period.");
   MCOR_RETURN_IF(some && options->sph_kernel == MCOR_M_PRIME_4 && input->count > 0 &&
       !input->has_volume && !(input->has_mass && input->has_density),
     context, MCOR_INVALID_ARGUMENT,

@@ -115,13 +115,13 @@ static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
 /* Whether the same particles and images reach the box, and as much is needed of them. */
 static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
 {
-  bool same = a->has_box == b->has_box && (!a->has_box || a->seeds == b->seeds), part = a->has_box;
+  bool same = a->has_box == b->has_box && !a->ranks == !b->ranks, part = a->has_box;
   for (int i = 0; i < 6; ++i)
   {
     same = same && (!a->has_box || a->box[i] == b->box[i]) && a->periodic[i] == b->periodic[i];
     part = part || a->periodic[i] != 0;
   }
-  return same && (!part || a->nearest_particle == b->nearest_particle);
+  return same && (!part || (a->seeds == b->seeds && a->nearest_particle == b->nearest_particle));
 }
 
 /* What of the last call still holds. The caller's version numbers stand for the arrays' content;

@@ -50,10 +50,12 @@ static mcor_status mcor_extract_all(
   mcor_surface* surface = result;
   mcor_free_surface(surface); /* of an attempt before */
   MCOR_TRY(mcor_check_input(context, input, options));
+  MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
+    "Ranks were given, but no global values. Measure them over all ranks first.");
   MCOR_TRY(mcor_list_attributes(context, input, surface));
   if (input->count == 0)
   {
-    return MCOR_OK;
+    return mcor_attend_rounds(context, 0);
   }
   const mcor_build build = { .sph_kernel = options->sph_kernel,
     .field = options->field,
@@ -65,6 +67,7 @@ static mcor_status mcor_extract_all(
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
   }
+  MCOR_TRY(context->grid.count > 0 ? MCOR_OK : mcor_attend_rounds(context, 0));
   if (surface->normals)
   {
     MCOR_TRY(mcor_finish_normals(context, surface));

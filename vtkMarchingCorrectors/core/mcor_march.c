@@ -43,6 +43,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   mcor_statistics* statistics = context->statistics;
   const bool pairs = mcor_uses_pairs(context);
   int seeds = 0, hits, used;
+  mcor_end_rounds(context);
   MCOR_TRY(mcor_count_cells(context, &bricks->now.cells, &seeds));
   statistics->seed_cells += seeds;
   for (bool first = true, grown = true; grown; first = false)
@@ -50,6 +51,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
     MCOR_TRY(mcor_find_neighbours(context));
     MCOR_TRY(mcor_evaluate_nodes(context));
     MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
+    MCOR_TRY(pairs ? mcor_void_nodes(context) : MCOR_OK);
     if (first)
     {
       MCOR_TRY(mcor_classify_cells(context));
@@ -58,6 +60,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
     }
     ++statistics->march_rounds;
     MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
+    MCOR_TRY(pairs && !grown ? mcor_exchange_cells(context, &grown) : MCOR_OK);
   }
   if (bricks->slot_of.mem) /* some were appended */
   {

@@ -344,3 +344,47 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     examined[slot] = 0; /* again in the next round, when those bricks exist */
   }
 }
+
+/* One work-item = one cell that another box, or the other end of a period, has reached. Requests the
+ * bricks of its nodes. */
+__kernel void mcor_pair_request_cells(
+  MCOR_BLOCK_PARAMS, const int count, __global const int4* reached, __global uint* brick_bits)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int4 cell = reached[i];
+  const ulong bit = 1UL << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 3) << 4);
+  for (int d = 0; d < 8; ++d)
+  {
+    const int m = mcor_cells_reach(bit, d)
+      ? mcor_brick_number(MCOR_BLOCK_ARGS, (cell.x >> 2) + (d & 1), (cell.y >> 2) + (d >> 1 & 1),
+          (cell.z >> 2) + (d >> 2))
+      : -1;
+    if (m >= 0)
+    {
+      mcor_request_brick(brick_bits, m);
+    }
+  }
+}
+
+/* One work-item = one of these cells. Hands it to its brick; flags: 1 where it is new. */
+__kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int count, __global const int4* reached,
+  __global const int* slot_of, __global uint* cells, __global int* flags)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int4 cell = reached[i];
+  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, cell.x >> 2, cell.y >> 2, cell.z >> 2);
+  const int slot = m < 0 ? -1 : slot_of[m];
+  const uint bit = 1u << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 1) << 4);
+  if (slot >= 0 && !(atomic_or(cells + 2 * slot + (cell.z >> 1 & 1), bit) & bit))
+  {
+    atomic_or(flags, 1);
+  }
+}

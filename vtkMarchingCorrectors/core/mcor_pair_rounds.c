@@ -1,0 +1,240 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The cells of pairs [III-C] grow across the sides of boxes, and of periods, in rounds: when a box has
+ * grown to its end, cells near its sides that are new are told to all boxes, which go on from those in
+ * them and in the ring around them, until none is new anywhere. Then each box has, of its cells and its
+ * ring, those that one run over all would have examined: a step of growth begins in a used cell, whose
+ * box has right values at its nodes, and ends in a cell of that box or of its ring. */
+
+#include "mcor_box.h"
+#include "mcor_ranks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A cell of the world's lattice. */
+typedef struct mcor_world_cell
+{
+  int64_t at[3];
+} mcor_world_cell;
+
+typedef struct mcor_cell_list
+{
+  mcor_world_cell* cells;
+  int64_t count, room;
+} mcor_cell_list;
+
+static mcor_status mcor_add_cell(
+  mcor_context* context, mcor_cell_list* list, const mcor_world_cell* cell)
+{
+  if (list->count == list->room)
+  {
+    const int64_t room = 2 * list->room + 256;
+    mcor_world_cell* grown = realloc(list->cells, (size_t)room * sizeof *grown);
+    MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld cells ran out.",
+      (long long)room);
+    list->cells = grown;
+    list->room = room;
+  }
+  list->cells[list->count++] = *cell;
+  return MCOR_OK;
+}
+
+/* Whether other boxes may want to know of a cell: all beside it are not in this one. */
+static bool mcor_is_near_side(const mcor_box* box, const int64_t at[3])
+{
+  bool near = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    near = near || at[a] <= box->begin[a] || at[a] >= box->end[a] - 1;
+  }
+  return near;
+}
+
+/* Where it is in the period, from the lattice's origin. */
+static int64_t mcor_wrap_cell(const mcor_lattice* lattice, int axis, int64_t at)
+{
+  const int64_t period = lattice->period[axis], from = at - lattice->period_first[axis];
+  return period > 0 ? (from % period + period) % period + lattice->period_first[axis] : at;
+}
+
+/* Lists a brick's cells near the sides of the box. */
+static mcor_status mcor_list_brick(
+  mcor_context* context, const cl_int brick[4], cl_ulong cells, mcor_cell_list* list)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  for (int c = 0; c < MCOR_BRICK_NODES; ++c)
+  {
+    const int64_t at[3] = { brick[0] * MCOR_BRICK + (c & 3), brick[1] * MCOR_BRICK + (c >> 2 & 3),
+      brick[2] * MCOR_BRICK + (c >> 4) };
+    if (cells >> c & 1 && mcor_is_near_side(&context->box, at))
+    {
+      mcor_world_cell cell;
+      for (int a = 0; a < 3; ++a)
+      {
+        cell.at[a] = mcor_wrap_cell(lattice, a, at[a]) + lattice->origin[a];
+      }
+      MCOR_TRY(mcor_add_cell(context, list, &cell));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* The cells that are new since the last round, of bricks in their slots. */
+static mcor_status mcor_list_new_cells(mcor_context* context, mcor_cell_list* list)
+{
+  mcor_box* box = &context->box;
+  const mcor_brick_data* now = &context->bricks.now;
+  const size_t count = (size_t)now->count;
+  void *bricks, *cells;
+  if (box->told_count < now->count)
+  {
+    cl_ulong* told = realloc(box->told, count * sizeof *told);
+    MCOR_RETURN_IF(
+      !told, context, MCOR_OUT_OF_CAPACITY, "Host memory for %d bricks ran out.", now->count);
+    memset(told + box->told_count, 0, (count - (size_t)box->told_count) * sizeof *told);
+    box->told = told;
+    box->told_count = now->count;
+  }
+  if (count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_map(context, &now->bricks, count * 4 * sizeof(cl_int), false, &bricks));
+  mcor_status status = mcor_map(context, &now->cells, count * sizeof(cl_ulong), false, &cells);
+  for (size_t i = 0; i < count && status == MCOR_OK; ++i)
+  {
+    const cl_ulong mask = ((const cl_ulong*)cells)[i], fresh = mask & ~box->told[i];
+    status = fresh ? mcor_list_brick(context, (const cl_int*)bricks + 4 * i, fresh, list) : MCOR_OK;
+    box->told[i] = mask;
+  }
+  const mcor_status unmapped = mcor_unmap(context, &now->cells, &cells);
+  const mcor_status last = mcor_unmap(context, &now->bricks, &bricks);
+  return status != MCOR_OK ? status : unmapped != MCOR_OK ? unmapped : last;
+}
+
+/* Of a cell's images at whole periods, those in the box and its ring, as the device wants them: four
+ * numbers each. At most 27; returns how many. */
+static int mcor_place_cell(const mcor_context* context, const mcor_world_cell* cell, cl_int* to)
+{
+  const mcor_box* box = &context->box;
+  const mcor_lattice* lattice = &context->lattice;
+  int count = 0;
+  for (int image = 0; image < 27; ++image)
+  {
+    const int k[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
+    bool in = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int64_t at = cell->at[a] - lattice->origin[a] + k[a] * (int64_t)lattice->period[a];
+      in = in && (k[a] == 0 || lattice->period[a] > 0) && at >= box->begin[a] - MCOR_BOX_RING &&
+        at < box->end[a] + MCOR_BOX_RING;
+      to[4 * count + a] = in ? (cl_int)at : 0;
+    }
+    to[4 * count + 3] = 0;
+    count += in;
+  }
+  return count;
+}
+
+/* Goes on from `count` cells of this box; *fresh: whether one is new. */
+static mcor_status mcor_take_cells(
+  mcor_context* context, const cl_int* cells, int count, bool* fresh)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_buffer *taken = &bricks->pair_cells, *flags = &bricks->found;
+  cl_int flag = 0;
+  MCOR_TRY(mcor_write(context, taken, cells, (size_t)count * 4 * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request_cells", MCOR_LIGHT, count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(count), MCOR_BUFFER(taken), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_append_bricks(context));
+  MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_take", MCOR_LIGHT, count, MCOR_BLOCK_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(taken), MCOR_BUFFER(&bricks->slot_of),
+    MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
+  MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
+  mcor_release(context, taken);
+  *fresh = flag != 0;
+  return MCOR_OK;
+}
+
+/* Takes what is in this box of what all boxes tell. */
+static mcor_status mcor_hear_cells(
+  mcor_context* context, const mcor_world_cell* told, int64_t count, bool* fresh)
+{
+  cl_int* places = NULL;
+  int64_t found = 0, room = 0;
+  *fresh = false;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    if (found + 27 > room)
+    {
+      room = 2 * room + 1024;
+      cl_int* grown = realloc(places, (size_t)room * 4 * sizeof *grown);
+      if (!grown || room > MCOR_COUNT_LIMIT)
+      {
+        free(grown ? grown : places);
+        return mcor_fail(
+          context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld cells ran out.", (long long)room);
+      }
+      places = grown;
+    }
+    found += mcor_place_cell(context, told + i, places + 4 * found);
+  }
+  const mcor_status status =
+    found > 0 ? mcor_take_cells(context, places, (int)found, fresh) : MCOR_OK;
+  free(places);
+  return status;
+}
+
+mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
+{
+  mcor_cell_list list = { 0 };
+  const void* all;
+  int64_t count = 0, fresh = 0;
+  *grown = false;
+  if (!mcor_is_limited(context) && !context->options->ranks)
+  {
+    return MCOR_OK;
+  }
+  mcor_status status = mcor_list_new_cells(context, &list);
+  if (status == MCOR_OK)
+  {
+    status = mcor_gather(context, list.cells, list.count, sizeof *list.cells, &all, &count);
+  }
+  if (status == MCOR_OK && context->grid.count > 0)
+  {
+    bool some;
+    status = mcor_hear_cells(context, all, count, &some);
+    fresh = some;
+  }
+  free(list.cells);
+  MCOR_TRY(status);
+  MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &fresh));
+  *grown = fresh != 0;
+  return MCOR_OK;
+}
+
+/* Forgets what others know of: they have been told it for one iso value. */
+void mcor_end_rounds(mcor_context* context)
+{
+  free(context->box.told);
+  context->box.told = NULL;
+  context->box.told_count = 0;
+}
+
+/* Of a rank that has nothing to do, for all iso values from number `first` on. */
+mcor_status mcor_attend_rounds(mcor_context* context, int first)
+{
+  const bool all = context->options->ranks && mcor_uses_pairs(context);
+  context->bricks.now.count = all ? 0 : context->bricks.now.count;
+  for (int i = first; i < context->options->iso_count && all; ++i)
+  {
+    for (bool grown = true; grown;)
+    {
+      MCOR_TRY(mcor_exchange_cells(context, &grown));
+    }
+  }
+  return MCOR_OK;
+}

@@ -1,0 +1,259 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Surfaces of adaptive cubes: closed across levels, the same whatever the order, the form of the
+ * kernels and what a context has kept, and those of uniform cubes where there is one level. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A shell of particles around a hole whose size goes with the distance from the hole's middle, from 1
+ * to `ratio`; scalar: height. A wedge of it is left out. */
+static core_set make_graded(double ratio, double step)
+{
+  core_set set = core_make_set(60000);
+  uint64_t seed = 5;
+  int64_t n = 0;
+  for (double r = 1; r < ratio; r *= 1 + 0.9 * step)
+  {
+    const int of_shell = (int)(4 * M_PI / (step * step));
+    for (int i = 0; i < of_shell; ++i)
+    {
+      const double z = 1 - (2 * i + 1.0) / of_shell, s = sqrt(1 - z * z), w = 2.399963 * i;
+      const double p[3] = { r * (s * cos(w) + 0.05 * step * random_unit(&seed)), r * s * sin(w),
+        r * z };
+      if (p[0] < 0.4 * r)
+      {
+        assert_true(n < set.count);
+        memcpy(set.position + 3 * n, p, sizeof p);
+        set.smoothing_length[n] = 1.2 * step * r;
+        set.volume[n] = pow(step * r, 3);
+        set.scalar[n++] = z + 0.2 * p[1] / r;
+      }
+    }
+  }
+  set.count = n;
+  return set;
+}
+
+static mcor_options graded_options(const double* iso, mcor_field field)
+{
+  mcor_options options = core_options(iso);
+  options.field = field;
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  return options;
+}
+
+static int levels_used(const mcor_surface* surface)
+{
+  int levels = 0;
+  int64_t cells = 0, triangles = 0;
+  for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
+  {
+    levels += surface->statistics.cells_of_level[l] > 0;
+    cells += surface->statistics.cells_of_level[l];
+    triangles += surface->statistics.triangles_of_level[l];
+  }
+  assert_int_equal(cells, surface->statistics.cells_used);
+  assert_int_equal(triangles, surface->statistics.triangles_before_trimming);
+  return levels;
+}
+
+static void closed_across_levels(void** state)
+{
+  static const double half = 0.5;
+  const double ratios[] = { 10, 200 };
+  for (int i = 0; i < 2; ++i)
+  {
+    core_set set = make_graded(ratios[i], 0.3);
+    const mcor_input input = core_input(&set);
+    const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_in_range(levels_used(&surface), i == 0 ? 3 : 6, 9);
+    mesh_report report = core_check_mesh(&surface);
+    assert_int_equal(report.boundary_edges, 0);
+    assert_int_equal(surface.statistics.vertices_above_tolerance, 0);
+    mesh_free_report(&report);
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
+}
+
+/* Whether every vertex is on the surface and where the trim boundary is flagged, all levels alike. */
+static void trimmed(void** state)
+{
+  static const double isos[2] = { 0.1, 0.3 };
+  core_set set = make_graded(30, 0.3);
+  const mcor_input input = core_input(&set);
+  mcor_options options = graded_options(isos, MCOR_SHEPARD);
+  options.iso_count = 2;
+  options.boundary_flag = options.residual = options.weight_sum = 1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_in_range(levels_used(&surface), 3, 9);
+  core_check_flags(&surface);
+  assert_int_equal(surface.statistics.vertices_above_tolerance, 0);
+  int64_t cuts = 0, linear = 0;
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    if (surface.boundary_flag[i] == 1)
+    {
+      ++cuts;
+      CORE_CHECK(fabs(surface.weight_sum[i] - 0.5) < 2e-5, "weight %g", surface.weight_sum[i]);
+    }
+    linear += surface.boundary_flag[i] == 2;
+  }
+  assert_true(cuts > 20 * linear && cuts > 100);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void one_level_is_uniform(void** state)
+{
+  static const double iso = 0;
+  core_set set = core_make_block(9, 0.3, 3, core_ball);
+  core_set graded = make_graded(8, 0.4);
+  const mcor_input input = core_input(&set), other = core_input(&graded);
+  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_surface adaptive = core_extract(*state, &input, &options);
+  options.level_limit = 0;
+  mcor_surface limited = core_extract(*state, &other, &options);
+  options.cube_size_mode = MCOR_CUBES_UNIFORM;
+  mcor_surface uniform = core_extract(*state, &input, &options);
+  mcor_surface uniform_other = core_extract(*state, &other, &options);
+  assert_true(core_hash(&adaptive) == core_hash(&uniform) && uniform.point_count > 100);
+  assert_true(core_hash(&limited) == core_hash(&uniform_other));
+  mcor_free_surface(&adaptive);
+  mcor_free_surface(&limited);
+  mcor_free_surface(&uniform);
+  mcor_free_surface(&uniform_other);
+  core_free_set(&set);
+  core_free_set(&graded);
+}
+
+/* Vertices of adaptive cubes are roots on lines of the finest lattice: the uniform surface passes
+ * there. */
+static void roots_of_the_finest_lattice(void** state)
+{
+  static const double half = 0.5;
+  core_set set = make_graded(6, 0.4);
+  const mcor_input input = core_input(&set);
+  const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const double cube = surface.statistics.cube_size;
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    int whole = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double at = surface.points[3 * i + a] / cube;
+      whole += fabs(at - floor(at + 0.5)) < 1e-9;
+    }
+    CORE_CHECK(whole >= 2, "point %d is on no line", (int)i);
+  }
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void order_form_and_reuse(void** state)
+{
+  static const double half = 0.5, isos[2] = { 0.3, 0.1 };
+  core_set set = make_graded(12, 0.4);
+  int64_t* order = core_make_order(set.count, 9);
+  core_set shuffled = core_permute(&set, order);
+  mcor_input input = core_input_to_keep(&set);
+  const mcor_input other = core_input(&shuffled);
+  mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const uint64_t hash = core_hash(&surface);
+  mcor_free_surface(&surface);
+  surface = core_extract(*state, &other, &options);
+  assert_true(core_hash(&surface) == hash);
+  mcor_free_surface(&surface);
+  const char* forms[] = { "cpu", "gpu" };
+  for (int f = 0; f < 2; ++f)
+  {
+    mcor_context* context;
+    core_create_form(&context, forms[f]);
+    surface = core_extract(context, &input, &options);
+    assert_true(core_hash(&surface) == hash);
+    mcor_free_surface(&surface);
+    mcor_free_context(context);
+  }
+  options = graded_options(isos, MCOR_SHEPARD);
+  surface = core_extract(*state, &input, &options); /* keeps what the next one uses */
+  mcor_free_surface(&surface);
+  options.iso_values = isos + 1;
+  mcor_surface reused = core_extract(*state, &input, &options);
+  input.particles_version = input.scalar_version = 0;
+  surface = core_extract(*state, &input, &options);
+  assert_true(core_hash(&surface) == core_hash(&reused) && surface.point_count > 100);
+  mcor_free_surface(&surface);
+  mcor_free_surface(&reused);
+  free(order);
+  core_free_set(&set);
+  core_free_set(&shuffled);
+}
+
+/* Two groups whose sizes, and distance, differ by thousands: nothing is of the size of the finest
+ * lattice between. */
+static void far_apart(void** state)
+{
+  static const double half = 0.5;
+  core_set set = core_make_set(2 * 216);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double size = i < 216 ? 1 : 4000;
+    const int64_t k = i % 216, at[3] = { k % 6, k / 6 % 6, k / 36 };
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = size * ((double)at[a] + (a == 0 && i >= 216 ? 6 : 0));
+    }
+    set.smoothing_length[i] = 1.3 * size;
+    set.volume[i] = size * size * size;
+  }
+  const mcor_input input = core_input(&set);
+  const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  mesh_report report = core_check_mesh(&surface);
+  assert_int_equal(report.components, 2);
+  assert_int_equal(report.boundary_edges, 0);
+  assert_true(surface.triangle_count < 20000);
+  mesh_free_report(&report);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void refusals(void** state)
+{
+  static const double iso = 0;
+  mcor_context* context = *state;
+  core_set set = core_make_block(4, 0, 1, core_ball);
+  const mcor_input input = core_input(&set);
+  mcor_surface surface = { 0 };
+  for (int i = 0; i < 4; ++i)
+  {
+    mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+    const char* words[] = { "pairs", "a box", "a period", "highest level" };
+    options.seeds = i == 0 ? MCOR_PAIRS : MCOR_COMPLETE;
+    options.has_box = i == 1;
+    options.box[1] = options.box[3] = options.box[5] = 1;
+    options.periodic[1] = i == 2;
+    options.level_limit = i == 3 ? MCOR_CUBE_LEVELS : 3;
+    assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+    CORE_CHECK(strstr(mcor_last_error(context), words[i]), "%s", mcor_last_error(context));
+    assert_int_equal(surface.point_count, 0);
+  }
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(closed_across_levels),
+    cmocka_unit_test(trimmed), cmocka_unit_test(one_level_is_uniform),
+    cmocka_unit_test(roots_of_the_finest_lattice), cmocka_unit_test(order_form_and_reuse),
+    cmocka_unit_test(far_apart), cmocka_unit_test(refusals) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,263 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Leaves of adaptive cubes, against their definition: the largest bricks that only particles with
+ * h >= 2^L times the smallest h reach, and the smallest refinement of these in which leaves that touch
+ * differ by one level at most. */
+
+#include "core_fixture.h"
+
+#include "mcor_tree.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The level of every finest brick of a lattice of n^3 top bricks, by definition. */
+typedef struct plain_levels
+{
+  int n; /* finest bricks along an axis */
+  signed char* level;
+} plain_levels;
+
+static size_t at(const plain_levels* plain, int x, int y, int z)
+{
+  return ((size_t)z * (size_t)plain->n + (size_t)y) * (size_t)plain->n + (size_t)x;
+}
+
+/* Whether all particles that reach the brick have 2^level times the smallest h. */
+static bool is_coarse(const mcor_context* context, const core_set* set, int level, const int b[3])
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const double edge = ldexp(MCOR_BRICK, level);
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    double square = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double x = set->position[3 * i + a] / lattice->cube - (double)lattice->origin[a];
+      const double d = fmax(fmax(b[a] * edge - x, x - (b[a] + 1) * edge), 0);
+      square += d * d;
+    }
+    const double reach = 2 * set->smoothing_length[i] / lattice->cube;
+    if (square <= reach * reach && set->smoothing_length[i] < ldexp(context->measure.h_min, level))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Sets all finest bricks of a brick. */
+static void fill(plain_levels* plain, int level, const int b[3], int value)
+{
+  const int w = 1 << level;
+  for (int z = b[2] * w; z < (b[2] + 1) * w; ++z)
+  {
+    for (int y = b[1] * w; y < (b[1] + 1) * w; ++y)
+    {
+      memset(plain->level + at(plain, b[0] * w, y, z), value, (size_t)w);
+    }
+  }
+}
+
+/* The largest bricks, from the top down. */
+static void divide(
+  const mcor_context* context, const core_set* set, plain_levels* plain, int level, const int b[3])
+{
+  if (level == 0 || is_coarse(context, set, level, b))
+  {
+    fill(plain, level, b, level);
+    return;
+  }
+  for (int d = 0; d < 8; ++d)
+  {
+    const int child[3] = { 2 * b[0] + (d & 1), 2 * b[1] + (d >> 1 & 1), 2 * b[2] + (d >> 2) };
+    divide(context, set, plain, level - 1, child);
+  }
+}
+
+/* The lowest level of finest bricks around a leaf. */
+static int lowest_beside(const plain_levels* plain, int level, const int b[3])
+{
+  const int w = 1 << level, n = plain->n;
+  int lowest = level;
+  for (int z = b[2] * w - 1; z <= (b[2] + 1) * w; ++z)
+  {
+    for (int y = b[1] * w - 1; y <= (b[1] + 1) * w; ++y)
+    {
+      for (int x = b[0] * w - 1; x <= (b[0] + 1) * w; ++x)
+      {
+        if (x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n)
+        {
+          const int other = plain->level[at(plain, x, y, z)];
+          lowest = other < lowest ? other : lowest;
+        }
+      }
+    }
+  }
+  return lowest;
+}
+
+/* Divides leaves that touch others two or more levels below, until there is none. */
+static void balance(plain_levels* plain)
+{
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    for (int i = 0; i < plain->n * plain->n * plain->n; ++i)
+    {
+      const int x = i % plain->n, y = i / plain->n % plain->n, z = i / plain->n / plain->n;
+      const int level = plain->level[i], w = 1 << level;
+      const int b[3] = { x / w, y / w, z / w };
+      if (level > 1 && x % w == 0 && y % w == 0 && z % w == 0 &&
+        lowest_beside(plain, level, b) < level - 1)
+      {
+        fill(plain, level, b, level - 1);
+        changed = true;
+      }
+    }
+  }
+}
+
+static void make_tree(
+  mcor_context* context, const core_set* set, int limit, mcor_options* options, mcor_input* input)
+{
+  static const double iso = 0.5;
+  *input = core_input(set);
+  *options = core_options(&iso);
+  options->field = MCOR_WEIGHT_SUM;
+  options->cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options->level_limit = limit;
+  context->options = options;
+  context->uses_solids = false;
+  CORE_OK(context, mcor_measure_input(context, input, options));
+  CORE_OK(context, mcor_make_tree(context, input));
+  context->options = NULL;
+}
+
+static void leaves_are_those_of_the_definition(void** state)
+{
+  mcor_context* context = *state;
+  for (uint64_t seed = 1; seed <= 4; ++seed)
+  {
+    core_set set = core_make_random(seed < 3 ? 12 : 3, 12, 0.3, 4, seed);
+    mcor_options options;
+    mcor_input input;
+    make_tree(context, &set, 24, &options, &input);
+    const mcor_tree* tree = &context->tree;
+    const int top = tree->top;
+    assert_in_range(top, 1, 5);
+    const int n = tree->rungs[top + 1].n[0], m = tree->rungs[top + 1].n[1],
+              k = tree->rungs[top + 1].n[2];
+    const int most = n > m ? (n > k ? n : k) : m > k ? m : k;
+    plain_levels plain = { .n = most << (top + 1) };
+    const size_t count = (size_t)plain.n * (size_t)plain.n * (size_t)plain.n;
+    plain.level = malloc(count);
+    assert_non_null(plain.level);
+    for (int i = 0; i < most * most * most; ++i)
+    {
+      const int b[3] = { i % most, i / most % most, i / most / most };
+      divide(context, &set, &plain, top + 1, b);
+    }
+    balance(&plain);
+    for (int i = 0; i < tree->leaf_count; ++i)
+    {
+      const cl_int* leaf = tree->leaves + 4 * (size_t)i;
+      const int level = leaf[3], w = 1 << level;
+      CORE_CHECK(plain.level[at(&plain, leaf[0] * w, leaf[1] * w, leaf[2] * w)] == level,
+        "seed %d, leaf %d %d %d of level %d", (int)seed, leaf[0], leaf[1], leaf[2], level);
+      fill(&plain, level, leaf, -1);
+    }
+    /* What is left no particle reaches, or not with this level's cubes. */
+    for (size_t i = 0; i < count; ++i)
+    {
+      CORE_CHECK(plain.level[i] < 0 || plain.level[i] > top, "seed %d: no leaf of level %d",
+        (int)seed, plain.level[i]);
+    }
+    free(plain.level);
+    core_free_set(&set);
+  }
+}
+
+/* Leaves as a sum over them that no order changes. */
+static uint64_t hash_leaves(const mcor_tree* tree)
+{
+  uint64_t hash = (uint64_t)tree->leaf_count;
+  for (int i = 0; i < tree->leaf_count; ++i)
+  {
+    const cl_int* leaf = tree->leaves + 4 * (size_t)i;
+    uint64_t key = mcor_tree_key(&tree->rungs[leaf[3]], leaf);
+    hash += random_bits(&key);
+  }
+  return hash;
+}
+
+static void order_and_limit(void** state)
+{
+  mcor_context* context = *state;
+  mcor_options options;
+  mcor_input input;
+  core_set set = core_make_random(20000, 200, 0.5, 20, 7);
+  int64_t* order = core_make_order(set.count, 3);
+  core_set other = core_permute(&set, order);
+  make_tree(context, &set, 24, &options, &input);
+  const uint64_t hash = hash_leaves(&context->tree);
+  assert_in_range(context->tree.top, 4, 5);
+  make_tree(context, &other, 24, &options, &input);
+  assert_true(hash_leaves(&context->tree) == hash);
+  make_tree(context, &set, 2, &options, &input);
+  assert_int_equal(context->tree.top, 2);
+  for (int i = 0; i < context->tree.leaf_count; ++i)
+  {
+    assert_in_range(context->tree.leaves[4 * (size_t)i + 3], 0, 2);
+  }
+  free(order);
+  core_free_set(&set);
+  core_free_set(&other);
+}
+
+/* Leaves that follow each other in a region are parts of one brick. */
+static void regions(void** state)
+{
+  mcor_context* context = *state;
+  mcor_options options;
+  mcor_input input;
+  core_set set = core_make_random(2000, 60, 0.5, 9, 8);
+  make_tree(context, &set, 24, &options, &input);
+  const mcor_tree* tree = &context->tree;
+  for (int r = 0; r < tree->region_count; ++r)
+  {
+    const cl_int* first = tree->leaves + 4 * (size_t)tree->regions[r];
+    assert_in_range(tree->regions[r + 1] - tree->regions[r], 1, 8);
+    for (int i = tree->regions[r]; i < tree->regions[r + 1]; ++i)
+    {
+      const cl_int* leaf = tree->leaves + 4 * (size_t)i;
+      assert_true(leaf[0] / 2 == first[0] / 2 && leaf[1] / 2 == first[1] / 2 &&
+        leaf[2] / 2 == first[2] / 2 && leaf[3] == first[3]);
+    }
+  }
+  assert_int_equal(tree->regions[tree->region_count], tree->leaf_count);
+  core_free_set(&set);
+}
+
+/* A level begins at exactly 2^L times the smallest h. */
+static void levels_of_particles(void** state)
+{
+  (void)state;
+  assert_int_equal(mcor_tree_level_of(1, 1, 24), 0);
+  assert_int_equal(mcor_tree_level_of(nextafter(2, 0), 1, 24), 0);
+  assert_int_equal(mcor_tree_level_of(2, 1, 24), 1);
+  assert_int_equal(mcor_tree_level_of(0.3 * 1024, 0.3, 24), 10);
+  assert_int_equal(mcor_tree_level_of(nextafter(0.3 * 1024, 0), 0.3, 24), 9);
+  assert_int_equal(mcor_tree_level_of(1e30, 1, 24), 24);
+  assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0); /* of a solid */
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(leaves_are_those_of_the_definition),
+    cmocka_unit_test(order_and_limit), cmocka_unit_test(regions),
+    cmocka_unit_test(levels_of_particles) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -21,7 +21,7 @@
  * Numbers and velocities are point arrays, found by their usual names (case, blanks, "_" and "-" do
  * not matter) unless they are named; the numbers also as the active global ids:
  *
- *     number     Idp ParticleId ParticleIds PartId id ids GlobalIds GlobalId gid pid
+ *     number     Idp ParticleId ParticleIds PartId id ids GlobalIds GlobalId gid pid iorig
  *     velocity   Velocity Velocities vel v
  *
  * In place of a name, "(automatic)" and "(none)" mean the same as an empty one. Without numbers, or with numbers

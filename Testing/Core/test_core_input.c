@@ -543,6 +543,7 @@ static void test_names(void** state)
   assert_int_equal(mcor_name_rank(MCOR_VELOCITY, "Vel"), 2);
   assert_int_equal(mcor_name_rank(MCOR_PARTICLE_ID, "Idp"), 0);
   assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
+  assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "iorig") > 0);
   const char* const others[] = { "", "mas", "masss", "volume of it", NULL };
   for (int i = 0; i < 5; ++i)
   {
@@ -558,6 +559,8 @@ static void test_names(void** state)
   assert_string_equal(mcor_find_layout("Masses\nDensities\nSmoothingLengths"), "SWIFT");
   assert_string_equal(mcor_find_layout("Masses\nParticleIDs\nSmoothingLength"), "GADGET");
   assert_string_equal(mcor_find_layout("vx\nvy\nvz\nMass\nSmoothing Length"), "SPH-EXA");
+  assert_string_equal(mcor_find_layout("Density\nMass\nh\nvx\nvy\nvz"), "SPH-EXA");
+  assert_string_equal(mcor_find_layout("h\nm\nrho\nvx\nvy\nvz"), "SPH-EXA");
   assert_string_equal(mcor_find_layout("h\nvx\nvy\nvz\nitype"), "Phantom");
   assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
   assert_string_equal(mcor_find_layout(""), "");

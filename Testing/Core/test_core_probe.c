@@ -118,6 +118,85 @@ static void test_against_oracle(void** state)
   }
 }
 
+/* Points within the supports of single particles, small and large ones. */
+static double* points_at(const core_set* set, int64_t count)
+{
+  double* points = malloc((size_t)count * 3 * sizeof(double));
+  assert_non_null(points);
+  uint64_t seed = 31;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const int64_t j = (int64_t)(random_unit(&seed) * (double)set->count);
+    for (int a = 0; a < 3; ++a)
+    {
+      points[3 * i + a] =
+        set->position[3 * j + a] + set->smoothing_length[j] * (2 * random_unit(&seed) - 1);
+    }
+  }
+  return points;
+}
+
+/* Smoothing lengths from 1 to 1000: values, weights and gradients in units of what they are made of. */
+static void wide_range_run(mcor_context* context, mcor_type precision, double tolerance)
+{
+  core_set set = core_make_random(3000, 10, 0.004, 4, 23);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] =
+      0.8 * pow(set.smoothing_length[i], 2); /* the small ones weigh most where they are */
+  }
+  const int64_t count = 3000;
+  double* points = points_at(&set, count);
+  mcor_input input = core_input(&set);
+  const mcor_array attribute = input.scalar, at = core_array(points, 3);
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.precision = precision;
+  options.gradients = 1;
+  options.node_threshold = 0;
+  mcor_samples samples;
+  CORE_OK(context, mcor_probe(context, &input, &options, &at, count, &samples));
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  double most = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    oracle_sample expected;
+    oracle_evaluate(&field, NULL, points + 3 * i, &expected);
+    double steepest = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      steepest = fmax(steepest, fabs(expected.gradient[a]));
+    }
+    most = fmax(most, steepest);
+    CORE_CHECK(
+      fabs(samples.weight_sum[i] - expected.weight) <= tolerance * fmax(1, expected.weight),
+      "point %lld: weight %g, expected %g", (long long)i, samples.weight_sum[i], expected.weight);
+    CORE_CHECK(fabs(samples.values[0][i] - expected.value) <= tolerance,
+      "point %lld: value %.9g, expected %.9g", (long long)i, samples.values[0][i], expected.value);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double got = samples.gradients[0][3 * i + a];
+      CORE_CHECK(fabs(got - expected.gradient[a]) <= 20 * tolerance * steepest,
+        "point %lld: gradient %.9g, expected %.9g", (long long)i, got, expected.gradient[a]);
+    }
+  }
+  assert_true(most > 20); /* some points are at small particles */
+  oracle_free_field(&field);
+  mcor_free_samples(&samples);
+  free(points);
+  core_free_set(&set);
+}
+
+static void test_wide_range_against_oracle(void** state)
+{
+  wide_range_run(*state, MCOR_FLOAT32, 5e-5); /* positions have 1e-5 of the least h */
+  wide_range_run(*state, MCOR_FLOAT64, 1e-11);
+}
+
 /* Two arrays, 12 components in all, so that there is more than one round; particles in a cube of edge
  * `size`. */
 static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
@@ -273,6 +352,7 @@ static void test_odd_points(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_against_oracle),
+    cmocka_unit_test(test_wide_range_against_oracle),
     cmocka_unit_test(test_bits_do_not_depend_on_other_points),
     cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define MCOR_NAMES 10
+#define MCOR_NAMES 12
 
 /* The most usual name first; in small letters and digits alone. */
 static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
@@ -19,7 +19,7 @@ static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_DENSITY] = { "density", "densities", "particledensity", "rho", "rhop" },
   [MCOR_VELOCITY] = { "velocity", "velocities", "vel", "v" },
   [MCOR_PARTICLE_ID] = { "idp", "particleid", "particleids", "partid", "id", "ids", "globalids",
-    "globalid", "gid", "pid" },
+    "globalid", "gid", "pid", "iorig" },
   [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
     "isboundary" },
 };
@@ -67,6 +67,7 @@ static const mcor_layout mcor_layouts[] = { { "DualSPHysics", { "rhop", "idp" } 
   { "GADGET", { "smoothinglength", "masses", "particleids" } },
   { "GADGET", { "hsml", "masses", "particleids" } },
   { "SPH-EXA", { "smoothinglength", "vx", "vy", "vz" } },
+  { "SPH-EXA", { "h", "mass", "vx", "vz" } }, { "SPH-EXA", { "h", "m", "vx", "vz" } },
   { "Phantom", { "h", "vx", "vy", "vz" } } };
 
 /* Whether one of the names, each on a line, is the usual one. */

@@ -226,6 +226,56 @@ static void far_apart(void** state)
   core_free_set(&set);
 }
 
+/* Boxes side by side share no triangle and leave none out. */
+static void boxes_make_the_whole(void** state)
+{
+  static const double iso = 0.2;
+  core_set set = make_graded(12, 0.4);
+  const mcor_input input = core_input(&set);
+  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_surface whole = core_extract(*state, &input, &options);
+  int64_t triangles = 0, cells = 0;
+  double area = 0;
+  for (int part = 0; part < 4; ++part)
+  {
+    const double box[6] = { part & 1 ? -2.3 : -INFINITY, part & 1 ? INFINITY : -2.3, -INFINITY,
+      INFINITY, part & 2 ? 0.7 : -INFINITY, part & 2 ? INFINITY : 0.7 };
+    options.has_box = 1;
+    memcpy(options.box, box, sizeof box);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_true(surface.triangle_count > 0 && surface.triangle_count < whole.triangle_count);
+    mesh_report report = core_check_mesh(&surface);
+    triangles += surface.triangle_count;
+    cells += surface.statistics.cells_used;
+    area += report.area;
+    assert_in_range(levels_used(&surface), 1, 9);
+    mesh_free_report(&report);
+    mcor_free_surface(&surface);
+  }
+  mesh_report report = core_check_mesh(&whole);
+  assert_int_equal(triangles, whole.triangle_count);
+  assert_int_equal(cells, whole.statistics.cells_used);
+  CORE_CHECK(fabs(area - report.area) < 1e-9 * report.area, "area %g, %g", area, report.area);
+  mesh_free_report(&report);
+  mcor_free_surface(&whole);
+  core_free_set(&set);
+}
+
+/* Cubes far smaller than all particles: a sentence, at once. */
+static void too_many_leaves(void** state)
+{
+  static const double half = 0.5;
+  mcor_context* context = *state;
+  core_set set = make_graded(12, 0.4);
+  const mcor_input input = core_input(&set);
+  mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  options.cube_size_factor = 0.002;
+  mcor_surface surface = { 0 };
+  assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  CORE_CHECK(strstr(mcor_last_error(context), "too large"), "%s", mcor_last_error(context));
+  core_free_set(&set);
+}
+
 static void refusals(void** state)
 {
   static const double iso = 0;
@@ -233,15 +283,13 @@ static void refusals(void** state)
   core_set set = core_make_block(4, 0, 1, core_ball);
   const mcor_input input = core_input(&set);
   mcor_surface surface = { 0 };
-  for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 3; ++i)
   {
     mcor_options options = graded_options(&iso, MCOR_SHEPARD);
-    const char* words[] = { "pairs", "a box", "a period", "highest level" };
+    const char* words[] = { "pairs", "a period", "highest level" };
     options.seeds = i == 0 ? MCOR_PAIRS : MCOR_COMPLETE;
-    options.has_box = i == 1;
-    options.box[1] = options.box[3] = options.box[5] = 1;
-    options.periodic[1] = i == 2;
-    options.level_limit = i == 3 ? MCOR_CUBE_LEVELS : 3;
+    options.periodic[1] = i == 1;
+    options.level_limit = i == 2 ? MCOR_CUBE_LEVELS : 3;
     assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
     CORE_CHECK(strstr(mcor_last_error(context), words[i]), "%s", mcor_last_error(context));
     assert_int_equal(surface.point_count, 0);
@@ -254,6 +302,7 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(closed_across_levels),
     cmocka_unit_test(trimmed), cmocka_unit_test(one_level_is_uniform),
     cmocka_unit_test(roots_of_the_finest_lattice), cmocka_unit_test(order_form_and_reuse),
-    cmocka_unit_test(far_apart), cmocka_unit_test(refusals) };
+    cmocka_unit_test(far_apart), cmocka_unit_test(boxes_make_the_whole),
+    cmocka_unit_test(too_many_leaves), cmocka_unit_test(refusals) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -55,7 +55,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
   mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
-  const bool everywhere = mcor_uses_pairs(context) && !options->ranks && !box->of_points;
+  const bool everywhere =
+    lattice->top > 0 || (mcor_uses_pairs(context) && !options->ranks && !box->of_points);
   box->is_part = box->is_empty = false;
   for (int a = 0; a < 3; ++a)
   {

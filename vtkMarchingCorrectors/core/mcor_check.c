@@ -51,7 +51,6 @@ static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options
     options->periodic[2] < options->periodic[3] || options->periodic[4] < options->periodic[5];
   const char* other = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM
     ? "pairs as seeds"
-    : options->has_box    ? "a box"
     : periodic            ? "a period"
     : options->point_keys ? "keys of points"
                           : NULL;

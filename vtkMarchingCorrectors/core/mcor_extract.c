@@ -73,6 +73,11 @@ static mcor_status mcor_extract_all(
     MCOR_TRY(mcor_finish_normals(context, surface));
   }
   MCOR_TRY(mcor_crop_surface(context, input, surface));
+  if (!mcor_is_graded(context))
+  {
+    surface->statistics.cells_of_level[0] = surface->statistics.cells_used;
+    surface->statistics.triangles_of_level[0] = surface->statistics.triangles_before_trimming;
+  }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }

@@ -395,31 +395,52 @@ static mcor_status mcor_read_int(
   return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
 }
 
+/* Kernel arguments of MCOR_LEAF_BOX_PARAMS. */
+#define MCOR_LEAF_BOX_ARGS(c, b)                                                                   \
+  MCOR_INT((c)->box.is_part), MCOR_INT((b)[0]), MCOR_INT((b)[1]), MCOR_INT((b)[2]),                \
+    MCOR_INT((b)[3]), MCOR_INT((b)[4]), MCOR_INT((b)[5]), MCOR_BUFFER(&(c)->graded.cells)
+
+/* The box, in halves of the finest cubes from the lattice's origin. */
+static void mcor_place_leaf_box(const mcor_context* context, int box[6])
+{
+  const mcor_options* options = context->options;
+  for (int i = 0; i < 6; ++i)
+  {
+    const int axis = i % 3;
+    const double side = options->has_box ? options->box[2 * axis + i / 3] : 0;
+    const double at =
+      ceil(2 * (side / context->lattice.cube)) - 2 * (double)context->lattice.origin[axis];
+    box[i] = (int)fmin(fmax(at, -(1 << 30)), 1 << 30);
+  }
+}
+
 /* Where the vertices of each level begin, and how many cells and triangles it has. */
 static mcor_status mcor_count_by_level(mcor_context* context)
 {
   mcor_graded* graded = &context->graded;
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->statistics;
-  int caps, used;
+  mcor_buffer* clipped = &context->box.clipped;
+  int caps, used, box[6];
   MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
-  MCOR_TRY(mcor_count_bits(context, &mesh->used, graded->count, &used));
+  mcor_place_leaf_box(context, box);
+  MCOR_TRY(mcor_reserve(context, clipped, (size_t)graded->count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_clip", MCOR_MEDIUM, graded->count,
+    MCOR_LEAF_BOX_ARGS(context, box), MCOR_INT(graded->count), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(clipped)));
+  MCOR_TRY(mcor_count_bits(context, clipped, graded->count, &used));
   s->flat_caps += caps;
   s->cells_used += used;
   s->seed_cells_not_intersected += 64 * (int64_t)graded->count - used;
-  cl_int cells[2] = { 0, 0 }, triangles[2] = { 0, 0 };
+  cl_int cells[2] = { 0, 0 };
   for (int l = 0; l <= context->tree.top; ++l)
   {
     MCOR_TRY(mcor_read_int(
       context, &mesh->vertex_base, graded->first_slot[l + 1], &mesh->level_first[0][l + 1]));
     MCOR_TRY(
       mcor_read_int(context, &context->bricks.bit_counts, graded->first_leaf[l + 1], &cells[1]));
-    MCOR_TRY(
-      mcor_read_int(context, &mesh->triangle_base, graded->first_leaf[l + 1], &triangles[1]));
     s->cells_of_level[l] += cells[1] - cells[0];
-    s->triangles_of_level[l] += triangles[1] - triangles[0];
     cells[0] = cells[1];
-    triangles[0] = triangles[1];
   }
   mesh->level_first[0][0] = 0;
   return MCOR_OK;
@@ -438,10 +459,44 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
     MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  mcor_buffer* owned = &context->box.owned;
+  int box[6];
+  mcor_place_leaf_box(context, box);
+  MCOR_TRY(mcor_reserve(context, owned, context->box.is_part ? triangles : 1));
   return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
+    MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context, box), MCOR_BUFFER(owned),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+}
+
+/* Counts the triangles of each level, in the box where there is one. */
+static mcor_status mcor_count_triangles(mcor_context* context)
+{
+  const mcor_graded* graded = &context->graded;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_statistics* s = context->statistics;
+  const bool is_part = context->box.is_part;
+  const size_t bytes = (size_t)mesh->triangle_count;
+  cl_int end = 0;
+  void* view = NULL;
+  if (is_part)
+  {
+    MCOR_TRY(mcor_map(context, &context->box.owned, bytes, false, &view));
+  }
+  const uint8_t* owned = view;
+  for (int l = 0; l <= context->tree.top; ++l)
+  {
+    const cl_int begin = end;
+    MCOR_TRY(mcor_read_int(context, &mesh->triangle_base, graded->first_leaf[l + 1], &end));
+    int64_t count = is_part ? 0 : end - begin;
+    for (cl_int i = begin; i < end && is_part; ++i)
+    {
+      count += owned[i];
+    }
+    s->triangles_of_level[l] += count;
+    s->triangles_before_trimming += count;
+  }
+  return is_part ? mcor_unmap(context, &context->box.owned, &view) : MCOR_OK;
 }
 
 /* Vertices and triangles. iso: relative to A0. */
@@ -460,8 +515,12 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, context->graded.count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
   MCOR_TRY(mcor_count_by_level(context));
-  context->statistics->triangles_before_trimming += mesh->triangle_count;
-  return mcor_emit_leaves(context, iso);
+  if (mesh->triangle_count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_emit_leaves(context, iso));
+  return mcor_count_triangles(context);
 }
 
 void mcor_release_graded(mcor_context* context)

@@ -295,12 +295,15 @@ static bool mcor_split_above(mcor_tree* tree, int level)
 
 /* ---- Leaves ---- */
 
+/* More leaves than this are not made. */
+#define MCOR_LEAF_LIMIT (INT32_MAX / 64)
+
 /* Lists the leaves of one level: the parts of split bricks that are not split. */
 static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
 {
   const mcor_brick_set* set = &tree->split[level + 1];
   const size_t most = (size_t)tree->leaf_count + 8 * set->count;
-  if (most > INT32_MAX / 64)
+  if (most > MCOR_LEAF_LIMIT)
   {
     return false;
   }
@@ -350,10 +353,36 @@ static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
   return true;
 }
 
+/* About how many leaves there will be at least: a particle has about the volume of (h / 1.3)^3, and the
+ * cubes of its level there. */
+static double mcor_guess_leaves(const mcor_context* context, const mcor_input* input)
+{
+  const double brick = MCOR_BRICK * context->lattice.cube;
+  double leaves = 0, h[MCOR_CHUNK];
+  for (int64_t begin = 0; begin < input->count; begin += MCOR_CHUNK)
+  {
+    const int64_t rest = input->count - begin;
+    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    mcor_read_smoothing_length(context, input, begin, count, h);
+    for (int i = 0; i < count; ++i)
+    {
+      const int level = mcor_tree_level_of(h[i], context->measure.h_min, context->lattice.top);
+      const double bricks = h[i] / 1.3 / ldexp(brick, level);
+      leaves += mcor_is_used(context, input, begin + i) ? bricks * bricks * bricks : 0;
+    }
+  }
+  return leaves;
+}
+
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
 {
   mcor_tree* tree = &context->tree;
   mcor_release_tree(tree);
+  const double guess = mcor_guess_leaves(context, input);
+  MCOR_RETURN_IF(guess > MCOR_LEAF_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large: with cube size %g the particles fill about %.3g bricks of %d "
+    "adaptive cubes, and %d is the limit. Use a larger cube size.",
+    context->lattice.cube, guess, MCOR_BRICK_NODES, MCOR_LEAF_LIMIT);
   mcor_number_bricks(&context->lattice, tree);
   bool made = mcor_split_by_particles(context, input, tree);
   size_t room = 0;
@@ -370,7 +399,9 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
     tree->first_region[l + 1] = tree->region_count;
   }
   MCOR_RETURN_IF(!made, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for the leaves of adaptive cubes could not be allocated. Use a larger cube size.");
+    "Adaptive cubes have more than %d leaves, or more than host memory has room for. Use a larger "
+    "cube size.",
+    MCOR_LEAF_LIMIT);
   tree->regions[tree->region_count] = tree->leaf_count;
   return MCOR_OK;
 }

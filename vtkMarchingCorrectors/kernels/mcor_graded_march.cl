@@ -372,10 +372,46 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }
 
-/* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles. */
-__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const ulong* used,
-  __global const ulong* edges, __global const int* vertex_base, __global const int* triangle_base,
-  __global int* triangles)
+/* A box [x0, x1) x ..., in halves of the finest cubes. is_part: whether it matters. */
+#define MCOR_LEAF_BOX_PARAMS                                                                       \
+  const int is_part, const int x0, const int y0, const int z0, const int x1, const int y1,         \
+    const int z1, __global const int4 *cells
+
+/* Whether a leaf's cell has its centre there. */
+bool mcor_leaf_owns(MCOR_LEAF_BOX_PARAMS, int i, int cell)
+{
+  const int4 leaf = cells[i];
+  const int x = (2 * (4 * leaf.x + (cell & 3)) + 1) << leaf.w;
+  const int y = (2 * (4 * leaf.y + (cell >> 2 & 3)) + 1) << leaf.w;
+  const int z = (2 * (4 * leaf.z + (cell >> 4)) + 1) << leaf.w;
+  return !is_part || (x >= x0 && x < x1 && y >= y0 && y < y1 && z >= z0 && z < z1);
+}
+
+#define MCOR_LEAF_BOX_ARGS is_part, x0, y0, z0, x1, y1, z1, cells
+
+/* One work-item = one leaf. Writes which of its used cells are in the box. */
+__kernel void mcor_graded_clip(
+  MCOR_LEAF_BOX_PARAMS, const int count, __global const ulong* used, __global ulong* clipped)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  ulong within = 0;
+  for (ulong rest = used[i]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    within |= (ulong)mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) << cell;
+  }
+  clipped[i] = within;
+}
+
+/* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, where
+ * there is a box, whether their cells are in it. */
+__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS, __global uchar* owned,
+  __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
+  __global const int* triangle_base, __global int* triangles)
 {
   const int i = get_global_id(0);
   if (i >= count || used[i] == 0)
@@ -388,6 +424,7 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const ulong* used
   for (ulong rest = used[i]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
+    const long begin = (to - triangles) / 3;
     if (graded >> cell & 1)
     {
       const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
@@ -407,6 +444,11 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const ulong* used
         const int c = row[k] & 7, lower = 2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2);
         *to++ = mcor_leaf_vertex(&leaf, cell, 0, row[k] >> 3, lower, edges, vertex_base);
       }
+    }
+    const bool within = mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell);
+    for (long t = begin; is_part && t < (to - triangles) / 3; ++t)
+    {
+      owned[t] = within;
     }
   }
 }

@@ -16,6 +16,7 @@
 
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
+#include "vtkSPHDerivatives.h"
 #include "vtkSPHTemporalInterpolator.h"
 
 #include <algorithm>
@@ -259,7 +260,7 @@ private:
       ", time " + Text(this->Times[i]) + ": ";
     std::vector<std::string> warnings;
     const vtkSmartPointer<vtkPointSet> particles = this->ParticlesAt(this->Times[i], warnings);
-    SetUpFilter(this->Filter, this->Options, particles);
+    SetUpFilter(this->Filter, this->Options, particles, this->Derivatives);
     this->Filter->KeepDeviceDataOn(); // the next step takes the buffers of this one
     const Run run = Extract(this->Filter, this->Options, this->Messages);
     for (const std::string& warning : Warnings(run.Surface, this->Messages))
@@ -306,7 +307,8 @@ private:
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
   std::string Progress;
-  vtkNew<vtkMarchingCorrectors> Filter; // for all steps, with its program and its buffers
+  vtkNew<vtkMarchingCorrectors> Filter;  // for all steps, with its program and its buffers
+  vtkNew<vtkSPHDerivatives> Derivatives; // its device and buffers, too, are those of all steps
   vtkSmartPointer<ParticleSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };

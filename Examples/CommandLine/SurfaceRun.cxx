@@ -153,15 +153,14 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
                                             : vtkAlgorithm::DEFAULT_PRECISION);
 }
 
-/// The particles with the arrays that are made of one of theirs, if that is asked for.
+/// The particles with the arrays that are made of one of theirs, if that is asked for, by the filter.
 vtkSmartPointer<vtkPointSet> AddDerivedArrays(
-  const CommandLineOptions& options, vtkPointSet* particles)
+  const CommandLineOptions& options, vtkPointSet* particles, vtkSPHDerivatives* filter)
 {
   if (options.Derive.empty())
   {
     return particles;
   }
-  vtkNew<vtkSPHDerivatives> filter;
   SetParticles(filter, options, particles);
   SetDevice(filter, options);
   filter->SetInputArrayToProcess(
@@ -174,7 +173,9 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(
   {
     throw std::runtime_error(error);
   }
-  return vtkPointSet::SafeDownCast(filter->GetOutput());
+  auto derived = vtk::TakeSmartPointer(particles->NewInstance());
+  derived->ShallowCopy(filter->GetOutput()); // the next step has the output itself
+  return derived;
 }
 
 /// Where a period begins of which only the length is known: so that the particles lie in it, at 0 or
@@ -288,10 +289,12 @@ void ShowProgress(vtkAlgorithm* filter, const CommandLineOptions& options, std::
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPointSet> SetUpParticles(
-  vtkSPHAlgorithm* filter, const CommandLineOptions& options, vtkPointSet* input)
+vtkSmartPointer<vtkPointSet> SetUpParticles(vtkSPHAlgorithm* filter,
+  const CommandLineOptions& options, vtkPointSet* input, vtkSPHDerivatives* derivatives)
 {
-  vtkSmartPointer<vtkPointSet> particles = AddDerivedArrays(options, input);
+  vtkNew<vtkSPHDerivatives> own;
+  vtkSmartPointer<vtkPointSet> particles =
+    AddDerivedArrays(options, input, derivatives ? derivatives : own.Get());
   SetParticles(filter, options, particles);
   SetDevice(filter, options);
   SetAttributes(filter, options, particles);
@@ -299,10 +302,10 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
 }
 
 //------------------------------------------------------------------------------
-void SetUpFilter(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* input)
+void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& options,
+  vtkPointSet* input, vtkSPHDerivatives* derivatives)
 {
-  vtkSmartPointer<vtkPointSet> particles = SetUpParticles(filter, options, input);
+  vtkSmartPointer<vtkPointSet> particles = SetUpParticles(filter, options, input, derivatives);
   filter->SetInputData(particles);
   SetPeriod(filter, options, particles);
   filter->SetInterpolateAttributes(options.Attributes);

@@ -16,6 +16,7 @@ class vtkAlgorithm;
 class vtkMarchingCorrectors;
 class vtkPointSet;
 class vtkSPHAlgorithm;
+class vtkSPHDerivatives;
 struct CommandLineOptions;
 
 /// Whether standard error is a terminal whose user has not asked for silence.
@@ -25,14 +26,14 @@ bool ShowsProgress(const CommandLineOptions& options);
 void ShowProgress(vtkAlgorithm* filter, const CommandLineOptions& options, std::string* before);
 
 /// What describes the particles, the arrays to carry and the device, as the options say. Returns the
-/// particles, with the arrays derived from theirs. Throws as SetUpFilter().
-vtkSmartPointer<vtkPointSet> SetUpParticles(
-  vtkSPHAlgorithm* filter, const CommandLineOptions& options, vtkPointSet* input);
+/// particles, with the arrays derived from theirs by the last one, or by a new one. Throws as SetUpFilter().
+vtkSmartPointer<vtkPointSet> SetUpParticles(vtkSPHAlgorithm* filter,
+  const CommandLineOptions& options, vtkPointSet* input, vtkSPHDerivatives* derivatives = nullptr);
 
 /// The filter's particles, with the arrays derived from theirs, and properties as the options say. Throws std::runtime_error with one
 /// sentence where the particles lack an array that is to be carried.
-void SetUpFilter(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* input);
+void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& options,
+  vtkPointSet* input, vtkSPHDerivatives* derivatives = nullptr);
 
 struct Run
 {

@@ -1,13 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""SPH Probe, SPH Derivatives and SPH Temporal Interpolator in pvpython. Renders nothing."""
+"""SPH Probe, SPH Derivatives and SPH Temporal Interpolator in pvpython, or in the pvserver of
+with_pvserver.py. Renders nothing."""
+import faulthandler
 import math
 import os
 import tempfile
 
 from paraview import servermanager, smtrace
-from paraview.simple import (Delete, FindSource, GetAnimationScene, GetSources, GroupDatasets, LoadPlugin,
-                             LoadState, Plane, RenameSource, SaveState, Wavelet, XMLPolyDataReader)
+from paraview.simple import (Connect, Delete, Disconnect, FindSource, GetAnimationScene, GetSources, GroupDatasets,
+                             LoadPlugin, LoadState, Plane, RenameSource, SaveState, Wavelet, XMLPolyDataReader)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -206,7 +208,11 @@ def check_real_data():
 
 
 def main():
-    LoadPlugin(PLUGIN, remote=False, ns=globals())
+    faulthandler.dump_traceback_later(500, file=2)  # where it stands, if it stands
+    server = os.environ.get("MCOR_TEST_SERVER")
+    if server:
+        Connect(server.split(":")[0], int(server.split(":")[1]))
+    LoadPlugin(PLUGIN, remote=bool(server), ns=globals())
     with tempfile.TemporaryDirectory() as folder:
         steps = [os.path.join(folder, f"step_{i}.vtp") for i in range(2)]
         numbers = numpy.arange(SIDE ** 3)
@@ -223,6 +229,8 @@ def main():
         check_trace_and_state("SPHDerivatives", {"Input": reader}, state)
         check_trace_and_state("SPHTemporalInterpolator", {"Input": reader}, state)
     check_real_data()
+    if server:
+        Disconnect()
     print("the field's filters work in", servermanager.vtkSMProxyManager.GetParaViewSourceVersion())
 
 

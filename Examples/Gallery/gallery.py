@@ -15,12 +15,14 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 # pylint: disable=wrong-import-position
 from readme_pictures import DATA, need_surface, panel, save, surface_filter  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkLookupTable  # noqa: E402
+from marchingcorrectors import vtkSPHDerivatives  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader  # noqa: E402
 from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper  # noqa: E402
 
 RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
 WATER, ORANGE, LINE = (0.45, 0.68, 0.9), (0.90, 0.45, 0.20), (0.1, 0.2, 0.5)
 LEFT, RIGHT, WHOLE = (0, 0, 0.5, 1), (0.5, 0, 1, 1), (0, 0, 1, 1)
+THIRDS = [(i / 3, 0, (i + 1) / 3, 1) for i in range(3)]
 WIDE = (1100, 400)
 
 
@@ -33,6 +35,16 @@ def surface(reader, array=None, value=None):
     else:
         extract.FreeSurfaceOn()
     return extract
+
+
+def velocity_derivatives(reader):
+    """Vorticity and Lambda2 of the water, in place of those that the file brings."""
+    derivatives = vtkSPHDerivatives()
+    derivatives.SetInputConnection(reader.GetOutputPort())
+    derivatives.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")
+    derivatives.SetFluidArrayName("ParticleType")
+    derivatives.SetFluidValue(0)
+    return derivatives
 
 
 def actor_of(extract, color, opacity=1.0):
@@ -91,7 +103,8 @@ def show(reader, actors, caption, viewport, near=False):
         text.SetPosition(12, WIDE[1] - 30)
     if near:
         return look(renderer, (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26)
-    return look(renderer, (-0.1, 2.4, 4.1), (1.62, 0.42, 0.0), 27 if viewport is WHOLE else 38)
+    angle = 27 if viewport is WHOLE else 52 if viewport in THIRDS else 38
+    return look(renderer, (-0.1, 2.4, 4.1), (1.62, 0.42, 0.0), angle)
 
 
 def figure_1(reader):
@@ -119,21 +132,24 @@ def scaled(reader, scale, value=1500.0):
 
 def figure_5(reader):
     return [show(reader, [colored_by_weight(scaled(reader, scale))], caption, viewport)
-            for scale, caption, viewport in ((1.0, "pressure 1500 Pa, h", LEFT), (0.75, "0.75 h", RIGHT))]
+            for scale, caption, viewport in zip((1.0, 0.75, 0.5), ("pressure 1500 Pa, h", "0.75 h", "0.5 h"), THIRDS)]
 
 
 def figure_6(reader):
-    return [show(reader, [actor_of(surface(reader, "VorticityMagnitude", 5.0), ORANGE)], "vorticity 5 / s", WHOLE)]
+    vorticity = velocity_derivatives(reader)
+    return [show(reader, [actor_of(surface(vorticity, "Vorticity", 5.0), ORANGE)], "vorticity 5 / s", WHOLE)]
 
 
 def figure_7(reader):
-    return [show(reader, [actor_of(surface(reader, "Lambda2", -40.0), RED),
-                          actor_of(surface(reader), WATER, 0.15)], "lambda2 -40 / s^2", WHOLE)]
+    lambda2, water = velocity_derivatives(reader), surface(reader)
+    return [show(reader, [actor_of(surface(lambda2, "Lambda2", value), RED), actor_of(water, WATER, 0.15)],
+                 f"lambda2 {value:g} / s^2", viewport) for value, viewport in ((-150.0, LEFT), (-50.0, RIGHT))]
 
 
 def figure_8(reader):
-    return [show(reader, [actor_of(surface(reader, "VorticityMagnitude", value), ORANGE, 0.35)], caption, viewport)
-            for value, caption, viewport in ((10.0, "vorticity 10 / s", LEFT), (1.0, "1 / s", RIGHT))]
+    vorticity = velocity_derivatives(reader)
+    return [show(reader, [actor_of(surface(vorticity, "Vorticity", value), ORANGE, 0.35)], f"vorticity {value:g} / s",
+                 viewport) for value, viewport in zip((10.0, 1.0, 0.1), THIRDS)]
 
 
 def figure_9(reader):

@@ -11,6 +11,8 @@
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSmartPointer.h"
 
 #include <QFormLayout>
 #include <QLabel>
@@ -18,6 +20,15 @@
 
 namespace
 {
+// As of the filter's own warning, which comes when the run has begun.
+constexpr double HUGE_CELLS = 1e9;
+
+// What the next update's range and number of cells depend on.
+const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComponent",
+  "DotProductWith", "SmoothingLengthArray", "SmoothingLength", "EstimateSmoothingLength",
+  "SmoothingLengthIsSupportRadius", "FluidArray", "FluidValue", "Kernel", "CubeSizeMode",
+  "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox", "BoxPosition", "BoxLength" };
+
 // "-" for what is not known: nothing was drawn, or the free surface has no such thing.
 QString textOf(vtkSMProperty* property)
 {
@@ -33,6 +44,32 @@ QString textOf(vtkSMProperty* property)
   }
   return isKnown ? texts.join(" to ") : QString("-");
 }
+
+bool isHuge(vtkSMProperty* property)
+{
+  return QLatin1String(property->GetXMLName()) == QLatin1String("NextCells") &&
+    vtkSMPropertyHelper(property, true).GetAsDouble() >= HUGE_CELLS;
+}
+
+// A filter like this one that nobody sees, with what the panel shows, applied or not.
+vtkSmartPointer<vtkSMProxy> makeTwin(vtkSMProxy* filter)
+{
+  auto twin = vtkSmartPointer<vtkSMProxy>::Take(
+    filter->GetSessionProxyManager()->NewProxy(filter->GetXMLGroup(), filter->GetXMLName()));
+  if (twin)
+  {
+    const vtkSMPropertyHelper input(filter, "Input");
+    vtkSMPropertyHelper(twin, "Input").Set(input.GetAsProxy(), input.GetOutputPort());
+    for (const char* name : CHOICES)
+    {
+      vtkSMPropertyHelper shown(filter, name);
+      shown.SetUseUnchecked(true);
+      vtkSMPropertyHelper(twin, name).Copy(shown);
+    }
+    twin->UpdateVTKObjects();
+  }
+  return twin;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -46,6 +83,10 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
     vtkSMProperty* property = group->GetProperty(i);
+    if (QLatin1String(property->GetXMLName()) == QLatin1String("NextScalarRange"))
+    {
+      continue; // the list of iso values shows it, as its domain
+    }
     if (!property->GetInformationOnly())
     {
       form->addRow(pqProxyWidget::createWidgetForProperty(property, proxy, this));
@@ -62,15 +103,50 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     this->Rows << qMakePair(property, value);
   }
   pqCoreUtilities::connect(proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()));
+  this->Pause.setSingleShot(true);
+  this->Pause.setInterval(200);
+  this->connect(&this->Pause, SIGNAL(timeout()), SLOT(lookAhead()));
+  for (const char* name : CHOICES)
+  {
+    pqCoreUtilities::connect(proxy->GetProperty(name), vtkCommand::UncheckedPropertyModifiedEvent,
+      &this->Pause, SLOT(start()));
+  }
   this->showValues();
 }
 
 //------------------------------------------------------------------------------
 void pqSPHInUse::showValues()
 {
+  this->Pause.stop();
   this->proxy()->UpdatePropertyInformation();
+  this->showRows();
+}
+
+//------------------------------------------------------------------------------
+// The range is the domain of the list of iso values, which shows it and follows it.
+void pqSPHInUse::lookAhead()
+{
+  const vtkSmartPointer<vtkSMProxy> twin = makeTwin(this->proxy());
+  if (!twin)
+  {
+    return;
+  }
+  for (const char* name : { "NextScalarRange", "NextCells" })
+  {
+    twin->UpdatePropertyInformation(twin->GetProperty(name));
+    vtkSMPropertyHelper(this->proxy(), name).Copy(vtkSMPropertyHelper(twin, name));
+  }
+  this->showRows();
+}
+
+//------------------------------------------------------------------------------
+void pqSPHInUse::showRows()
+{
   for (const auto& row : this->Rows)
   {
-    row.second->setText(textOf(row.first));
+    const bool huge = isHuge(row.first);
+    row.second->setText(
+      textOf(row.first) + (huge ? ": this may take minutes and much memory" : ""));
+    row.second->setStyleSheet(huge ? "color: #c00000; font-weight: bold" : "");
   }
 }

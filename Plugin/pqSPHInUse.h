@@ -4,6 +4,9 @@
  * The group "In Use" of the filter's panel: shows the information properties of the group, which
  * ParaView itself leaves out, as they were after the last update. A group must have another property,
  * too: ParaView asks for its widget when it comes to that one.
+ *
+ * What the next update would find (the properties NextScalarRange and NextCells) is told as soon as
+ * something is changed on the panel, before Apply.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h
@@ -12,6 +15,7 @@
 
 #include <QList>
 #include <QPair>
+#include <QTimer>
 
 class QLabel;
 class vtkSMProperty;
@@ -27,9 +31,13 @@ public:
 
 private Q_SLOTS:
   void showValues();
+  void lookAhead();
 
 private: // NOLINT(readability-redundant-access-specifiers)
+  void showRows();
+
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;
+  QTimer Pause; // between the last change and the look ahead
 };
 
 #endif

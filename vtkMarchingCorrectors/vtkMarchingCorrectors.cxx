@@ -13,9 +13,11 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHBlocks.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -245,6 +247,71 @@ void vtkMarchingCorrectors::EstimateRun(const mcor_input& input, const mcor_opti
     vtkWarningMacro(<< this->BlockName << "The fluid fills about " << this->EstimatedCells
                     << " cubes of the virtual grid, so this may take minutes and much memory. "
                     << "A larger cube size takes less; the run can be cancelled.");
+  }
+}
+
+//------------------------------------------------------------------------------
+double* vtkMarchingCorrectors::GetNextScalarRange()
+{
+  this->LookAhead();
+  return this->NextScalarRange;
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectors::GetNextCells()
+{
+  this->LookAhead();
+  return this->NextCells;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::LookAhead()
+{
+  vtkDataObject* data =
+    this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
+  if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
+  {
+    return;
+  }
+  const double none = std::numeric_limits<double>::infinity();
+  mcor_options options;
+  this->FillOptions(options);
+  this->NextScalarRange[0] = none;
+  this->NextScalarRange[1] = -none;
+  this->NextCells = 0.0;
+  for (vtkPointSet* particles : vtkSPHListPointSets(data))
+  {
+    this->LookAhead(particles, options);
+  }
+  if (this->NextScalarRange[0] > this->NextScalarRange[1])
+  {
+    std::fill_n(this->NextScalarRange, 2, 0.0);
+  }
+  this->LookTime.Modified();
+}
+
+//------------------------------------------------------------------------------
+// Without a scalar the number of cells is known all the same.
+void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
+{
+  vtkMarchingCorrectorsChoice choice;
+  this->FillChoice(choice, particles);
+  choice.InterpolateAttributes = false;
+  for (const bool freeSurface : { choice.FreeSurface, true })
+  {
+    choice.FreeSurface = freeSurface;
+    vtkMarchingCorrectorsInput input(choice, particles);
+    if (input.Collect())
+    {
+      double range[2];
+      if (!freeSurface && vtkMarchingCorrectorsScalarRange(input.Core, range))
+      {
+        this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
+        this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
+      }
+      this->NextCells += vtkMarchingCorrectorsEstimateCells(input.Core, options);
+      return;
+    }
   }
 }
 

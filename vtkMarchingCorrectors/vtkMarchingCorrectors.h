@@ -113,10 +113,12 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkNew.h"                      // For members
 #include "vtkSPHAlgorithm.h"
+#include "vtkTimeStamp.h" // For members
 
 #include <vector> // For members
 
 class vtkMarchingCorrectorsInput;
+class vtkPointSet;
 struct mcor_input;
 struct mcor_statistics;
 struct vtkMarchingCorrectorsChoice;
@@ -565,6 +567,17 @@ public:
    */
   vtkGetMacro(EstimatedCells, double);
 
+  ///@{
+  /**
+   * What an update with the properties and the input as they are now would find: the range that
+   * FluidScalarRange would have, and the cells of EstimatedCells (of all blocks). The input is read as
+   * it is, and not updated. 0 to 0, or 0, where it is not known: without particles, or without a
+   * scalar.
+   */
+  double* GetNextScalarRange() VTK_SIZEHINT(2);
+  double GetNextCells();
+  ///@}
+
 protected:
   vtkMarchingCorrectors();
   ~vtkMarchingCorrectors() override;
@@ -614,6 +627,8 @@ protected:
   std::string UsedVolume;
   double UsedCubeSize = 0.0;
   double EstimatedCells = 0.0;
+  double NextScalarRange[2] = { 0.0, 0.0 };
+  double NextCells = 0.0;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
@@ -623,10 +638,14 @@ private:
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);
   void ClearSummary();
+  void LookAhead();
+  void LookAhead(vtkPointSet* particles, const mcor_options& options);
   void EstimateRun(const mcor_input& input, const mcor_options& options);
   void Summarize(
     const mcor_input& input, const mcor_options& options, const mcor_statistics& statistics);
   std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
+
+  vtkTimeStamp LookTime; // of the last look ahead
 };
 
 #endif

@@ -19,6 +19,18 @@ double ValueOf(const mcor_array& array, std::int64_t i)
                                     : static_cast<const double*>(array.data)[i];
 }
 
+/** Whether the particle is where cells are drawn. */
+bool IsDrawn(const mcor_input& input, const mcor_options& options, std::int64_t i)
+{
+  bool isIn = true;
+  for (int a = 0; options.has_box && a < 3; ++a)
+  {
+    const double x = ValueOf(input.positions, 3 * i + a);
+    isIn = isIn && x >= options.box[2 * a] && x < options.box[2 * a + 1];
+  }
+  return isIn;
+}
+
 std::string Text(double value)
 {
   std::ostringstream text;
@@ -57,7 +69,7 @@ double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_op
       {
         h *= 0.5; // its cubes are larger
       }
-      cubes += h * h * h;
+      cubes += IsDrawn(input, options, i) ? h * h * h : 0.0;
     }
   }
   const bool isKnown = !input.estimate_smoothing_length || options.cube_size <= 0.0;

@@ -18,7 +18,8 @@ class vtkMarchingCorrectorsInput;
 constexpr double vtkMarchingCorrectorsHugeCells = 1e9;
 
 /**
- * About how many cubes of the virtual grid the fluid fills: a particle takes (h / 1.3)^3. 0 where
+ * About how many cubes of the virtual grid the fluid (in the box, if there is one) fills: a particle
+ * takes (h / 1.3)^3. 0 where
  * the smoothing length is estimated in the run and the cube size does not follow from it.
  */
 double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_options& options);

@@ -5,11 +5,14 @@
 #include "vtkArrayDispatch.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDoubleArray.h"
+#include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace
@@ -115,6 +118,37 @@ std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array
     counts[last] += run;
   }
   return counts.size() <= most ? counts : std::map<double, vtkIdType>();
+}
+
+//------------------------------------------------------------------------------
+bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2])
+{
+  const double none = std::numeric_limits<double>::infinity();
+  using Range = std::array<double, 2>;
+  vtkSMPThreadLocal<Range> ranges(Range{ { none, -none } });
+  vtkSMPTools::For(0, core.count,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      Range& local = ranges.Local();
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        const double value = core.solid && core.solid[i] ? none : ScalarOf(core, i);
+        if (std::isfinite(value))
+        {
+          local = { { std::min(local[0], value), std::max(local[1], value) } };
+        }
+      }
+    });
+  Range all = { { none, -none } };
+  for (const Range& local : ranges)
+  {
+    all = { { std::min(all[0], local[0]), std::max(all[1], local[1]) } };
+  }
+  if (all[0] <= all[1])
+  {
+    std::copy(all.begin(), all.end(), range);
+  }
+  return all[0] <= all[1];
 }
 
 //------------------------------------------------------------------------------

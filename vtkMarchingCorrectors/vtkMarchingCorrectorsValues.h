@@ -26,6 +26,12 @@ vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std
 std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most);
 
 /**
+ * Lowest and highest value of the scalar (the component, magnitude or dot product) at fluid particles
+ * where it is finite; false, and the range as it was, where there is none.
+ */
+bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2]);
+
+/**
  * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest and
  * highest values are left out, because single particles of a spray have extreme ones.
  */

@@ -19,23 +19,7 @@
 
 namespace
 {
-using Blocks = std::vector<vtkSmartPointer<vtkPointSet>>;
-
-Blocks ListParticles(vtkDataObjectTree* tree)
-{
-  Blocks blocks;
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(tree->NewTreeIterator());
-  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-  {
-    auto* block = vtkPointSet::SafeDownCast(iterator->GetCurrentDataObject());
-    if (block && block->GetNumberOfPoints() > 0)
-    {
-      blocks.emplace_back(block);
-    }
-  }
-  return blocks;
-}
+using Blocks = std::vector<vtkPointSet*>;
 
 /** The arrays of this name one after the other; nothing if a block lacks it. */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
@@ -47,7 +31,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArrays(
   joined->CopyComponentNames(first);
   joined->SetNumberOfTuples(total);
   vtkIdType at = 0;
-  for (const auto& block : blocks)
+  for (vtkPointSet* block : blocks)
   {
     const vtkIdType count = block->GetNumberOfPoints();
     vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(first->GetName());
@@ -95,9 +79,34 @@ std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
 }
 
 //------------------------------------------------------------------------------
+std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data)
+{
+  Blocks found;
+  const auto add = [&found](vtkDataObject* block)
+  {
+    auto* points = vtkPointSet::SafeDownCast(block);
+    if (points && points->GetNumberOfPoints() > 0)
+    {
+      found.push_back(points);
+    }
+  };
+  if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
+  {
+    vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+    iterator.TakeReference(tree->NewTreeIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      add(iterator->GetCurrentDataObject());
+    }
+  }
+  add(data);
+  return found;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
 {
-  const Blocks blocks = ListParticles(tree);
+  const Blocks blocks = vtkSPHListPointSets(tree);
   auto joined = vtkSmartPointer<vtkPolyData>::New();
   if (blocks.size() == 1)
   {
@@ -105,7 +114,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
   }
   vtkIdType total = 0;
   bool asDouble = false;
-  for (const auto& block : blocks)
+  for (vtkPointSet* block : blocks)
   {
     total += block->GetNumberOfPoints();
     asDouble = asDouble || block->GetPoints()->GetDataType() != VTK_FLOAT;
@@ -114,7 +123,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
   points->SetDataType(asDouble ? VTK_DOUBLE : VTK_FLOAT);
   points->SetNumberOfPoints(total);
   vtkIdType at = 0;
-  for (const auto& block : blocks)
+  for (vtkPointSet* block : blocks)
   {
     points->InsertPoints(at, block->GetNumberOfPoints(), 0, block->GetPoints());
     at += block->GetNumberOfPoints();

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataObject;
 class vtkDataObjectTree;
 class vtkPointSet;
 
@@ -21,6 +22,11 @@ class vtkPointSet;
  * shows.
  */
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree);
+
+/**
+ * The data set itself, or the blocks, that are point sets with points.
+ */
+std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 
 /**
  * The points of all blocks that are point sets, one block after the other, with the point arrays

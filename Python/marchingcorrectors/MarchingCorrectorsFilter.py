@@ -29,6 +29,7 @@ from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
 from marchingcorrectors._library import lib
 from marchingcorrectors._library import devices as list_devices
+from marchingcorrectors._vtk_ahead import Ahead
 from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of
 from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
 from marchingcorrectors._vtk_surface import (add_run_statistics, build_field_data, build_mesh, computed_arrays,
@@ -88,7 +89,7 @@ def with_properties(kind):
 
 
 @with_properties
-class vtkMarchingCorrectors(Summary, Box, VTKPythonAlgorithmBase):
+class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     """An isosurface directly from SPH particles; see vtkMarchingCorrectors.h of the sources."""
 
     CUBIC_SPLINE, QUADRATIC, M_PRIME_4, QUINTIC_SPLINE, WENDLAND_C2 = range(5)
@@ -112,6 +113,7 @@ class vtkMarchingCorrectors(Summary, Box, VTKPythonAlgorithmBase):
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
         self._signatures, self._versions = (None, None), [0, 0]
+        self.forget_ahead()
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
 
@@ -281,9 +283,7 @@ class vtkMarchingCorrectors(Summary, Box, VTKPythonAlgorithmBase):
         self.clear_summary()
         if data is None or data.GetNumberOfPoints() == 0 or self._is_aborted():
             return
-        choice = SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), EndAtSolids=self.EndAtSolids, Box=self.Box,
-                                 PeriodicBounds=self.PeriodicBounds,
-                                 **{name: getattr(self, name) for name in PROPERTIES})
+        choice = self._choice()
         options = self._options(choice)
         particles = Particles(choice, data)
         try:
@@ -299,6 +299,11 @@ class vtkMarchingCorrectors(Summary, Box, VTKPythonAlgorithmBase):
                       "no surface.", "Warning")
             return
         self._extract(particles, options, output)
+
+    def _choice(self):
+        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), EndAtSolids=self.EndAtSolids, Box=self.Box,
+                               PeriodicBounds=self.PeriodicBounds,
+                               **{name: getattr(self, name) for name in PROPERTIES})
 
     @staticmethod
     def _options(choice):

@@ -226,8 +226,8 @@ class Particles:
                       choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids]
         return particles, [sign(self.scalar), sign(self.dot), choice.ScalarComponent]
 
-    def middle_of_range(self):
-        """Of the fluid's scalar, the 2 % lowest and highest values left out."""
+    def fluid_values(self):
+        """Those of the scalar (component, magnitude or dot product) at fluid particles that are finite."""
         values = to_numpy(self.scalar).astype(np.float64, copy=False)
         if self.dot is not None:
             values = sum(a * b for a, b in zip(values.T, to_numpy(self.dot).astype(np.float64).T))
@@ -235,7 +235,11 @@ class Particles:
             values = values[:, max(self.choice.ScalarComponent, 0) if values.shape[1] > 1 else 0]
         else:
             values = np.sqrt(sum(column * column for column in values.T))
-        values = values[np.isfinite(values) & (True if self.solid is None else ~self.solid)]
+        return values[np.isfinite(values) & (True if self.solid is None else ~self.solid)]
+
+    def middle_of_range(self):
+        """Of the fluid's scalar, the 2 % lowest and highest values left out."""
+        values = self.fluid_values()
         if not len(values):
             return 0.0
         margin = len(values) // 50

@@ -11,7 +11,8 @@ HUGE_CELLS = 1e9
 
 
 def estimate_cells(particles, options):
-    """About how many cubes of the virtual grid the fluid fills: a particle takes (h / 1.3)^3."""
+    """About how many cubes of the virtual grid the fluid (in the box, if there is one) fills: a particle takes
+    (h / 1.3)^3."""
     choice = particles.choice
     estimated = bool(choice.EstimateSmoothingLength)
     fluid = np.ones(particles.count, bool) if particles.solid is None else ~particles.solid
@@ -20,10 +21,17 @@ def estimate_cells(particles, options):
     value = 1.0 if estimated else particles.values["smoothing_length"]
     h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
     h = h[fluid].astype(np.float64)
+    drawn = is_drawn(to_numpy(particles.positions), options)[fluid]
     radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated
     per_length = 1 / lib.mcor_support_factor(options.sph_kernel) if radius else 1.0
     size = options.cube_size if options.cube_size > 0 else options.cube_size_factor * float(h.min()) * per_length
-    return float((h ** 3).sum()) * (per_length / 1.3) ** 3 / size ** 3 if size > 0 else 0.0
+    return float((h[drawn] ** 3).sum()) * (per_length / 1.3) ** 3 / size ** 3 if size > 0 else 0.0
+
+
+def is_drawn(positions, options):
+    """Which particles are where cells are drawn."""
+    low, high = np.array(options.box[:]).reshape(3, 2).T
+    return ((positions >= low) & (positions < high)).all(1) | (not options.has_box)
 
 
 def describe(array):

@@ -213,9 +213,43 @@ class TestFilter(unittest.TestCase):
         particles.GetPointData().AddArray(kind)
         extract = make_filter(particles)
         extract.SetFluidArrayName("Kind")
-        extract.Update()
         inside = [radius.GetValue(i) for i in range(particles.GetNumberOfPoints()) if not kind.GetValue(i)]
+        self.assertEqual(extract.GetNextScalarRange(), (min(inside), max(inside)))
+        extract.Update()
         self.assertEqual(extract.GetFluidScalarRange(), (min(inside), max(inside)))
+
+    def test_what_the_next_update_takes(self):
+        """Known without a run, for any scalar, with and without walls, box and blocks."""
+        particles = make_particles()
+        extract = vtkMarchingCorrectors()
+        self.assertEqual((extract.GetNextScalarRange(), extract.GetNextCells()), ((0, 0), 0))
+        extract.SetInputData(particles)
+        cells = 1331 * (0.1 / 0.065) ** 3
+        self.assertEqual(extract.GetNextScalarRange(), (0, 0))  # there is no active scalar
+        self.assertAlmostEqual(extract.GetNextCells(), cells, 3)
+        extract.SetInputArrayToProcess(0, 0, 0, 0, "Radius")
+        low, high = particles.GetPointData().GetArray("Radius").GetRange()
+        self.assertEqual(extract.GetNextScalarRange(), (low, high))
+        extract.FreeSurfaceOn()
+        self.assertEqual(extract.GetNextScalarRange(), (0, 0))
+        extract.FreeSurfaceOff()
+        extract.SetCubeSizeFactor(0.25)
+        self.assertAlmostEqual(extract.GetNextCells(), 8 * cells, 3)
+        extract.UseBoxOn()
+        extract.SetBox(-9, 9, -9, 9, -9, particles.GetCenter()[2] + 0.05)  # 6 of 11 layers
+        self.assertAlmostEqual(extract.GetNextCells(), 8 * cells * 6 / 11, 3)
+        extract.UseBoxOff()
+        particles.GetPointData().GetArray("Radius").SetValue(0, 7.0)
+        particles.GetPointData().GetArray("Radius").Modified()
+        particles.Modified()
+        self.assertEqual(extract.GetNextScalarRange(), (low, 7.0))
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, make_particles())
+        blocks.SetBlock(1, particles)
+        extract.SetInputData(blocks)
+        self.assertEqual(extract.GetNextScalarRange(), (low, 7.0))
+        self.assertAlmostEqual(extract.GetNextCells(), 2 * 8 * cells, 3)
+        self.assertEqual(extract.GetFluidScalarRange(), (0, 0))  # nothing ran
 
     def test_huge_run_is_announced(self):
         """Before it begins: here it is ended at its first sign of progress."""

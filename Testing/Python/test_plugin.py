@@ -7,6 +7,8 @@ import os
 from paraview import servermanager, smtrace
 from paraview.simple import (Connect, Delete, Disconnect, FindSource, LoadPlugin, LoadState,
                              PointSource, RenameSource, SaveState, XMLPolyDataReader)
+from vtkmodules.vtkCommonCore import reference
+import numpy
 
 PLUGIN = os.environ["MCOR_TEST_PLUGIN"]
 DATA = os.environ["MCOR_TEST_DATA"]
@@ -93,8 +95,15 @@ def check_in_use(reader):
             extract.DotProductWith = ["POINTS", "Vorticity"]
         else:
             extract.Component = choice
+        # Known before the run, and what the list of iso values offers.
+        extract.UpdateVTKObjects()
+        extract.UpdatePropertyInformation()
+        ahead = value_of(extract, "NextScalarRange")
+        offered = extract.SMProxy.GetProperty("ContourValues").FindDomain("vtkSMDoubleRangeDomain")
+        assert ahead == [offered.GetMinimum(0, reference(0)), offered.GetMaximum(0, reference(0))], (choice, ahead)
         extract.UpdatePipeline()
         extract.UpdatePropertyInformation()
+        assert numpy.allclose(ahead, value_of(extract, "FluidScalarRange"), rtol=1e-6), (choice, ahead)
         shown[choice] = value_of(extract, "FluidScalarRange")
         value = float(value_of(extract, "UsedIsoValues"))
         assert shown[choice][0] < value < shown[choice][1], (choice, shown, value)
@@ -105,6 +114,7 @@ def check_in_use(reader):
     assert value_of(extract, "UsedVolume") == "array Mass / array Density"
     assert abs(value_of(extract, "UsedCubeSize") - 0.0118) < 1e-6
     assert 1e5 < value_of(extract, "EstimatedCells") < 3e5
+    assert value_of(extract, "NextCells") == value_of(extract, "EstimatedCells")
     Delete(extract)
 
 

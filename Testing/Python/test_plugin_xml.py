@@ -88,7 +88,7 @@ class TestPluginXml(unittest.TestCase):
     def test_information(self):
         """What the panel shows of the last update has the type and size of its getter."""
         empty = vtkMarchingCorrectors()
-        self.assertEqual(len(self.information), 6)
+        self.assertEqual(len(self.information), 8)
         for element in self.information:
             with self.subTest(element.get("name")):
                 self.assertEqual(element.get("command"), "Get" + element.get("name"))

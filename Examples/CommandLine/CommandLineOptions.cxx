@@ -64,6 +64,17 @@ int ToCount(const std::string& option, const std::string& text, int smallest)
   return value;
 }
 
+/// Highest level of adaptive cubes.
+int ToLevel(const std::string& option, const std::string& text)
+{
+  const int level = ToCount(option, text, 0);
+  if (level > 24)
+  {
+    throw UsageError(option + " needs a whole number up to 24, not '" + text + "'");
+  }
+  return level;
+}
+
 std::string ToChoice(
   const std::string& option, const std::string& text, const std::vector<std::string>& choices)
 {
@@ -265,7 +276,7 @@ const std::vector<Option>& AllOptions()
         o.Cubes = ToChoice(n, v, { "uniform", "adaptive" });
       } },
     { "--max-level", "N", "adaptive cubes are up to 2^N times as large, 0 to 24 (default 24)",
-      [](Options& o, Text n, Text v) { o.MaxLevel = std::min(ToCount(n, v, 0), 24); } },
+      [](Options& o, Text n, Text v) { o.MaxLevel = ToLevel(n, v); } },
     { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
       [](Options& o, Text n, Text v) { o.Box = ToBox(n, v); } },
     { "--periodic", "LX,LY,LZ|BOUNDS", "particles repeat; lengths (0: open), or x0,x1,y0,y1,z0,z1",

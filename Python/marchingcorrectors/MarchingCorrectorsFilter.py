@@ -44,6 +44,7 @@ PROPERTIES = {
     "VolumeArrayName": ("", "text"), "MassArrayName": ("", "text"), "DensityArrayName": ("", "text"),
     "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"), "Kernel": (0, "int", 0, 4),
     "HScaleFactor": (1.0, "real"), "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
+    "CubeSizeMode": (0, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
@@ -81,6 +82,8 @@ def with_properties(kind):
                                   "KernelToWendlandC2": ("Kernel", 4), "SeedModeToComplete": ("SeedMode", 0),
                                   "SeedModeToPairs": ("SeedMode", 1), "TopologyToTable": ("Topology", 0),
                                   "TopologyToField": ("Topology", 1),
+                                  "CubeSizeModeToUniform": ("CubeSizeMode", 0),
+                                  "CubeSizeModeToAdaptive": ("CubeSizeMode", 1),
                                   "BoundaryDetectionToWeightSum": ("BoundaryDetection", 0),
                                   "BoundaryDetectionToEigenvalue": ("BoundaryDetection", 1),
                                   "ScalarComponentToMagnitude": ("ScalarComponent", -1)}.items():
@@ -94,6 +97,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
 
     CUBIC_SPLINE, QUADRATIC, M_PRIME_4, QUINTIC_SPLINE, WENDLAND_C2 = range(5)
     COMPLETE, PAIRS = range(2)
+    UNIFORM, ADAPTIVE = range(2)
     TOPOLOGY_TABLE, TOPOLOGY_FIELD = range(2)
     WEIGHT_SUM, EIGENVALUE = range(2)
     SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL = range(3)
@@ -316,6 +320,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options.topology = choice.Topology
         options.boundary_detection = choice.BoundaryDetection if choice.Trim else 0
         options.cube_size_factor, options.cube_size = choice.CubeSizeFactor, choice.CubeSize
+        options.cube_size_mode, options.level_limit = choice.CubeSizeMode, choice.CubeLevelLimit
         options.has_box, options.box[:] = choice.UseBox, choice.Box
         options.periodic[:] = choice.PeriodicBounds
         options.node_threshold = choice.NodeThreshold

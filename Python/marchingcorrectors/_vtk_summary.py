@@ -22,6 +22,8 @@ def estimate_cells(particles, options):
     h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
     h = h[fluid].astype(np.float64)
     drawn = is_drawn(to_numpy(particles.positions), options)[fluid]
+    if options.cube_size_mode:  # cubes are larger where particles are
+        h /= 2 ** np.minimum(np.floor(np.log2(h / h.min())), options.level_limit)
     radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated
     per_length = 1 / lib.mcor_support_factor(options.sph_kernel) if radius else 1.0
     size = options.cube_size if options.cube_size > 0 else options.cube_size_factor * float(h.min()) * per_length

@@ -127,6 +127,16 @@ def add_text(data, name, text):
     data.AddArray(array)
 
 
+def add_levels(data, name, counts):
+    """Counts of adaptive cubes, up to the last level that has any."""
+    counts = list(counts)
+    while len(counts) > 1 and counts[-1] == 0:
+        counts.pop()
+    array = numpy_to_vtk(np.array(counts, np.int64), deep=True)
+    array.SetName(name)
+    data.AddArray(array)
+
+
 def build_field_data(data, surface, particles, arguments):
     s = statistics(surface.statistics)
     add_text(data, "Device", s["device"])
@@ -147,6 +157,10 @@ def add_statistics(data, s, surface, options):
     for name in ("virtual_cells", "seed_cells", "seed_cells_not_intersected", "cells_used", "ambiguous_faces",
                  "joined_faces", "ambiguous_cells", "tunnels"):
         add_count(data, camel(name), s[name])
+        if name == "cells_used" and options.cube_size_mode:
+            add_levels(data, "CellsOfLevel", s["cells_of_level"])
+            add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
+            add_count(data, "FlatCaps", s["flat_caps"])
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
     add_count(data, "TrianglesBeforeTrimming", s["triangles_before_trimming"])
@@ -194,6 +208,9 @@ def add_parameters(data, particles, arguments):
     add_text(data, "Topology", ("table", "field")[o.topology])
     add_text(data, "Precision", ("single", "double")[o.precision])
     add_real(data, "CubeSizeFactor", o.cube_size_factor)
+    if o.cube_size_mode:
+        add_text(data, "CubeSizeMode", "adaptive")
+        add_count(data, "CubeLevelLimit", o.level_limit)
     if o.has_box:
         add_real(data, "Box", *o.box)
     if any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3)):

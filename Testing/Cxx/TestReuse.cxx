@@ -39,6 +39,9 @@ std::vector<Step> Steps()
       [](Filter* f, vtkPolyData*)
       { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Other"); } },
     { "other cube size", [](Filter* f, vtkPolyData*) { f->SetCubeSizeFactor(0.7); } },
+    { "adaptive cubes", [](Filter* f, vtkPolyData*) { f->SetCubeSizeModeToAdaptive(); } },
+    { "one level", [](Filter* f, vtkPolyData*) { f->SetCubeLevelLimit(1); } },
+    { "uniform cubes", [](Filter* f, vtkPolyData*) { f->SetCubeSizeModeToUniform(); } },
     { "other scale", [](Filter* f, vtkPolyData*) { f->SetHScaleFactor(0.8); } },
     { "other kernel", [](Filter* f, vtkPolyData*) { f->SetKernelToWendlandC2(); } },
     { "other thresholds", [](Filter* f, vtkPolyData*) { f->SetVertexThreshold(0.6); } },

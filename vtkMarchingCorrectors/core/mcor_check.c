@@ -52,6 +52,7 @@ static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options
   const char* other = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM
     ? "pairs as seeds"
     : periodic            ? "a period"
+    : options->globals    ? "given global values"
     : options->point_keys ? "keys of points"
                           : NULL;
   MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && other, context,

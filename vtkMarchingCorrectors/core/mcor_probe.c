@@ -317,6 +317,7 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
   options->field = MCOR_WEIGHT_SUM;
   options->iso_count = 0;
   options->has_box = 0;
+  options->cube_size_mode = MCOR_CUBES_UNIFORM;
   options->globals = NULL;
   options->ranks = NULL;
   for (int i = 0; i < 6; ++i)

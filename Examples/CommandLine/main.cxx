@@ -7,6 +7,7 @@
 #include "FilmRecord.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
+#include "OwnLinker.h"
 #include "ParticleFile.h"
 #include "ProbeRun.h"
 #include "RunStatistics.h"
@@ -191,6 +192,7 @@ void OpenStandardStreams()
 int main(int argc, char* argv[])
 {
   OpenStandardStreams();
+  UseOwnLinker();
   CommandLineOptions options;
   std::unique_ptr<FilmRecord> record;
   const int status = Status(

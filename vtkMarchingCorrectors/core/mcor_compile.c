@@ -24,6 +24,19 @@ static bool mcor_is_wanted(void)
   return poll(&input, 1, 0) == 0;
 }
 
+/* Kernels are linked by the small linker beside this program, see mcor_link.c. */
+static void mcor_use_own_linker(void)
+{
+  char path[1024] = "";
+  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 64);
+  char* const end = length > 0 ? strrchr(path, '/') : NULL;
+  if (end)
+  {
+    strcpy(end, "/marching-correctors-linker");
+    setenv("COMPILER_PATH", path, 0);
+  }
+}
+
 int main(void)
 {
   static char request[MCOR_AHEAD_BYTES + 1];
@@ -38,6 +51,7 @@ int main(void)
   {
     close(i); /* what others wait to be closed */
   }
+  mcor_use_own_linker();
   setrlimit(RLIMIT_CORE, &no_core);
   alarm(MCOR_COMPILE_SECONDS);
   mcor_compile_ahead(request, mcor_is_wanted);

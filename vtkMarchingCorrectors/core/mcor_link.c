@@ -1,13 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The program "ld" of the wheel: turns the object file of a compiled kernel into a shared library.
+/* The program "ld" for PoCL: turns the object file of a compiled kernel into a shared library.
  *
- * PyPI's PoCL compiles by itself, but then calls the system's linker with the compiler's libraries,
- * and ends the process where they are missing, as on every machine without a compiler. Its objects
- * need none of them: no data, one kind of relocation, seldom a function of libc. So linking one is
- * laying out its sections, filling in distances, and a table of symbols. Whatever else it is called
- * for, and every object that has more, goes to the next "ld" on the PATH. For x86-64. */
+ * PoCL compiles by itself, but then calls the system's linker with the compiler's libraries. That
+ * takes ten times as long as this one, for each kernel; and PyPI's PoCL ends the process where they
+ * are missing, as on every machine without a compiler. Its objects need none of them: no data, one
+ * kind of relocation, seldom a function of libc. So linking one is laying out its sections, filling
+ * in distances, and a table of symbols. Whatever else it is called for, and every object that has
+ * more, goes to the next "ld" on the PATH. For x86-64.
+ *
+ * Found by COMPILER_PATH, which processes of our own set (mcor_compile.c, OwnLinker.cxx), and in the
+ * wheel by PATH. */
 
 #include <elf.h>
 #include <stdint.h>

@@ -268,8 +268,8 @@ extern "C"
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, particles and all they carry repeat along x
      * with that period: each is taken to where it is between x0 and x1, and its images count. The
-     * surface is that of one period, open at its sides, where it meets itself up to rounding. All
-     * periods are whole numbers of cubes: the cube size is made to fit, smaller by less than a
+     * surface is that of one period, open at its sides, where it meets itself: points a period apart
+     * agree in all bits, but for the coordinate along it, which is rounded. All periods are whole numbers of cubes: the cube size is made to fit, smaller by less than a
      * half. x0 = x1, the default 0: open. mcor_probe and mcor_derive do not read it. */
     double periodic[6];
 

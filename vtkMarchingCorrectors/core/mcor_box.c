@@ -254,21 +254,27 @@ static double mcor_reach_beyond(
   return farthest > 0 ? fmax(volumes, nearest) : 0;
 }
 
-/* With M'4 a density may be too low without its farthest particles, and is refused: there all are
- * needed to know. */
-static bool mcor_needs_all(const mcor_context* context, const mcor_input* input)
+/* Where the field is evaluated, in cubes from the lattice's origin; numbers that single precision
+ * has where that is anywhere. */
+void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
-  return context->options->sph_kernel == MCOR_M_PRIME_4 && mcor_needs_density(input);
+  const mcor_box* box = &context->box;
+  const double margin = box->of_points ? MCOR_POINTS_MARGIN : MCOR_BOX_RING + MCOR_BOX_MARGIN;
+  const bool limited = mcor_is_limited(context);
+  for (int a = 0; a < 3; ++a)
+  {
+    low[a] = limited ? box->begin[a] - margin : -1e30;
+    high[a] = limited ? box->end[a] + margin : 1e30;
+  }
 }
 
 bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach)
 {
   const mcor_box* box = &context->box;
-  const double margin = box->of_points ? MCOR_POINTS_MARGIN : MCOR_BOX_RING + MCOR_BOX_MARGIN;
   *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits,
     .unit = ldexp(1, -context->lattice.fix_bits),
     .is_empty = box->is_empty };
-  if (!mcor_is_limited(context) || (mcor_needs_all(context, input) && !box->is_empty))
+  if (!mcor_is_limited(context))
   {
     return false;
   }
@@ -276,10 +282,9 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   reach->support = mcor_support_factor(context->options->sph_kernel) * context->options->h_scale;
   reach->support =
     (pairs ? fmax(reach->support, MCOR_PAIR_REACH) : reach->support) / context->lattice.cube;
+  mcor_find_evaluated(context, reach->low, reach->high);
   for (int a = 0; a < 3; ++a)
   {
-    reach->low[a] = box->begin[a] - margin;
-    reach->high[a] = box->end[a] + margin;
     reach->period[a] = context->lattice.period[a];
     reach->first[a] = context->lattice.period_first[a];
   }

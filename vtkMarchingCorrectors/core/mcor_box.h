@@ -33,6 +33,7 @@ typedef struct mcor_images
   int first[3], last[3];
 } mcor_images;
 
+void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* False where all particles are needed. */
 bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach);
 /* A position in the device's units; with a period rounded as there, and in the first period. */

@@ -10,10 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-static mcor_status mcor_check_period(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+static mcor_status mcor_check_period(mcor_context* context, const mcor_options* options)
 {
-  bool some = false;
   for (int a = 0; a < 3; ++a)
   {
     const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
@@ -21,13 +19,7 @@ static mcor_status mcor_check_period(
       "The period along %c goes from %g to %g; both must be numbers, the first not the greater "
       "one.",
       'x' + a, from, to);
-    some = some || from < to;
   }
-  MCOR_RETURN_IF(some && options->sph_kernel == MCOR_M_PRIME_4 && input->count > 0 &&
-      !input->has_volume && !(input->has_mass && input->has_density),
-    context, MCOR_INVALID_ARGUMENT,
-    "Volumes are not computed with kernel %s and a period. Give volumes, or masses and densities.",
-    mcor_sph_kernel_name(options->sph_kernel));
   return MCOR_OK;
 }
 
@@ -269,7 +261,7 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   MCOR_TRY(mcor_check_options(context, options));
-  MCOR_TRY(mcor_check_period(context, input, options));
+  MCOR_TRY(mcor_check_period(context, options));
   MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
     context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
     input->attributes ? "" : ", but their list is NULL");

@@ -3,6 +3,7 @@
 
 /* Search grid [III-A]: levels, counting sort, volumes; and the scalar in sorted order. */
 
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_stage.h"
 
@@ -16,6 +17,28 @@
 /* Along an axis, so that the keys of all levels' cells are below 2^62. Far fewer are as good where
  * particles are that far apart. */
 #define MCOR_CELL_LIMIT (1 << 19)
+
+/* Cells of a level along an axis, `cell` cubes long, or a little more where whole ones must fill a
+ * period. */
+static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell, mcor_level* level)
+{
+  const int period = lattice->period[axis];
+  const double last = (double)lattice->last[axis];
+  level->period[axis] = level->side[axis] = level->period_cells[axis] = 0;
+  if (period == 0)
+  {
+    level->inv_cell[axis] = (cl_float)(1 / ldexp(cell, lattice->fix_bits));
+    level->cells[axis] = (cl_int)(last / cell) + 2;
+    return;
+  }
+  const int cells = cell < period ? (int)(period / cell) : 1;
+  const int side = (lattice->period_first[axis] % period + period) % period;
+  level->period[axis] = (cl_long)period << lattice->fix_bits;
+  level->side[axis] = (cl_long)side << lattice->fix_bits;
+  level->period_cells[axis] = cells;
+  level->inv_cell[axis] = (cl_float)(cells / ldexp(period, lattice->fix_bits));
+  level->cells[axis] = ((int)((last - side) / period) + 2) * cells + 1;
+}
 
 /* One level for each factor of 2 of support radius that occurs; renumbers staging->level. Returns
  * the number of search cells of all levels. */
@@ -52,12 +75,10 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
     level->base = base;
     level->support = (cl_float)support;
     const double cell = fmax(support / MCOR_CELLS_PER_SUPPORT, (double)extent / MCOR_CELL_LIMIT);
-    level->inv_cell = (cl_float)(1 / ldexp(cell, lattice->fix_bits));
-    level->unused = 0;
     uint64_t cells = 1;
     for (int a = 0; a < 3; ++a)
     {
-      level->cells[a] = (cl_int)((double)lattice->last[a] / cell) + 2;
+      mcor_divide_axis(lattice, a, cell, level);
       cells *= (uint64_t)level->cells[a];
     }
     base += cells;
@@ -230,11 +251,16 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(mass), MCOR_BUFFER(density)));
+  double low[3], high[3];
   cl_int first = INT32_MAX;
+  mcor_find_evaluated(context, low, high);
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&stage->solid),
-    MCOR_BUFFER(mass), MCOR_BUFFER(density),
+    MCOR_BUFFER(mass), MCOR_BUFFER(density), MCOR_INT(context->lattice.fix_bits),
+    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
+    MCOR_BUFFER(&grid->inv_h), MCOR_REAL(low[0]), MCOR_REAL(low[1]), MCOR_REAL(low[2]),
+    MCOR_REAL(high[0]), MCOR_REAL(high[1]), MCOR_REAL(high[2]),
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
   MCOR_TRY(mcor_read(context, without, 0, &first, sizeof first));

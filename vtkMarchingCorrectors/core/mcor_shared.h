@@ -18,10 +18,12 @@
 typedef struct mcor_level
 {
   MCOR_TYPE(ulong) base;     /* key of the level's cell (0, 0, 0) */
-  MCOR_TYPE(int) cells[3];   /* extent of the level, in its cells */
-  MCOR_TYPE(float) inv_cell; /* 1 / cell size, in fixed-point units */
+  /* In fixed-point units: a period, 0 where there is none, and the first side of one above 0. */
+  MCOR_TYPE(long) period[3], side[3];
+  MCOR_TYPE(int) cells[3];        /* extent of the level, in its cells */
+  MCOR_TYPE(int) period_cells[3]; /* those of a period */
+  MCOR_TYPE(float) inv_cell[3];   /* 1 / cell size, in fixed-point units */
   MCOR_TYPE(float) support; /* largest support radius of the level's particles, cubes, rounded up */
-  MCOR_TYPE(int) unused;
 } mcor_level;
 
 /* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest node they are. Node or cell

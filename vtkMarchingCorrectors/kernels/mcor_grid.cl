@@ -13,13 +13,13 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   {
     return;
   }
-  const mcor_level level = levels[level_of[i]];
+  __global const mcor_level* level = levels + level_of[i];
   ulong cell[3];
   for (int a = 0; a < 3; ++a)
   {
     cell[a] = mcor_cell_of_particle(level, a, xyz[3L * i + a]);
   }
-  keys[i] = level.base + (cell[2] * level.cells[1] + cell[1]) * level.cells[0] + cell[0];
+  keys[i] = level->base + (cell[2] * level->cells[1] + cell[1]) * level->cells[0] + cell[0];
 }
 
 /* Order of two particles of one search cell: by position, then by size and kind. Particles equal in
@@ -395,23 +395,45 @@ __kernel void mcor_grid_density(
  * be huge, or negative, as a kernel with negative lobes can make it. */
 #define MCOR_LEAST_DENSITY ((real)0.01f)
 
+/* Where the field is evaluated, in cubes. */
+#define MCOR_EVALUATED_PARAMS                                                                      \
+  const real low_x, const real low_y, const real low_z, const real high_x, const real high_y,      \
+    const real high_z
+
+/* Whether a particle, `support` around x, reaches what is evaluated, or nearly so. */
+bool mcor_grid_reaches(const real* x, real support, MCOR_EVALUATED_PARAMS)
+{
+  const real far = support * (real)1.001f + (real)0.01f;
+  return x[0] + far > low_x && x[0] - far < high_x && x[1] + far > low_y && x[1] - far < high_y &&
+    x[2] + far > low_z && x[2] - far < high_z;
+}
+
 /* One work-item = one sorted particle. Turns density into the weight V norm / (scaled h)^3: as
  * V = m / (sum m W), the norm and the unscaled h^3 cancel. Writes the first particle, if any, of
- * which the density is too low to `without`. */
+ * which the density is too low to `without`; not where it lacks neighbours, as it reaches nothing. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const uchar* solid, __global const real* mass, __global const real* density,
-  __global real* weight, __global real* trim_weight, __global int* without)
+  const int fix_bits, __global const fix* px, __global const fix* py, __global const fix* pz,
+  __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,
+  __global real* trim_weight, __global int* without)
 {
   const int i = get_global_id(0);
   if (i >= count)
   {
     return;
   }
-  if (!(density[i] > mass[i] * MCOR_LEAST_DENSITY))
+  real sum = density[i];
+  if (!(sum > mass[i] * MCOR_LEAST_DENSITY))
   {
-    atomic_min(without, order[i]);
+    const real unit = ldexp((real)1, -fix_bits);
+    const real x[3] = { (real)px[i] * unit, (real)py[i] * unit, (real)pz[i] * unit };
+    if (mcor_grid_reaches(x, MCOR_SUPPORT / inv_h[i], low_x, low_y, low_z, high_x, high_y, high_z))
+    {
+      atomic_min(without, order[i]);
+    }
+    sum = mass[i];
   }
-  const real w = mass[i] / (density[i] * h_scale * h_scale * h_scale);
+  const real w = mass[i] / (sum * h_scale * h_scale * h_scale);
   trim_weight[i] = w;
 #if MCOR_SOLIDS
   weight[i] = solid[order[i]] ? (real)0 : w;

@@ -160,14 +160,29 @@ int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
   return low;
 }
 
-/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. */
-int mcor_cell_of(fix x, float inv_cell)
+/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. Every period is
+ * divided alike, so that sums, whose order is that of the cells, are the same a period away. */
+int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
 {
-  return (int)floor((float)x * inv_cell);
+  const fix period = (fix)level->period[axis];
+  if (period == 0)
+  {
+    return (int)floor((float)x * level->inv_cell[axis]);
+  }
+  /* Nearly all periods at once, the others one by one: rounding does not matter. */
+  fix rest = x - (fix)level->side[axis];
+  const int most = (int)((float)rest / (float)period) - 1, periods = max(most, -1);
+  const int cells = level->period_cells[axis];
+  int cell = (periods + 1) * cells;
+  for (rest -= periods * period; rest >= period; rest -= period)
+  {
+    cell += cells;
+  }
+  return rest < 0 ? -1 : cell + min((int)((float)rest * level->inv_cell[axis]), cells - 1);
 }
 
 /* Cell along an axis of a particle of the level. */
-int mcor_cell_of_particle(mcor_level level, int axis, fix x)
+int mcor_cell_of_particle(__global const mcor_level* level, int axis, fix x)
 {
-  return clamp(mcor_cell_of(x, level.inv_cell), 0, level.cells[axis] - 1);
+  return clamp(mcor_cell_of(level, axis, x), 0, level->cells[axis] - 1);
 }

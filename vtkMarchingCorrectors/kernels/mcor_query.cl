@@ -55,7 +55,9 @@ typedef struct
   fix origin[3];                /* in a tile, positions count from here */
   real center[3], half_size[3]; /* of the box, in cubes from the origin */
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
-  float cell_size, reach2, z2; /* of this level, in fixed-point units; squared distance of row z */
+  /* Of this level, in fixed-point units: cells, where the first one begins, how far rounding may have
+   * moved that; reach; squared distance of row z. */
+  float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
   bool has_many_rows; /* in reach, so that one passes over the empty ones at once */
   int begin, end;     /* particles left of the current row */
@@ -71,17 +73,19 @@ fix mcor_query_reach(float distance)
 /* The part of a query that depends on the level; false where the level has no cell in reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
-  const mcor_level level = grid->levels[query->level];
-  const float support = query->radius >= 0 ? query->radius : -query->radius * level.support;
+  __global const mcor_level* level = grid->levels + query->level;
+  const float support = query->radius >= 0 ? query->radius : -query->radius * level->support;
   const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
   const fix reach = mcor_query_reach(far);
-  query->cell_size = 1 / level.inv_cell;
   query->reach2 = far * far;
   bool some = true;
   for (int a = 0; a < 3; ++a)
   {
-    query->first[a] = max(mcor_cell_of(query->low[a] - reach, level.inv_cell), 0);
-    query->last[a] = min(mcor_cell_of(query->high[a] + reach, level.inv_cell), level.cells[a] - 1);
+    query->cell_size[a] = 1 / level->inv_cell[a];
+    query->first_cell[a] = (float)level->side[a] - (float)level->period[a];
+    query->slack[a] = 1 + 1e-6f * (float)level->period[a];
+    query->first[a] = max(mcor_cell_of(level, a, query->low[a] - reach), 0);
+    query->last[a] = min(mcor_cell_of(level, a, query->high[a] + reach), level->cells[a] - 1);
     some = some && query->first[a] <= query->last[a];
   }
   query->y = query->last[1]; /* as if the row before the first one had just ended */
@@ -121,8 +125,10 @@ void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin
 float mcor_query_distance2(const mcor_query* query, int axis, int cell)
 {
   const float low = (float)query->low[axis], high = (float)query->high[axis];
-  const float begin = (float)cell * query->cell_size, end = begin + query->cell_size;
-  const float d = fmax(low - end, begin - high) - 1e-6f * (fabs(low) + fabs(high)) - 1;
+  const float begin = query->first_cell[axis] + (float)cell * query->cell_size[axis];
+  const float end = begin + query->cell_size[axis];
+  const float d =
+    fmax(low - end, begin - high) - 1e-6f * (fabs(low) + fabs(high)) - query->slack[axis];
   return d > 0 ? d * d : 0;
 }
 
@@ -160,11 +166,11 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
 /* Moves to just before the row, or the plane of rows, of the level's next particle. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
-  const mcor_level level = grid->levels[query->level];
-  const ulong nx = level.cells[0], ny = level.cells[1], nz = level.cells[2];
-  const int next = mcor_first_particle(grid, level.base + (query->z * ny + query->y + 1) * nx);
-  const int end = mcor_first_particle(grid, level.base + nz * ny * nx);
-  const int z = next < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level.cells[2];
+  __global const mcor_level* level = grid->levels + query->level;
+  const ulong nx = level->cells[0], ny = level->cells[1], nz = level->cells[2];
+  const int next = mcor_first_particle(grid, level->base + (query->z * ny + query->y + 1) * nx);
+  const int end = mcor_first_particle(grid, level->base + nz * ny * nx);
+  const int z = next < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level->cells[2];
   if (z == query->z)
   {
     query->y = min(mcor_cell_of_particle(level, 1, grid->py[next]) - 1, query->last[1]);

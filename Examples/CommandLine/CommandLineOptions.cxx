@@ -114,10 +114,15 @@ std::vector<double> ToNumbers(const std::string& option, const std::string& text
 
 double ToShare(const std::string& option, const std::string& text)
 {
+  if (text == "measured")
+  {
+    return 0.0;
+  }
   const double number = ToNumber(option, text);
   if (!(number > 0.0 && number < 1.0))
   {
-    throw UsageError(option + " needs a number above 0 and below 1, not '" + text + "'");
+    throw UsageError(
+      option + " needs a number above 0 and below 1, or 'measured', not '" + text + "'");
   }
   return number;
 }
@@ -257,7 +262,8 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) {
         o.Solids = ToChoice(n, v, { "weight", "ignore", "wall" });
       } },
-    { "--wall-share", "S", "with --solids wall: their share of the weight there (default 0.5)",
+    { "--wall-share", "S|measured",
+      "with --solids wall: their share of the weight there (default 0.5), or that at the walls",
       [](Options& o, Text n, Text v) { o.WallShare = ToShare(n, v); } },
 
     { "", "", "The method", {} },
@@ -437,6 +443,10 @@ void Check(const CommandLineOptions& options)
   if (options.FreeSurface && !options.Scalar.empty())
   {
     throw UsageError("--free-surface contours the weight sum; leave out --scalar");
+  }
+  if (options.FreeSurface && options.WallShare == 0.0)
+  {
+    throw UsageError("--wall-share measured is for a scalar; with --free-surface give a number");
   }
   if (!options.FreeSurface && options.Scalar.empty())
   {

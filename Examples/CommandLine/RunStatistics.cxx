@@ -204,7 +204,9 @@ void WriteSetting(JsonText& json, const CommandLineOptions& options, vtkFieldDat
     json.Value("solids", options.Solids);
     if (options.Solids == "wall")
     {
-      json.Value("wall_share", options.WallShare);
+      vtkDataArray* measured = run->GetArray("WallShare");
+      const bool isMeasured = options.WallShare == 0.0 && measured;
+      json.Value("wall_share", isMeasured ? measured->GetComponent(0, 0) : options.WallShare);
     }
     json.End();
   }

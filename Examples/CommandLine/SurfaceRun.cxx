@@ -5,6 +5,7 @@
 #include "CommandLineOptions.h"
 #include "MessageCapture.h"
 #include "SafeText.h"
+#include "WallShare.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkMarchingCorrectors.h"
@@ -75,12 +76,14 @@ void SetParticles(
   filter->SetHScaleFactor(options.HScale);
 }
 
-void SetSolids(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
+void SetSolids(
+  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
 {
   filter->SetSolids(options.Solids == "wall" ? vtkMarchingCorrectors::SOLIDS_WALL
       : options.Solids == "ignore"           ? vtkMarchingCorrectors::SOLIDS_IGNORE
                                              : vtkMarchingCorrectors::SOLIDS_WEIGHT);
-  filter->SetWallShare(options.WallShare);
+  const bool measured = options.Solids == "wall" && options.WallShare == 0.0;
+  filter->SetWallShare(measured ? MeasureWallShare(options, particles) : options.WallShare);
 }
 
 void SetDevice(vtkSPHAlgorithm* filter, const CommandLineOptions& options)
@@ -309,7 +312,7 @@ void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& option
   filter->SetInputData(particles);
   SetPeriod(filter, options, particles);
   filter->SetInterpolateAttributes(options.Attributes);
-  SetSolids(filter, options);
+  SetSolids(filter, options, particles);
   SetContour(filter, options);
   SetMethod(filter, options);
 }

@@ -67,6 +67,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--boundary", "x"], "--boundary is one of weight, eigenvalue, not 'x'"),
             ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, wall, not 'x'"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
+            ([*good, "--free-surface", "--wall-share=measured"], "with --free-surface give a number"),
             ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
             ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
@@ -514,6 +515,10 @@ class Options(CommandLineTest):
         self.assertEqual(wall["fluid"]["wall_share"], 0.5)
         farther = self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", "--wall-share=0.95")
         weight = self.succeed(*ISO, "--fluid", "Kind=0")
+        measured = self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", "--wall-share=measured")
+        self.assertGreater(measured["fluid"]["wall_share"], 0.5)
+        self.assertLess(measured["fluid"]["wall_share"], 0.95)
+        self.assertGreater(measured["statistics"]["triangles"], wall["statistics"]["triangles"])
         triangles = wall["statistics"]["triangles"]
         self.assertLess(triangles, weight["statistics"]["triangles"])
         self.assertLess(triangles, farther["statistics"]["triangles"])

@@ -3,9 +3,9 @@
 # off. On Debian only one of both SDKs can be installed; a build folder serves the one it was made for.
 #
 # Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
-set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc)
+set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc ParallelCore)
 set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersSources IOXML IOXMLParser IOLegacy IOImage
-  IOGeometry IOHDF RenderingCore RenderingOpenGL2 TestingRendering)
+  IOGeometry IOHDF RenderingCore RenderingOpenGL2 TestingRendering ParallelMPI ParallelDIY IOParallelXML)
 
 # VTK 9.3 passes empty arguments on, which CMake 3.31 warns of unless told what to do.
 set(CMAKE_POLICY_DEFAULT_CMP0174 NEW)
@@ -88,3 +88,17 @@ if (TARGET VTK::WrappingPythonCore AND TARGET VTK::Python)
   endforeach ()
 endif ()
 option(MCOR_WRAP_PYTHON "Make the filter usable from Python" ${mcor_can_wrap})
+
+# Where VTK was built with MPI, many processes can share a surface.
+set(mcor_can_share OFF)
+if (TARGET VTK::ParallelMPI AND TARGET VTK::ParallelDIY)
+  set(mcor_can_share ON)
+endif ()
+option(MCOR_USE_MPI "Let MPI's processes share a surface; needs VTK with MPI and DIY" ${mcor_can_share})
+set(MCOR_HAS_RANKS OFF)
+if (MCOR_USE_MPI AND mcor_can_share)
+  set(MCOR_HAS_RANKS ON)
+elseif (MCOR_USE_MPI)
+  message(FATAL_ERROR "MCOR_USE_MPI needs a VTK that was built with MPI and DIY (modules ParallelMPI and "
+    "ParallelDIY). Turn it off, or use another VTK.${mcor_hint}")
+endif ()

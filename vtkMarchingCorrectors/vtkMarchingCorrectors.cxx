@@ -156,6 +156,13 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 {
   this->ClearSummary();
   auto* particles = vtkPointSet::SafeDownCast(data);
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    this->ProcessTogether(particles, vtkPolyData::SafeDownCast(output));
+    return;
+  }
+#endif
   if (data && !particles)
   {
     this->Warn(
@@ -209,22 +216,28 @@ void vtkMarchingCorrectors::Extract(
     return;
   }
   vtkMarchingCorrectorsOutput builder(input, options, surface);
-  for (const std::string& sentence : input.ListLeftOut(surface.attribute_not_finite, "the surface"))
-  {
-    this->Warn(sentence);
-  }
   this->Summarize(input.Core, options, surface.statistics);
-  for (int kind = 0; kind < MCOR_WARNING_COUNT; ++kind)
-  {
-    const std::unique_ptr<char, decltype(&std::free)> text(
-      mcor_describe_warning(static_cast<mcor_warning>(kind), &input.Core, &options, &surface),
-      std::free);
-    this->WarnOnce(kind, text ? text.get() : "");
-  }
+  this->WarnOf(input, surface, input.Core, options);
   builder.BuildFieldData(output->GetFieldData());
   vtkSPHAddRunStatistics(this->RunStatistics, surface.statistics);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
+  const mcor_surface& surface, const mcor_input& core, const mcor_options& options)
+{
+  for (const std::string& sentence : input.ListLeftOut(surface.attribute_not_finite, "the surface"))
+  {
+    this->Warn(sentence);
+  }
+  for (int kind = 0; kind < MCOR_WARNING_COUNT; ++kind)
+  {
+    const std::unique_ptr<char, decltype(&std::free)> text(
+      mcor_describe_warning(static_cast<mcor_warning>(kind), &core, &options, &surface), std::free);
+    this->WarnOnce(kind, text ? text.get() : "");
+  }
 }
 
 //------------------------------------------------------------------------------

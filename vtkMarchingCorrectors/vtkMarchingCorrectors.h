@@ -121,7 +121,9 @@ class vtkMarchingCorrectorsInput;
 class vtkPointSet;
 struct mcor_input;
 struct mcor_statistics;
+struct mcor_surface;
 struct vtkMarchingCorrectorsChoice;
+struct vtkMarchingCorrectorsRun;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
@@ -634,6 +636,13 @@ private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
+  void ProcessTogether(vtkPointSet* particles, vtkPolyData* output);
+  std::vector<double> ListIsoValuesTogether(
+    vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
+  void FinishTogether(
+    vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
+  void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
+    const mcor_input& core, const mcor_options& options);
   void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);

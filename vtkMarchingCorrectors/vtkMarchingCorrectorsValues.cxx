@@ -152,7 +152,7 @@ bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2])
 }
 
 //------------------------------------------------------------------------------
-double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core)
+std::vector<double> vtkMarchingCorrectorsFluidValues(const mcor_input& core)
 {
   std::vector<double> values(static_cast<size_t>(core.count));
   vtkSMPTools::For(0, core.count,
@@ -172,6 +172,13 @@ double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core)
     }
   }
   values.resize(count);
+  return values;
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core)
+{
+  std::vector<double> values = vtkMarchingCorrectorsFluidValues(core);
   if (values.empty())
   {
     return 0.0;

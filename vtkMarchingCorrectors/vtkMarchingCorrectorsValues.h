@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <vector>
 
 class vtkDataArray;
 
@@ -24,6 +25,9 @@ vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std
 
 /** How often each value occurs in an array of one component; empty if there are more than `most`. */
 std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most);
+
+/** The finite values of what is contoured at fluid particles, in no order. */
+std::vector<double> vtkMarchingCorrectorsFluidValues(const mcor_input& core);
 
 /**
  * Lowest and highest value of the scalar (the component, magnitude or dot product) at fluid particles

@@ -10,11 +10,16 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointSet.h"
 #include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #include "vtkVersionMacros.h"
+#if MCOR_HAS_RANKS
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksCalls.h"
+#endif
 
 #include <cstdlib>
 
@@ -33,9 +38,16 @@ vtkSPHAlgorithm::vtkSPHAlgorithm()
   : RunStatistics(vtkSmartPointer<vtkFieldData>::New())
   , Internals(new vtkInternals)
 {
+  this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
-vtkSPHAlgorithm::~vtkSPHAlgorithm() = default;
+vtkSPHAlgorithm::~vtkSPHAlgorithm()
+{
+  this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+vtkCxxSetObjectMacro(vtkSPHAlgorithm, Controller, vtkMultiProcessController);
 
 //------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::SetKernelByName(const char* name)
@@ -300,16 +312,16 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
 }
 
 //------------------------------------------------------------------------------
-// What an observer of the progress may change is read before the run.
-bool vtkSPHAlgorithm::CallCore(
-  vtkSPHParticles& particles, mcor_options& options, const std::function<int(mcor_context*)>& call)
+// A mcor_status; `message` says why it is not MCOR_OK, unless that is because the user cancelled. What
+// an observer of the progress may change is read before the run.
+int vtkSPHAlgorithm::RunCore(vtkSPHParticles& particles, mcor_options& options,
+  const std::function<int(mcor_context*)>& call, std::string& message)
 {
   const bool keep = this->KeepDeviceData != 0;
-  const std::string lacking = this->Internals->Prepare(this->Device);
-  if (!lacking.empty())
+  message = this->Internals->Prepare(this->Device);
+  if (!message.empty())
   {
-    this->Fail(lacking);
-    return false;
+    return MCOR_DEVICE_ERROR;
   }
   if (keep)
   {
@@ -331,14 +343,56 @@ bool vtkSPHAlgorithm::CallCore(
   }
   if (status != MCOR_OK)
   {
-    const std::string message = mcor_last_error(context);
+    message = status == MCOR_CANCELLED ? "" : mcor_last_error(context);
     this->Internals->Forget(status);
-    if (status != MCOR_CANCELLED)
-    {
-      this->Fail(message);
-    }
+  }
+  return status;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::CallCore(
+  vtkSPHParticles& particles, mcor_options& options, const std::function<int(mcor_context*)>& call)
+{
+  std::string message;
+  const int status = this->RunCore(particles, options, call, message);
+  if (!message.empty())
+  {
+    this->Fail(message);
   }
   return status == MCOR_OK;
+}
+
+#if MCOR_HAS_RANKS
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& particles,
+  mcor_options& options, const std::function<int(mcor_context*)>& call)
+{
+  vtkSPHRanksCalls calls(ranks);
+  options.ranks = calls.Get();
+  std::string message;
+  const int status = this->RunCore(particles, options, call, message);
+  options.ranks = nullptr;
+  calls.End(status != MCOR_OK);
+  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
+  ranks.Reduce(vtkSPHRanks::GREATEST, &cancelled, 1);
+  const bool good = ranks.Agree(message);
+  if (!good)
+  {
+    this->Fail(message);
+  }
+  return good && cancelled == 0;
+}
+#endif
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::IsShared() const
+{
+#if MCOR_HAS_RANKS
+  return this->Controller && this->Controller->IsA("vtkMPIController") &&
+    this->Controller->GetNumberOfProcesses() > 1;
+#else
+  return false;
+#endif
 }
 
 //------------------------------------------------------------------------------
@@ -386,5 +440,6 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   printName("Device", this->Device);
   os << indent << "Device Memory Limit: " << this->DeviceMemoryLimit << " MiB\n";
   os << indent << "Keep Device Data: " << this->KeepDeviceData << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
   printName("Error Message", this->ErrorMessage);
 }

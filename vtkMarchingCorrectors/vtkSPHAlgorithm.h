@@ -46,8 +46,10 @@
 
 class vtkDataObjectTree;
 class vtkFieldData;
+class vtkMultiProcessController;
 class vtkPointSet;
 class vtkSPHParticles;
+class vtkSPHRanks;
 struct mcor_context;
 struct mcor_options;
 struct vtkSPHParticlesChoice;
@@ -230,6 +232,15 @@ public:
   vtkGetCharFromStdStringMacro(Device);
   ///@}
 
+  ///@{
+  /**
+   * The processes that share a run; VTK's global controller by default. With MPI and more than one
+   * process, all update together, each with some of the particles or none, see vtkMarchingCorrectors.
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
   /**
    * The sentence that says why the last run failed; empty if it did not. It is also reported as a
    * VTK error. For composite data, one line for each block that failed, which it names.
@@ -337,6 +348,17 @@ protected:
   bool CallCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call);
 
+  /**
+   * Whether processes share a run, in a build that can.
+   */
+  bool IsShared() const;
+
+  /**
+   * CallCore() on all ranks together: where it fails on one of them, all say so.
+   */
+  bool CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& particles, mcor_options& options,
+    const std::function<int(mcor_context*)>& call);
+
   void FillChoice(vtkSPHParticlesChoice& choice) const;
   void FillOptions(mcor_options& options) const;
   void SetUsedNames(const vtkSPHParticles* particles);
@@ -366,6 +388,7 @@ protected:
   std::string Device;
   int DeviceMemoryLimit = 0;
   vtkTypeBool KeepDeviceData = 1;
+  vtkMultiProcessController* Controller = nullptr;
 
   std::string ErrorMessage;
   std::set<int> Warned;  // kinds of warnings that this run has given
@@ -380,6 +403,8 @@ private:
 
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
+  int RunCore(vtkSPHParticles& particles, mcor_options& options,
+    const std::function<int(mcor_context*)>& call, std::string& message);
 };
 
 #endif

@@ -21,6 +21,13 @@ bool IsReal(vtkAbstractArray* array)
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
 }
 
+/** An array without values has no pointer, which to the core would be a constant. */
+const void* OrEmpty(const void* values)
+{
+  static const double none = 0.0;
+  return values ? values : &none;
+}
+
 std::uint64_t BitsOf(double value)
 {
   std::uint64_t bits;
@@ -199,7 +206,7 @@ bool vtkSPHParticles::CollectSolids()
   {
     return false;
   }
-  this->Solid.resize(static_cast<size_t>(this->Core.count));
+  this->Solid.resize(std::max<size_t>(static_cast<size_t>(this->Core.count), 1));
   this->FluidCount =
     vtkMarchingCorrectorsMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
   this->Core.solid = this->Solid.data();
@@ -337,7 +344,7 @@ mcor_array vtkSPHParticles::View(vtkDataArray* array)
   if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array))
   {
     view.type = MCOR_FLOAT32;
-    view.data = floats->GetPointer(0);
+    view.data = OrEmpty(floats->GetPointer(0));
     this->Viewed.push_back(array);
     return view;
   }
@@ -347,7 +354,7 @@ mcor_array vtkSPHParticles::View(vtkDataArray* array)
     doubles = vtkMarchingCorrectorsCopyAsDouble(array);
   }
   view.type = MCOR_FLOAT64;
-  view.data = doubles->GetVoidPointer(0);
+  view.data = OrEmpty(doubles->GetVoidPointer(0));
   this->Viewed.push_back(doubles);
   return view;
 }

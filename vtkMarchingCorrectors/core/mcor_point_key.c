@@ -48,8 +48,8 @@ static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4],
 static uint64_t mcor_march_key(const mcor_lattice* lattice, const cl_int* nodes, int64_t v)
 {
   const cl_int *node = nodes + 4 * v, *before = node - 4;
-  const bool copy = v > 0 && node[0] == before[0] && node[1] == before[1] &&
-    node[2] == before[2] && node[3] == before[3];
+  const bool copy = v > 0 && node[0] == before[0] && node[1] == before[1] && node[2] == before[2] &&
+    node[3] == before[3];
   return mcor_edge_key(lattice, node, copy);
 }
 

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RankSurfaces.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkIdList.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+namespace
+{
+
+using Triangle = std::array<vtkIdType, 3>;
+
+bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
+{
+  const auto size = static_cast<std::size_t>(a->GetNumberOfComponents()) *
+    static_cast<std::size_t>(a->GetDataTypeSize());
+  return a->GetDataType() == b->GetDataType() &&
+    a->GetNumberOfComponents() == b->GetNumberOfComponents() &&
+    std::memcmp(static_cast<char*>(a->GetVoidPointer(0)) + static_cast<std::size_t>(i) * size,
+      static_cast<char*>(b->GetVoidPointer(0)) + static_cast<std::size_t>(j) * size, size) == 0;
+}
+
+void AddTriangles(vtkPolyData* surface, vtkDataArray* numbers, std::vector<Triangle>& triangles)
+{
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType i = 0; i < surface->GetNumberOfPolys(); ++i)
+  {
+    surface->GetPolys()->GetCellAtId(i, corners);
+    Triangle triangle;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const vtkIdType id = corners->GetId(static_cast<vtkIdType>(c));
+      triangle[c] = numbers ? static_cast<vtkIdType>(numbers->GetComponent(id, 0)) : id;
+    }
+    triangles.push_back(triangle);
+  }
+}
+
+std::string ComparePoints(vtkPolyData* part, vtkPolyData* whole, std::vector<bool>& seen)
+{
+  vtkPointData *arrays = part->GetPointData(), *expected = whole->GetPointData();
+  vtkDataArray* numbers = arrays->GetGlobalIds();
+  if (!numbers || std::string(numbers->GetName()) != "GlobalPointIds")
+  {
+    return "there are no global point ids";
+  }
+  if (arrays->GetNumberOfArrays() != expected->GetNumberOfArrays() + 1)
+  {
+    return std::to_string(arrays->GetNumberOfArrays()) + " arrays";
+  }
+  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+  {
+    const auto number = static_cast<vtkIdType>(numbers->GetComponent(i, 0));
+    if (number < 0 || number >= whole->GetNumberOfPoints())
+    {
+      return "a point has number " + std::to_string(number);
+    }
+    seen[static_cast<std::size_t>(number)] = true;
+    if (!IsSameTuple(part->GetPoints()->GetData(), i, whole->GetPoints()->GetData(), number))
+    {
+      return "point " + std::to_string(number) + " is elsewhere";
+    }
+    for (int k = 0; k < expected->GetNumberOfArrays(); ++k)
+    {
+      vtkDataArray* array = arrays->GetArray(expected->GetArrayName(k));
+      if (!array || !IsSameTuple(array, i, expected->GetArray(k), number))
+      {
+        return std::string(expected->GetArrayName(k)) + " of point " + std::to_string(number);
+      }
+    }
+  }
+  return "";
+}
+
+std::string Compare(const std::vector<vtkSmartPointer<vtkPolyData>>& parts, vtkPolyData* whole)
+{
+  std::vector<bool> seen(static_cast<std::size_t>(whole->GetNumberOfPoints()), false);
+  std::vector<Triangle> triangles, expected;
+  AddTriangles(whole, nullptr, expected);
+  if (expected.size() < 500)
+  {
+    return "only " + std::to_string(expected.size()) + " triangles to compare with";
+  }
+  for (std::size_t rank = 0; rank < parts.size(); ++rank)
+  {
+    const std::string problem = ComparePoints(parts[rank], whole, seen);
+    if (!problem.empty())
+    {
+      return "rank " + std::to_string(rank) + ": " + problem;
+    }
+    AddTriangles(parts[rank], parts[rank]->GetPointData()->GetGlobalIds(), triangles);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  std::sort(expected.begin(), expected.end());
+  if (triangles != expected)
+  {
+    return std::to_string(triangles.size()) + " triangles, not these " +
+      std::to_string(expected.size());
+  }
+  const auto missing = std::count(seen.begin(), seen.end(), false);
+  return missing == 0 ? "" : std::to_string(missing) + " points are missing";
+}
+
+}
+
+std::string CompareWithWhole(
+  vtkMultiProcessController* controller, vtkPolyData* part, vtkPolyData* whole)
+{
+  constexpr int tag = 1717;
+  if (controller->GetLocalProcessId() != 0)
+  {
+    controller->Send(part, 0, tag);
+    return "";
+  }
+  std::vector<vtkSmartPointer<vtkPolyData>> parts = { part };
+  for (int rank = 1; rank < controller->GetNumberOfProcesses(); ++rank)
+  {
+    parts.emplace_back(vtkSmartPointer<vtkPolyData>::New());
+    controller->Receive(parts.back(), rank, tag);
+  }
+  return Compare(parts, whole);
+}

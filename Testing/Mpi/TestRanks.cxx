@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Run by mpirun: the surface that ranks make together is, point for point and bit for bit, the one that
+// rank 0 makes alone, however the particles are strewn over the ranks.
+//
+//   TestRanks FOLDER OF DATA [CASE]
+#include "RankParts.h"
+#include "RankSurfaces.h"
+
+#include "vtkDataArray.h"
+#include "vtkMPIController.h"
+#include "vtkMarchingCorrectors.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkXMLPolyDataReader.h"
+
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using Setup = std::function<void(vtkMarchingCorrectors*)>;
+
+struct Case
+{
+  const char* Name;
+  const char* File;
+  Setup SetUp;
+};
+
+void ContourSpeed(vtkMarchingCorrectors* filter)
+{
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Speed");
+  filter->SetValue(0, 2.0);
+}
+
+void ContourDamBreak(vtkMarchingCorrectors* filter)
+{
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Velocity");
+  filter->SetValue(0, 1.0);
+  filter->SetFluidArrayName("ParticleType");
+}
+
+const std::vector<Case> Cases = {
+  { "free surface", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f) { f->FreeSurfaceOn(); } },
+  { "trimmed", "double_dam_break_small", ContourSpeed },
+  { "two values, topology of the field, all arrays", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourSpeed(f);
+      f->SetValue(1, 1.2);
+      f->SetTopologyToField();
+      f->ComputeGradientsOn();
+      f->ComputeWeightSumOn();
+      f->ComputeBoundaryEigenvalueOn();
+      f->ComputeBoundaryFlagOn();
+      f->ComputeCorrectionLengthOn();
+    } },
+  { "value in the middle of the range, eigenvalue, double precision", "bunny_splash_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Speed");
+      f->SetBoundaryDetectionToEigenvalue();
+      f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    } },
+  { "computed volumes, estimated smoothing length", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->DetectArraysOff();
+      f->EstimateSmoothingLengthOn();
+    } },
+  { "box, preview", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourSpeed(f);
+      f->PreviewOn();
+      f->UseBoxOn();
+      f->SetBox(-0.4, 0.51, -10.0, 0.33, -0.2, 10.0);
+    } },
+  { "walls", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourDamBreak(f);
+      f->SetSolids(vtkMarchingCorrectors::SOLIDS_WALL);
+      f->SetCubeSizeFactor(1.0);
+    } },
+  { "smoothing lengths that differ", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourDamBreak(f);
+      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      f->SetCubeSizeFactor(1.0);
+    } },
+};
+
+vtkSmartPointer<vtkPolyData> Read(const std::string& file)
+{
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> Extract(
+  const Setup& setUp, vtkPolyData* particles, vtkMultiProcessController* controller)
+{
+  vtkNew<vtkMarchingCorrectors> filter;
+  filter->SetController(controller);
+  setUp(filter);
+  filter->SetInputData(particles);
+  filter->Update();
+  vtkSmartPointer<vtkPolyData> surface = filter->GetOutput();
+  return surface;
+}
+
+/// Returns how many partitions give another surface.
+int Check(const Case& tried, const std::string& folder, vtkMPIController* controller)
+{
+  const vtkSmartPointer<vtkPolyData> particles = Read(folder + "/" + tried.File + ".vtp");
+  const bool isFirst = controller->GetLocalProcessId() == 0;
+  const vtkSmartPointer<vtkPolyData> whole =
+    isFirst ? Extract(tried.SetUp, particles, nullptr) : nullptr;
+  int failures = 0;
+  for (int part = 0; part < PartCount; ++part)
+  {
+    const vtkSmartPointer<vtkPolyData> own = TakePart(
+      particles, part, controller->GetLocalProcessId(), controller->GetNumberOfProcesses());
+    const vtkSmartPointer<vtkPolyData> surface = Extract(tried.SetUp, own, controller);
+    const std::string problem = CompareWithWhole(controller, surface, whole);
+    if (isFirst)
+    {
+      failures += problem.empty() ? 0 : 1;
+      std::printf(
+        "%s, %s: %s\n", tried.Name, PartName(part), problem.empty() ? "same" : problem.c_str());
+      std::fflush(stdout);
+    }
+  }
+  return failures;
+}
+
+}
+
+int main(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  int failures = 0;
+  for (const Case& tried : Cases)
+  {
+    if (argc < 3 || std::string(tried.Name).find(argv[2]) != std::string::npos)
+    {
+      failures += Check(tried, argv[1], controller);
+    }
+  }
+  controller->Broadcast(&failures, 1, 0);
+  controller->Finalize();
+  return failures == 0 ? 0 : 1;
+}

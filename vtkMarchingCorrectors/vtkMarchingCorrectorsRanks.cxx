@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A run that many processes share. Each hands over the particles that it has; space is divided among
+// them; particles go to where they are needed; each process extracts its box's part of the surface, as
+// the core does for any box; points get the numbers that they have in the whole.
+#include "vtkMarchingCorrectors.h"
+
+#include "vtkFieldData.h"
+#include "vtkMarchingCorrectorsInput.h"
+#include "vtkMarchingCorrectorsOutput.h"
+#include "vtkMarchingCorrectorsSummary.h"
+#include "vtkMarchingCorrectorsValues.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksPoints.h"
+#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksStatistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+
+/** What one rank has made, before the ranks put it together. */
+struct vtkMarchingCorrectorsRun
+{
+  vtkMarchingCorrectorsInput& Input; ///< the particles that reach this rank's box
+  mcor_options& Options;             ///< with the user's box
+  const vtkSPHRanksRoute& Route;
+  mcor_surface& Surface;
+  std::int64_t Particles; ///< of all ranks
+};
+
+namespace
+{
+/** Of sorted values, how many of all ranks' are below. */
+void CountBelow(
+  vtkSPHRanks& ranks, const std::vector<double>& sorted, const double at[2], std::int64_t below[2])
+{
+  for (int i = 0; i < 2; ++i)
+  {
+    below[i] = std::lower_bound(sorted.begin(), sorted.end(), at[i]) - sorted.begin();
+  }
+  ranks.Reduce(vtkSPHRanks::SUM, below, 2);
+}
+
+/** A number halfway between two, in the order of those that there are; the lower one if none is. */
+double Halfway(double low, double high)
+{
+  const double middle = 0.5 * low + 0.5 * high;
+  return middle > low && middle < high ? middle : low;
+}
+
+/** vtkMarchingCorrectorsMiddleOfRange() of all ranks' values: found by halving, as none has all. */
+double MiddleOfRange(vtkSPHRanks& ranks, std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  auto count = static_cast<std::int64_t>(values.size());
+  ranks.Reduce(vtkSPHRanks::SUM, &count, 1);
+  if (count == 0)
+  {
+    return 0.0;
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  double ends[2] = { values.empty() ? infinity : values.front(),
+    values.empty() ? infinity : -values.back() };
+  ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
+  const std::int64_t goal[2] = { count / 50, count - 1 - count / 50 };
+  double low[2] = { ends[0], ends[0] }; // no more than the goal's number are below
+  double high[2] = { std::nextafter(-ends[1], infinity), std::nextafter(-ends[1], infinity) };
+  for (bool goesOn = true; goesOn;)
+  {
+    const double at[2] = { Halfway(low[0], high[0]), Halfway(low[1], high[1]) };
+    std::int64_t below[2];
+    CountBelow(ranks, values, at, below);
+    goesOn = false;
+    for (int i = 0; i < 2; ++i)
+    {
+      goesOn = goesOn || at[i] > low[i];
+      (below[i] <= goal[i] ? low[i] : high[i]) = at[i];
+    }
+  }
+  return 0.5 * low[0] + 0.5 * low[1];
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkMarchingCorrectors::ListIsoValuesTogether(
+  vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input)
+{
+  if (this->GetNumberOfContours() > 0 || input.Choice.FreeSurface)
+  {
+    return this->ListIsoValues(input);
+  }
+  return { MiddleOfRange(ranks, vtkMarchingCorrectorsFluidValues(input.Core)) };
+}
+
+//------------------------------------------------------------------------------
+// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData* output)
+{
+  vtkSPHRanks ranks(this->Controller);
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
+  std::int64_t counts[2] = { own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
+  ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
+  if (counts[0] == 0 || counts[1] > 0)
+  {
+    this->SetUsedNames(nullptr);
+    return;
+  }
+  mcor_options options;
+  vtkMarchingCorrectorsChoice choice;
+  this->FillOptions(options);
+  this->FillChoice(choice, own);
+  choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
+  vtkMarchingCorrectorsInput mine(choice, own);
+  std::string message = mine.Collect() ? "" : mine.Error;
+  this->SetUsedNames(&mine);
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return;
+  }
+  std::int64_t fluid = mine.FluidCount;
+  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
+  if (ranks.GetRank() == 0)
+  {
+    fluid == 0 ? this->WarnOfNoFluid(choice, "no surface")
+               : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
+  }
+  if (fluid == 0)
+  {
+    return;
+  }
+  const std::vector<double> isoValues = this->ListIsoValuesTogether(ranks, mine);
+  options.iso_values = isoValues.data();
+  options.iso_count = static_cast<int>(isoValues.size());
+  options.nearest_particle = mine.FromNearest.empty() ? 0 : 1;
+  options.point_keys = 1;
+
+  mcor_globals globals = {};
+  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
+    &globals, mcor_free_globals);
+  if (!this->CallCoreTogether(ranks, mine, options,
+        [&](mcor_context* context)
+        { return mcor_measure_globals(context, &mine.Core, &options, &globals); }))
+  {
+    return;
+  }
+  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals);
+  const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
+  this->FillChoice(choice, near);
+  vtkMarchingCorrectorsInput input(choice, near);
+  message = input.Collect() ? "" : input.Error;
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return;
+  }
+  mcor_options boxed = options;
+  boxed.globals = &globals;
+  boxed.has_box = 1;
+  std::copy(route.Box, route.Box + 6, boxed.box);
+  mcor_surface surface = {};
+  const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
+    &surface, mcor_free_surface);
+  if (this->CallCoreTogether(ranks, input, boxed,
+        [&](mcor_context* context)
+        { return mcor_extract(context, &input.Core, &boxed, &surface); }))
+  {
+    this->FinishTogether(ranks, { input, options, route, surface, counts[0] }, output);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::FinishTogether(
+  vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output)
+{
+  mcor_surface& surface = run.Surface;
+  vtkIdType points = 0;
+  const vtkSmartPointer<vtkIdTypeArray> numbers = vtkSPHNumberPoints(ranks, surface, points);
+  const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks,
+    { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
+      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent() });
+  surface.statistics = vtkSPHMergeShares(shares);
+  std::int64_t triangles = 0;
+  for (const vtkSPHRanksShare& share : shares)
+  {
+    triangles += share.Triangles;
+  }
+  if (ranks.GetRank() == 0)
+  {
+    mcor_surface all = {};
+    all.statistics = surface.statistics;
+    all.point_count = points;
+    all.triangle_count = triangles;
+    all.attribute_not_finite = surface.attribute_not_finite;
+    mcor_input input = run.Input.Core;
+    input.count = run.Particles;
+    this->WarnOf(run.Input, all, input, run.Options);
+  }
+  this->Summarize(run.Input.Core, run.Options, surface.statistics);
+  vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
+  builder.BuildFieldData(output->GetFieldData());
+  vtkSPHAddCount(output->GetFieldData(), "Points", { points });
+  vtkSPHAddCount(output->GetFieldData(), "Triangles", { triangles });
+  vtkSPHAddRunStatistics(this->RunStatistics, surface.statistics);
+  vtkSPHAddShares(this->RunStatistics, shares);
+  builder.BuildMesh(output, this->OutputPointsPrecision);
+  output->GetPointData()->SetGlobalIds(numbers);
+  vtkSPHMatchEmpty(ranks, output);
+}

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: ranks as the core calls them, so that one that fails does not leave the
+ * others waiting.
+ */
+#ifndef vtkSPHRanksCalls_h
+#define vtkSPHRanksCalls_h
+
+#include "mcor.h"
+#include "vtkSPHRanks.h"
+
+class vtkSPHRanksCalls
+{
+public:
+  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks);
+
+  /** For mcor_options, during one call of the core. */
+  const mcor_ranks* Get() const { return &this->Core; }
+
+  /** All ranks call this after the core's call, however that ended. */
+  void End(bool failed);
+
+  /** Whether another rank failed, and this one was told so. */
+  bool WasStopped() const { return this->Stopped; }
+
+private:
+  vtkSPHRanksCalls(const vtkSPHRanksCalls&) = delete;
+  void operator=(const vtkSPHRanksCalls&) = delete;
+
+  bool AllGoOn(bool self);
+  static int ReduceDoubles(void* user, mcor_reduction reduction, double* values, int count);
+  static int ReduceCounts(void* user, mcor_reduction reduction, std::int64_t* values, int count);
+  static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
+    const void** all, std::int64_t* allCount);
+
+  vtkSPHRanks& Ranks;
+  mcor_ranks Core = {};
+  bool Stopped = false;
+  vtkSPHRanks::Bytes Gathered;
+};
+
+#endif

@@ -1,0 +1,385 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRanksParticles.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkBitArray.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSPHRanks.h"
+#include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+namespace
+{
+using Bytes = vtkSPHRanks::Bytes;
+
+void PutBytes(Bytes& bytes, const void* data, std::size_t size)
+{
+  const auto* first = static_cast<const char*>(data);
+  bytes.insert(bytes.end(), first, first + size);
+}
+
+void PutNumber(Bytes& bytes, std::int64_t number)
+{
+  PutBytes(bytes, &number, sizeof(number));
+}
+
+void PutText(Bytes& bytes, const std::string& text)
+{
+  PutNumber(bytes, static_cast<std::int64_t>(text.size()));
+  PutBytes(bytes, text.data(), text.size());
+}
+
+/** Reads what was put; both sides are of one program. */
+class Reader
+{
+public:
+  explicit Reader(const Bytes& bytes)
+    : At(bytes.data())
+  {
+  }
+
+  void GetBytes(void* to, std::size_t size)
+  {
+    std::copy(this->At, this->At + size, static_cast<char*>(to));
+    this->At += size;
+  }
+
+  std::int64_t GetNumber()
+  {
+    std::int64_t number;
+    this->GetBytes(&number, sizeof(number));
+    return number;
+  }
+
+  std::string GetText()
+  {
+    std::string text(static_cast<std::size_t>(this->GetNumber()), '\0');
+    this->GetBytes(&text[0], text.size());
+    return text;
+  }
+
+private:
+  const char* At;
+};
+
+/** What a point array is, but for its values. */
+struct Form
+{
+  std::string Name;
+  int Type;
+  int Attribute; // of vtkDataSetAttributes, or -1
+  std::vector<std::string> Components;
+  bool HasLabels;
+
+  bool IsLike(const Form& other) const
+  {
+    return this->Name == other.Name && this->Type == other.Type &&
+      this->Components.size() == other.Components.size();
+  }
+};
+
+struct Layout
+{
+  std::int64_t Points = 0;
+  std::int64_t IsDouble = 0;
+  std::vector<Form> Forms;
+};
+
+Layout Describe(vtkPolyData* particles)
+{
+  Layout layout;
+  vtkPointData* arrays = particles->GetPointData();
+  layout.Points = particles->GetNumberOfPoints();
+  layout.IsDouble = particles->GetPoints() && particles->GetPoints()->GetDataType() != VTK_FLOAT;
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    const std::string name = array->GetName() ? array->GetName() : "";
+    const bool isKnown =
+      vtkArrayDownCast<vtkDataArray>(array) || array->GetDataType() == VTK_STRING;
+    if (isKnown && !name.empty() && name != vtkDataSetAttributes::GhostArrayName() &&
+      array->GetNumberOfTuples() == layout.Points)
+    {
+      Form form = { name, array->GetDataType(), arrays->IsArrayAnAttribute(i), {},
+        array->HasAComponentName() };
+      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+      {
+        const char* label = array->GetComponentName(c);
+        form.Components.emplace_back(label ? label : "");
+      }
+      layout.Forms.push_back(form);
+    }
+  }
+  return layout;
+}
+
+Bytes Pack(const Layout& layout)
+{
+  Bytes bytes;
+  PutNumber(bytes, layout.Points);
+  PutNumber(bytes, layout.IsDouble);
+  PutNumber(bytes, static_cast<std::int64_t>(layout.Forms.size()));
+  for (const Form& form : layout.Forms)
+  {
+    PutText(bytes, form.Name);
+    PutNumber(bytes, form.Type);
+    PutNumber(bytes, form.Attribute);
+    PutNumber(bytes, form.HasLabels);
+    PutNumber(bytes, static_cast<std::int64_t>(form.Components.size()));
+    for (const std::string& label : form.Components)
+    {
+      PutText(bytes, label);
+    }
+  }
+  return bytes;
+}
+
+Layout Unpack(const Bytes& bytes)
+{
+  Reader reader(bytes);
+  Layout layout;
+  layout.Points = reader.GetNumber();
+  layout.IsDouble = reader.GetNumber();
+  layout.Forms.resize(static_cast<std::size_t>(reader.GetNumber()));
+  for (Form& form : layout.Forms)
+  {
+    form.Name = reader.GetText();
+    form.Type = static_cast<int>(reader.GetNumber());
+    form.Attribute = static_cast<int>(reader.GetNumber());
+    form.HasLabels = reader.GetNumber() != 0;
+    form.Components.resize(static_cast<std::size_t>(reader.GetNumber()));
+    for (std::string& label : form.Components)
+    {
+      label = reader.GetText();
+    }
+  }
+  return layout;
+}
+
+/** What all ranks that have particles have. */
+Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
+{
+  Layout common;
+  for (const Bytes& bytes : ranks.Gather(Pack(mine)))
+  {
+    const Layout other = Unpack(bytes);
+    if (other.Points == 0)
+    {
+      continue;
+    }
+    if (common.Points == 0)
+    {
+      common.Forms = other.Forms;
+    }
+    common.Points += other.Points;
+    common.IsDouble = common.IsDouble || other.IsDouble;
+    const auto isMissing = [&other](const Form& form)
+    {
+      return std::none_of(other.Forms.begin(), other.Forms.end(),
+        [&form](const Form& theirs) { return form.IsLike(theirs); });
+    };
+    common.Forms.erase(
+      std::remove_if(common.Forms.begin(), common.Forms.end(), isMissing), common.Forms.end());
+  }
+  return common;
+}
+
+vtkSmartPointer<vtkAbstractArray> MakeArray(const Form& form, vtkIdType count)
+{
+  auto array = vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(form.Type));
+  const int components = static_cast<int>(form.Components.size());
+  array->SetName(form.Name.c_str());
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(count);
+  for (int c = 0; form.HasLabels && c < components; ++c)
+  {
+    array->SetComponentName(c, form.Components[static_cast<std::size_t>(c)].c_str());
+  }
+  return array;
+}
+
+/** Without values yet. */
+vtkSmartPointer<vtkPolyData> MakeParticles(const Layout& layout, vtkIdType count)
+{
+  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(layout.IsDouble ? VTK_DOUBLE : VTK_FLOAT);
+  points->SetNumberOfPoints(count);
+  particles->SetPoints(points);
+  for (const Form& form : layout.Forms)
+  {
+    const int at = particles->GetPointData()->AddArray(MakeArray(form, count));
+    if (form.Attribute >= 0)
+    {
+      particles->GetPointData()->SetActiveAttribute(at, form.Attribute);
+    }
+  }
+  return particles;
+}
+
+vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
+{
+  auto own = vtkSmartPointer<vtkIdList>::New();
+  const vtkIdType count = data ? data->GetNumberOfPoints() : 0;
+  vtkUnsignedCharArray* marks = count > 0 ? data->GetPointGhostArray() : nullptr;
+  own->Allocate(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (!marks || !(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
+    {
+      own->InsertNextId(i);
+    }
+  }
+  return own;
+}
+
+std::size_t TupleSize(vtkAbstractArray* array)
+{
+  return static_cast<std::size_t>(array->GetDataTypeSize()) *
+    static_cast<std::size_t>(array->GetNumberOfComponents());
+}
+
+/** Whether values lie in bytes of their own, side by side. */
+bool IsPlain(vtkAbstractArray* array)
+{
+  return array->GetDataType() != VTK_STRING && array->GetDataType() != VTK_BIT;
+}
+
+void PutTuples(Bytes& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
+{
+  if (IsPlain(array))
+  {
+    const std::size_t size = TupleSize(array);
+    const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
+    for (const vtkIdType id : ids)
+    {
+      PutBytes(bytes, values + static_cast<std::size_t>(id) * size, size);
+    }
+    return;
+  }
+  const int components = array->GetNumberOfComponents();
+  for (const vtkIdType id : ids)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      PutText(bytes, array->GetVariantValue(id * components + c).ToString());
+    }
+  }
+}
+
+void GetTuples(Reader& reader, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
+{
+  if (IsPlain(array))
+  {
+    const std::size_t size = TupleSize(array);
+    auto* values = static_cast<char*>(array->GetVoidPointer(0));
+    reader.GetBytes(
+      values + static_cast<std::size_t>(first) * size, static_cast<std::size_t>(count) * size);
+    return;
+  }
+  const int components = array->GetNumberOfComponents();
+  for (vtkIdType i = first * components; i < (first + count) * components; ++i)
+  {
+    array->SetVariantValue(i, vtkVariant(reader.GetText()));
+  }
+}
+
+/** The positions, then the point arrays. */
+std::vector<vtkAbstractArray*> ListArrays(vtkPolyData* particles)
+{
+  std::vector<vtkAbstractArray*> arrays = { particles->GetPoints()->GetData() };
+  for (int i = 0; i < particles->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    arrays.push_back(particles->GetPointData()->GetAbstractArray(i));
+  }
+  return arrays;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data)
+{
+  vtkNew<vtkPolyData> view;
+  if (data && data->GetNumberOfPoints() > 0)
+  {
+    view->SetPoints(data->GetPoints());
+    view->GetPointData()->ShallowCopy(data->GetPointData());
+  }
+  const Layout common = AgreeOnLayout(ranks, Describe(view));
+  const vtkSmartPointer<vtkIdList> own = ListOwn(data);
+  auto particles = MakeParticles(common, own->GetNumberOfIds());
+  if (own->GetNumberOfIds() > 0)
+  {
+    view->GetPoints()->GetData()->GetTuples(own, particles->GetPoints()->GetData());
+    for (const Form& form : common.Forms)
+    {
+      view->GetPointData()
+        ->GetAbstractArray(form.Name.c_str())
+        ->GetTuples(own, particles->GetPointData()->GetAbstractArray(form.Name.c_str()));
+    }
+  }
+  return particles;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(
+  vtkSPHRanks& ranks, vtkPolyData* particles, const std::vector<std::vector<vtkIdType>>& to)
+{
+  std::vector<Bytes> messages(to.size());
+  for (std::size_t rank = 0; rank < to.size(); ++rank)
+  {
+    if (!to[rank].empty())
+    {
+      PutNumber(messages[rank], static_cast<std::int64_t>(to[rank].size()));
+      for (vtkAbstractArray* array : ListArrays(particles))
+      {
+        PutTuples(messages[rank], array, to[rank]);
+      }
+    }
+  }
+  const std::vector<Bytes> received = ranks.Exchange(std::move(messages));
+  vtkIdType total = 0;
+  for (const Bytes& message : received)
+  {
+    total += message.empty() ? 0 : static_cast<vtkIdType>(Reader(message).GetNumber());
+  }
+  auto near = MakeParticles(Describe(particles), total);
+  vtkIdType first = 0;
+  for (const Bytes& message : received)
+  {
+    if (!message.empty())
+    {
+      Reader reader(message);
+      const auto count = static_cast<vtkIdType>(reader.GetNumber());
+      for (vtkAbstractArray* array : ListArrays(near))
+      {
+        GetTuples(reader, array, first, count);
+      }
+      first += count;
+    }
+  }
+  return near;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
+{
+  const Layout common = AgreeOnLayout(ranks, Describe(result));
+  if (result->GetNumberOfPoints() == 0)
+  {
+    const vtkSmartPointer<vtkPolyData> empty = MakeParticles(common, 0);
+    result->SetPoints(empty->GetPoints());
+    result->GetPointData()->ShallowCopy(empty->GetPointData());
+  }
+}

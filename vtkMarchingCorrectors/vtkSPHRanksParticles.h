@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: particles that travel between ranks, with all their point arrays.
+ */
+#ifndef vtkSPHRanksParticles_h
+#define vtkSPHRanksParticles_h
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkPointSet;
+class vtkPolyData;
+class vtkSPHRanks;
+
+/**
+ * This rank's particles (`data` may be null), without those that vtkGhostType marks as another
+ * rank's. They have the same point arrays on all ranks, in one order: those that all ranks with
+ * particles have, with one type and number of components. Collective.
+ */
+vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data);
+
+/**
+ * Sends to each rank the particles whose indices are listed for it; returns what came, in the order
+ * of ranks. The particles are of vtkSPHTakeParticles(). Collective.
+ */
+vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(
+  vtkSPHRanks& ranks, vtkPolyData* particles, const std::vector<std::vector<vtkIdType>>& to);
+
+/**
+ * Gives a result without points the arrays that it has on other ranks, as writers of pieces want.
+ * Collective.
+ */
+void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result);
+
+#endif

@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRanksPartition.h"
+
+#include "vtkSPHRanks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace
+{
+constexpr int Bins = 64; // of a histogram: a round of the search for a plane
+
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+std::size_t Index(int i)
+{
+  return static_cast<std::size_t>(i);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
+  std::vector<vtkSPHRanksPlace> places, double brick)
+  : Places(std::move(places))
+  , NodeOf(this->Places.size(), 0)
+{
+  Node root;
+  root.FirstRank = 0;
+  root.Ranks = ranks.GetCount();
+  root.Box = whole;
+  this->Nodes.push_back(root);
+  this->Divide(ranks, brick);
+  this->Boxes.resize(Index(ranks.GetCount()));
+  for (const Node& node : this->Nodes)
+  {
+    if (node.Ranks == 1)
+    {
+      this->Boxes[Index(node.FirstRank)] = node.Box;
+    }
+  }
+  this->Places = std::vector<vtkSPHRanksPlace>();
+  this->NodeOf = std::vector<int>();
+}
+
+//------------------------------------------------------------------------------
+// All nodes of a depth at once: one message for them.
+void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
+{
+  for (std::size_t begin = 0, end = 1; begin < end; begin = end, end = this->Nodes.size())
+  {
+    std::vector<int> nodes;
+    for (std::size_t n = begin; n < end; ++n)
+    {
+      if (this->Nodes[n].Ranks > 1)
+      {
+        nodes.push_back(static_cast<int>(n));
+      }
+    }
+    if (!nodes.empty())
+    {
+      std::vector<Cut> cuts = this->BeginCuts(ranks, nodes, brick);
+      while (this->Refine(ranks, cuts, brick))
+      {
+      }
+      this->Apply(cuts, brick);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Across the longest side of the particles' bounds.
+std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
+  vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick)
+{
+  std::vector<int> number(this->Nodes.size(), -1);
+  std::vector<double> bounds(nodes.size() * 6, Infinity); // low sides, and high ones negated
+  std::vector<std::int64_t> work(nodes.size(), 0);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    number[Index(nodes[i])] = static_cast<int>(i);
+  }
+  for (std::size_t p = 0; p < this->Places.size(); ++p)
+  {
+    const int i = number[Index(this->NodeOf[p])];
+    for (int a = 0; i >= 0 && a < 3; ++a)
+    {
+      double* side = &bounds[Index(6 * i + 2 * a)];
+      side[0] = std::min(side[0], this->Places[p].At[a]);
+      side[1] = std::min(side[1], -this->Places[p].At[a]);
+    }
+    if (i >= 0)
+    {
+      work[Index(i)] += this->Places[p].Work;
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::LEAST, bounds.data(), static_cast<int>(bounds.size()));
+  ranks.Reduce(vtkSPHRanks::SUM, work.data(), static_cast<int>(work.size()));
+  std::vector<Cut> cuts;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    Node& node = this->Nodes[Index(nodes[i])];
+    const double* side = &bounds[6 * i];
+    for (int a = 1; a < 3; ++a)
+    {
+      const double length = -side[2 * a + 1] - side[2 * a];
+      node.Axis = length > -side[2 * node.Axis + 1] - side[2 * node.Axis] ? a : node.Axis;
+    }
+    const bool isEmpty = work[i] == 0;
+    const double low = isEmpty ? 0.0 : std::floor(side[2 * node.Axis] / brick);
+    const double high = isEmpty ? 0.0 : std::floor(-side[2 * node.Axis + 1] / brick) + 1.0;
+    cuts.push_back({ nodes[i], low, 0.0, high - low,
+      work[i] / node.Ranks * (node.Ranks / 2) +
+        work[i] % node.Ranks * (node.Ranks / 2) / node.Ranks,
+      0 });
+  }
+  return cuts;
+}
+
+//------------------------------------------------------------------------------
+// One histogram of each node between the numbers that are left; false when no more than one is.
+bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick)
+{
+  std::vector<int> number(this->Nodes.size(), -1);
+  std::vector<std::int64_t> work(cuts.size() * Bins, 0);
+  bool isDone = true;
+  for (std::size_t i = 0; i < cuts.size(); ++i)
+  {
+    number[Index(cuts[i].Node)] = static_cast<int>(i);
+    isDone = isDone && cuts[i].Most - cuts[i].Least <= 0.5;
+  }
+  if (isDone)
+  {
+    return false;
+  }
+  const auto step = [&](const Cut& cut)
+  { return std::max(1.0, std::ceil((cut.Most - cut.Least) / Bins)); };
+  for (std::size_t p = 0; p < this->Places.size(); ++p)
+  {
+    const int i = number[Index(this->NodeOf[p])];
+    if (i >= 0)
+    {
+      const Cut& cut = cuts[Index(i)];
+      const double at = std::floor(this->Places[p].At[this->Nodes[Index(cut.Node)].Axis] / brick);
+      const double bin = std::floor((at - cut.First - cut.Least) / step(cut));
+      if (bin >= 0.0 && bin < Bins)
+      {
+        work[Index(i * Bins + static_cast<int>(bin))] += this->Places[p].Work;
+      }
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::SUM, work.data(), static_cast<int>(work.size()));
+  for (std::size_t i = 0; i < cuts.size(); ++i)
+  {
+    if (cuts[i].Most - cuts[i].Least <= 0.5)
+    {
+      continue;
+    }
+    // Among single bricks, the plane after which the work below is nearest to the goal.
+    Cut& cut = cuts[i];
+    const double width = step(cut), least = cut.Least, most = cut.Most;
+    int bin = 0;
+    std::int64_t below = cut.Before;
+    while (bin < Bins - 1 && below + work[i * Bins + Index(bin)] < cut.Goal)
+    {
+      below += work[i * Bins + Index(bin++)];
+    }
+    const std::int64_t after = below + work[i * Bins + Index(bin)];
+    const bool isNext = width == 1.0 && after - cut.Goal < cut.Goal - below;
+    cut.Before = below;
+    cut.Least = std::min(least + width * (bin + (isNext ? 1 : 0)), most);
+    cut.Most = width == 1.0 ? cut.Least : std::min(cut.Least + width, most);
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHRanksPartition::Apply(const std::vector<Cut>& cuts, double brick)
+{
+  for (const Cut& cut : cuts)
+  {
+    Node low = this->Nodes[Index(cut.Node)], high = low;
+    const int axis = low.Axis, lowSide = 2 * axis, highSide = lowSide + 1;
+    const double plane = std::min(
+      std::max((cut.First + cut.Least) * brick, low.Box[Index(lowSide)]), low.Box[Index(highSide)]);
+    low.Box[Index(highSide)] = plane;
+    high.Box[Index(lowSide)] = plane;
+    low.Ranks = low.Ranks / 2;
+    high.FirstRank += low.Ranks;
+    high.Ranks -= low.Ranks;
+    low.Axis = high.Axis = 0;
+    Node& node = this->Nodes[Index(cut.Node)];
+    node.Plane = plane;
+    node.Low = static_cast<int>(this->Nodes.size());
+    node.High = node.Low + 1;
+    this->Nodes.push_back(low);
+    this->Nodes.push_back(high);
+  }
+  for (std::size_t p = 0; p < this->Places.size(); ++p)
+  {
+    const Node& node = this->Nodes[Index(this->NodeOf[p])];
+    if (node.Low >= 0)
+    {
+      this->NodeOf[p] = this->Places[p].At[node.Axis] < node.Plane ? node.Low : node.High;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHRanksPartition::FindOwner(const double point[3]) const
+{
+  int at = 0;
+  while (this->Nodes[Index(at)].Low >= 0)
+  {
+    const Node& node = this->Nodes[Index(at)];
+    at = point[node.Axis] < node.Plane ? node.Low : node.High;
+  }
+  return this->Nodes[Index(at)].FirstRank;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHRanksPartition::FindOverlaps(const vtkSPHRanksBox& box, std::vector<int>& found) const
+{
+  int stack[64] = { 0 }; // the tree is as deep as the number of ranks has bits
+  for (int depth = 1; depth > 0;)
+  {
+    const Node& node = this->Nodes[Index(stack[--depth])];
+    bool overlaps = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double low = node.Box[Index(2 * a)], high = node.Box[Index(2 * a + 1)];
+      overlaps =
+        overlaps && low < high && box[Index(2 * a)] <= high && box[Index(2 * a + 1)] >= low;
+    }
+    if (overlaps && node.Low >= 0)
+    {
+      stack[depth++] = node.High;
+      stack[depth++] = node.Low;
+    }
+    else if (overlaps && std::find(found.begin(), found.end(), node.FirstRank) == found.end())
+    {
+      found.push_back(node.FirstRank);
+    }
+  }
+}

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: how space is divided among ranks, by a k-d tree over the particles whose
+ * cuts lie on the lattice's bricks. All ranks build the same tree; none sees all particles.
+ */
+#ifndef vtkSPHRanksPartition_h
+#define vtkSPHRanksPartition_h
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class vtkSPHRanks;
+
+/** low and high side of x, y, z; the low side belongs to the box, the high side does not. */
+using vtkSPHRanksBox = std::array<double, 6>;
+
+struct vtkSPHRanksPlace
+{
+  double At[3]; ///< within the whole
+  std::int64_t Work;
+};
+
+class vtkSPHRanksPartition
+{
+public:
+  /**
+   * Divides `whole`, whose sides may be infinite, so that each rank has about the same sum of Work.
+   * `places`: this rank's particles. Cuts lie on multiples of `brick`. Collective.
+   */
+  vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
+    std::vector<vtkSPHRanksPlace> places, double brick);
+
+  const vtkSPHRanksBox& GetBox(int rank) const
+  {
+    return this->Boxes[static_cast<std::size_t>(rank)];
+  }
+
+  /** The rank whose box holds the point, which is within the whole. */
+  int FindOwner(const double point[3]) const;
+
+  /** Adds the ranks whose boxes overlap this one. */
+  void FindOverlaps(const vtkSPHRanksBox& box, std::vector<int>& found) const;
+
+private:
+  struct Node
+  {
+    int FirstRank, Ranks; ///< that share it
+    int Axis = 0;
+    double Plane = 0.0;
+    int Low = -1, High = -1; ///< children
+    vtkSPHRanksBox Box;
+  };
+  struct Cut
+  {
+    int Node;
+    double First;        ///< plane number 0, in bricks
+    double Least, Most;  ///< numbers between which the plane is sought
+    std::int64_t Goal;   ///< work below it
+    std::int64_t Before; ///< work below Least
+  };
+
+  void Divide(vtkSPHRanks& ranks, double brick);
+  std::vector<Cut> BeginCuts(vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick);
+  bool Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick);
+  void Apply(const std::vector<Cut>& cuts, double brick);
+
+  std::vector<Node> Nodes;
+  std::vector<vtkSPHRanksBox> Boxes;
+  std::vector<vtkSPHRanksPlace> Places;
+  std::vector<int> NodeOf; // of each place
+};
+
+#endif

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: numbers of the whole surface's points.
+ */
+#ifndef vtkSPHRanksPoints_h
+#define vtkSPHRanksPoints_h
+
+#include "mcor.h"
+#include "vtkIdTypeArray.h"
+#include "vtkSmartPointer.h"
+
+class vtkSPHRanks;
+
+/**
+ * The number of each of this rank's points among the points of all ranks, those with the same key
+ * being one: the index that it has where one process makes the whole surface. `total`: how many there
+ * are. Collective.
+ */
+vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
+  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);
+
+#endif

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRanksRoute.h"
+
+#include "vtkSPHRanks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+/** The core needs particles that reach a box by this, see mcor_options.globals. */
+constexpr double MarginCubes = 3.0;
+
+/** Along an edge; cuts need not lie on bricks, but those that do cost least. */
+constexpr double BrickCubes = 4.0;
+
+double ValueOf(const mcor_array& array, std::int64_t i)
+{
+  if (!array.data)
+  {
+    return array.constant;
+  }
+  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
+                                    : static_cast<const double*>(array.data)[i];
+}
+
+class Router
+{
+public:
+  Router(const mcor_input& input, const mcor_options& options, const mcor_globals& globals)
+    : Input(input)
+    , Options(options)
+    , Globals(globals)
+  {
+    const double factor = mcor_support_factor(options.sph_kernel);
+    this->Support = options.h_scale * (input.smoothing_length_is_support_radius ? 1.0 : factor);
+    this->ComputesVolumes = !input.has_volume && !(input.has_mass && input.has_density);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double first = options.periodic[2 * a];
+      this->First[a] = first;
+      this->Period[a] = std::max(0.0, options.periodic[2 * a + 1] - first);
+      const bool isPeriodic = this->Period[a] > 0.0;
+      const double infinity = std::numeric_limits<double>::infinity();
+      double low = isPeriodic ? first : -infinity;
+      double high = isPeriodic ? first + this->Period[a] : infinity;
+      if (options.has_box)
+      {
+        low = std::min(std::max(low, options.box[2 * a]), high);
+        high = std::max(std::min(high, options.box[2 * a + 1]), low);
+      }
+      this->Whole[Side(a)] = low;
+      this->Whole[Side(a) + 1] = high;
+    }
+  }
+
+  static std::size_t Side(int axis) { return static_cast<std::size_t>(2 * axis); }
+
+  /** Where a particle is, within the first period. */
+  void Place(std::int64_t i, double at[3]) const
+  {
+    mcor_array positions = this->Input.positions;
+    for (int a = 0; a < 3; ++a)
+    {
+      at[a] = ValueOf(positions, 3 * i + a);
+      if (this->Period[a] > 0.0)
+      {
+        at[a] -= std::floor((at[a] - this->First[a]) / this->Period[a]) * this->Period[a];
+      }
+    }
+  }
+
+  bool IsInWhole(const double at[3]) const
+  {
+    bool isIn = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      isIn = isIn && at[a] >= this->Whole[Side(a)] && at[a] < this->Whole[Side(a) + 1];
+    }
+    return isIn;
+  }
+
+  /** Scaled support radius. */
+  double SupportOf(std::int64_t i) const
+  {
+    return this->Input.estimate_smoothing_length
+      ? this->Globals.smoothing_length * this->Options.h_scale *
+        mcor_support_factor(this->Options.sph_kernel)
+      : ValueOf(this->Input.smoothing_length, i) * this->Support;
+  }
+
+  /** The ranks that a particle at this place, or an image of it, reaches by `radius`. */
+  void FindReached(const vtkSPHRanksPartition& partition, const double at[3], double radius,
+    std::vector<int>& found) const
+  {
+    const double reach = radius + MarginCubes * this->Globals.cube_size;
+    int last[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      // The core refuses supports of more than two periods.
+      const double periods = this->Period[a] > 0.0 ? std::ceil(reach / this->Period[a]) : 0.0;
+      last[a] = static_cast<int>(std::min(periods, 3.0));
+    }
+    found.clear();
+    for (int z = -last[2]; z <= last[2]; ++z)
+    {
+      for (int y = -last[1]; y <= last[1]; ++y)
+      {
+        for (int x = -last[0]; x <= last[0]; ++x)
+        {
+          const int image[3] = { x, y, z };
+          vtkSPHRanksBox box;
+          for (int a = 0; a < 3; ++a)
+          {
+            const double place = at[a] + image[a] * this->Period[a];
+            box[Side(a)] = place - reach;
+            box[Side(a) + 1] = place + reach;
+          }
+          partition.FindOverlaps(box, found);
+        }
+      }
+    }
+  }
+
+  /**
+   * How far around its box each rank needs all particles, whatever their supports are: for volumes
+   * that are computed, nearest particles and pairs.
+   */
+  std::vector<double> FindRadii(vtkSPHRanks& ranks, const vtkSPHRanksPartition& partition) const
+  {
+    std::vector<double> radii(static_cast<std::size_t>(ranks.GetCount()), 0.0);
+    const mcor_options& o = this->Options;
+    if (this->ComputesVolumes || o.nearest_particle)
+    {
+      std::vector<int> found;
+      for (std::int64_t i = 0; i < this->Input.count; ++i)
+      {
+        double at[3];
+        this->Place(i, at);
+        const double support = this->SupportOf(i);
+        this->FindReached(partition, at, support, found);
+        for (const int rank : found)
+        {
+          double& radius = radii[static_cast<std::size_t>(rank)];
+          radius = std::max(radius, support);
+        }
+      }
+      ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
+    }
+    const double h = this->Globals.smoothing_length_max;
+    const double pairs = o.seeds == MCOR_PAIRS && o.field != MCOR_WEIGHT_SUM
+      ? h + std::max(h, this->Globals.support_max)
+      : 0.0;
+    for (double& radius : radii)
+    {
+      const double cubes = MarginCubes * this->Globals.cube_size;
+      const double volumes = this->ComputesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
+      const double nearest = o.nearest_particle ? radius + cubes : 0.0;
+      radius = std::max({ radius > 0.0 ? volumes : 0.0, radius > 0.0 ? nearest : 0.0, pairs });
+      // With M'4 a density may be too low, and is refused; to know, the core wants all particles.
+      radius = this->ComputesVolumes && o.sph_kernel == MCOR_M_PRIME_4
+        ? std::numeric_limits<double>::max() / 4
+        : radius;
+    }
+    return radii;
+  }
+
+  const mcor_input& Input;
+  const mcor_options& Options;
+  const mcor_globals& Globals;
+  double Support;
+  bool ComputesVolumes;
+  double First[3], Period[3];
+  vtkSPHRanksBox Whole;
+};
+}
+
+//------------------------------------------------------------------------------
+vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals)
+{
+  const Router router(input, options, globals);
+  std::vector<vtkSPHRanksPlace> places;
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, 1 };
+    router.Place(i, place.At);
+    if (router.IsInWhole(place.At))
+    {
+      places.push_back(place);
+    }
+  }
+  const vtkSPHRanksPartition partition(
+    ranks, router.Whole, std::move(places), BrickCubes * globals.cube_size);
+  const std::vector<double> radii = router.FindRadii(ranks, partition);
+  const double widest = *std::max_element(radii.begin(), radii.end());
+  const auto count = static_cast<std::size_t>(ranks.GetCount());
+  vtkSPHRanksRoute route;
+  route.To.resize(count);
+  std::vector<std::int64_t> totals(2 * count, 0);
+  std::vector<int> found;
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    double at[3];
+    router.Place(i, at);
+    const int owner = router.IsInWhole(at) ? partition.FindOwner(at) : -1;
+    if (owner >= 0)
+    {
+      ++totals[static_cast<std::size_t>(owner)];
+    }
+    const double support = router.SupportOf(i);
+    router.FindReached(partition, at, std::max(support, widest), found);
+    for (const int rank : found)
+    {
+      const auto to = static_cast<std::size_t>(rank);
+      std::vector<int> own;
+      if (rank != owner && radii[to] < widest && support < widest)
+      {
+        router.FindReached(partition, at, std::max(support, radii[to]), own);
+        if (std::find(own.begin(), own.end(), rank) == own.end())
+        {
+          continue;
+        }
+      }
+      route.To[to].push_back(static_cast<vtkIdType>(i));
+      ++totals[count + to];
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::SUM, totals.data(), static_cast<int>(totals.size()));
+  const auto self = static_cast<std::size_t>(ranks.GetRank());
+  const vtkSPHRanksBox& box = partition.GetBox(ranks.GetRank());
+  std::copy(box.begin(), box.end(), route.Box);
+  route.OwnedParticles = totals[self];
+  route.Particles = totals[count + self];
+  return route;
+}

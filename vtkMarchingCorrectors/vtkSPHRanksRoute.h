@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: who owns which part of space, and which particles must be where.
+ */
+#ifndef vtkSPHRanksRoute_h
+#define vtkSPHRanksRoute_h
+
+#include "mcor.h"
+#include "vtkSPHRanksPartition.h"
+#include "vtkType.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkSPHRanks;
+
+/** To whom this rank's particles go, and what this rank will have. */
+struct vtkSPHRanksRoute
+{
+  std::vector<std::vector<vtkIdType>> To; ///< indices of the particles that each rank gets
+  double Box[6];                          ///< this rank's, as in mcor_options; may be empty
+  std::int64_t OwnedParticles;            ///< those in its box
+  std::int64_t Particles;                 ///< the same and copies
+};
+
+/**
+ * Divides space by particles, and finds for each particle the ranks whose boxes it reaches, by its own
+ * smoothing length. `input` are this rank's particles, `globals` those of all. Collective.
+ */
+vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals);
+
+#endif

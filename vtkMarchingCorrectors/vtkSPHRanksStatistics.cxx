@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRanksStatistics.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHRanks.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+namespace
+{
+/** `all` becomes factor * all + one. */
+void AddCounts(mcor_statistics& all, const mcor_statistics& one, int factor)
+{
+  std::int64_t mcor_statistics::*const counts[] = { &mcor_statistics::particles_in_reach,
+    &mcor_statistics::virtual_cells, &mcor_statistics::seed_cells,
+    &mcor_statistics::seed_cells_not_intersected, &mcor_statistics::bricks,
+    &mcor_statistics::nodes_evaluated, &mcor_statistics::cells_used,
+    &mcor_statistics::triangles_before_trimming, &mcor_statistics::ambiguous_faces,
+    &mcor_statistics::joined_faces, &mcor_statistics::ambiguous_cells, &mcor_statistics::tunnels,
+    &mcor_statistics::vertices_corrected, &mcor_statistics::newton_evaluations,
+    &mcor_statistics::vertices_above_tolerance, &mcor_statistics::trim_vertices,
+    &mcor_statistics::trim_vertices_linear };
+  for (const auto count : counts)
+  {
+    all.*count = factor * all.*count + one.*count;
+  }
+}
+
+void TakeGreatest(mcor_statistics& all, const mcor_statistics& one)
+{
+  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
+  {
+    all.seconds[phase] = std::max(all.seconds[phase], one.seconds[phase]);
+  }
+  double mcor_statistics::*const reals[] = { &mcor_statistics::build_seconds,
+    &mcor_statistics::correction_max, &mcor_statistics::residual_max };
+  for (const auto real : reals)
+  {
+    all.*real = std::max(all.*real, one.*real);
+  }
+  all.march_rounds = std::max(all.march_rounds, one.march_rounds);
+  all.device_bytes_peak = std::max(all.device_bytes_peak, one.device_bytes_peak);
+  all.iterations_max = std::max(all.iterations_max, one.iterations_max);
+}
+
+/** The box around both. */
+void AddCells(mcor_statistics& all, const mcor_statistics& one)
+{
+  if (one.virtual_cells == 0)
+  {
+    return;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const std::int64_t first = one.lattice_origin[a], last = first + one.lattice_cells[a];
+    const bool isFirst = all.virtual_cells == 0;
+    const std::int64_t end = isFirst ? last : all.lattice_origin[a] + all.lattice_cells[a];
+    all.lattice_origin[a] = isFirst ? first : std::min(all.lattice_origin[a], first);
+    all.lattice_cells[a] = std::max(end, last) - all.lattice_origin[a];
+  }
+}
+
+/** Sums from which means are made again. */
+struct Sums
+{
+  double Points = 0.0, Length = 0.0, Squares = 0.0, Vertices = 0.0, Iterations = 0.0;
+
+  void Add(const vtkSPHRanksShare& share)
+  {
+    const mcor_statistics& s = share.Statistics;
+    const auto points = static_cast<double>(share.Points - s.trim_vertices);
+    const auto vertices = static_cast<double>(s.vertices_corrected);
+    this->Points += points;
+    this->Length += points * s.correction_mean;
+    this->Squares += points *
+      (s.correction_deviation * s.correction_deviation + s.correction_mean * s.correction_mean);
+    this->Vertices += vertices;
+    this->Iterations += vertices * s.iterations_mean;
+  }
+
+  void Take(mcor_statistics& all) const
+  {
+    const double points = std::max(this->Points, 1.0);
+    all.correction_mean = this->Length / points;
+    all.correction_deviation =
+      std::sqrt(std::max(0.0, this->Squares / points - all.correction_mean * all.correction_mean));
+    all.iterations_mean = this->Iterations / std::max(this->Vertices, 1.0);
+  }
+};
+
+void AddCount(vtkFieldData* run, const char* name, const std::vector<vtkSPHRanksShare>& shares,
+  const std::function<std::int64_t(const vtkSPHRanksShare&)>& count)
+{
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  array->SetNumberOfComponents(static_cast<int>(shares.size()));
+  array->SetNumberOfTuples(1);
+  std::transform(shares.begin(), shares.end(), array->GetPointer(0), count);
+  vtkSPHAddArray(run, name, array);
+}
+
+double SecondsOf(const vtkSPHRanksShare& share)
+{
+  double seconds = 0.0;
+  for (const double phase : share.Statistics.seconds)
+  {
+    seconds += phase;
+  }
+  return seconds;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSPHRanksShare& mine)
+{
+  const auto* first = reinterpret_cast<const char*>(&mine);
+  std::vector<vtkSPHRanksShare> shares;
+  for (const auto& bytes : ranks.Gather(vtkSPHRanks::Bytes(first, first + sizeof(mine))))
+  {
+    shares.emplace_back();
+    std::memcpy(&shares.back(), bytes.data(), sizeof(mine));
+  }
+  return shares;
+}
+
+//------------------------------------------------------------------------------
+mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
+{
+  // Of the first rank that had something to do: what is global is the same on all of these.
+  const auto known = std::find_if(shares.begin(), shares.end(),
+    [](const vtkSPHRanksShare& share) { return share.Statistics.cube_size > 0.0; });
+  mcor_statistics all = known == shares.end() ? mcor_statistics() : known->Statistics;
+  AddCounts(all, mcor_statistics(), 0);
+  Sums sums;
+  for (const vtkSPHRanksShare& share : shares)
+  {
+    AddCells(all, share.Statistics);
+    AddCounts(all, share.Statistics, 1);
+    TakeGreatest(all, share.Statistics);
+    sums.Add(share);
+  }
+  sums.Take(all);
+  return all;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
+{
+  using Share = vtkSPHRanksShare;
+  AddCount(run, "RankParticles", shares, [](const Share& s) { return s.OwnedParticles; });
+  AddCount(run, "RankCopies", shares, [](const Share& s) { return s.CopiedParticles; });
+  AddCount(run, "RankBytesSent", shares, [](const Share& s) { return s.BytesSent; });
+  AddCount(
+    run, "RankNodesEvaluated", shares, [](const Share& s) { return s.Statistics.nodes_evaluated; });
+  AddCount(run, "RankTriangles", shares, [](const Share& s) { return s.Triangles; });
+  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
+  seconds->SetNumberOfComponents(static_cast<int>(shares.size()));
+  seconds->SetNumberOfTuples(1);
+  std::transform(shares.begin(), shares.end(), seconds->GetPointer(0), SecondsOf);
+  vtkSPHAddArray(run, "RankSeconds", seconds);
+}

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: what each rank did, and what all of them did together.
+ */
+#ifndef vtkSPHRanksStatistics_h
+#define vtkSPHRanksStatistics_h
+
+#include "mcor.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkFieldData;
+class vtkSPHRanks;
+
+/** One rank's part of a run. */
+struct vtkSPHRanksShare
+{
+  mcor_statistics Statistics;
+  std::int64_t Points, Triangles;
+  std::int64_t OwnedParticles, CopiedParticles; ///< of its box; of others' that reach it
+  std::int64_t BytesSent;
+};
+
+/** All ranks' parts, in their order. Collective. */
+std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSPHRanksShare& mine);
+
+/**
+ * Sums of counts, the longest seconds, means over all points: those on a seam count once for each rank
+ * that has them.
+ */
+mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares);
+
+/**
+ * Adds "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated", "RankTriangles" and
+ * "RankSeconds", one component for each rank.
+ */
+void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares);
+
+#endif

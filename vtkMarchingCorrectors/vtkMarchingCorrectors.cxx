@@ -30,6 +30,7 @@ vtkStandardNewMacro(vtkMarchingCorrectors);
 //------------------------------------------------------------------------------
 vtkMarchingCorrectors::vtkMarchingCorrectors()
 {
+  this->SharesRuns = true;
   this->ContourValues->SetNumberOfContours(0);
   this->FreeSurfaceValues->SetValue(0, 0.5);
   this->SetInputArrayToProcess(

@@ -68,8 +68,17 @@
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
+ * With MPI, where the Controller has more than one process, these share the surface: all update, each
+ * with some of the particles (marks of vtkGhostType as duplicates are heeded) or none. Space is divided
+ * among them, particles travel to where they are needed, and each process gets the part of the surface
+ * in its share of space, to the last bit as one process would make it. "GlobalPointIds" are the numbers
+ * that points have there: merged by these, the parts are that surface. Field data are of the whole;
+ * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated",
+ * "RankTriangles" and "RankSeconds", one component for each process. An error of one is an error of all.
+ * Composite data have the same number of blocks on all.
+ *
  * @warning
- * Every piece or block is contoured by itself. Particles of a neighbouring piece, also those marked
+ * Every piece or block is contoured by itself, unless processes share the surface. Particles of a neighbouring piece, also those marked
  * as ghosts, are particles like all others: without them the surface is trimmed at the cut, and with
  * them both pieces have the surface there.
  *

@@ -270,6 +270,11 @@ int vtkSPHAlgorithm::RequestData(
   this->Internals->BeginRun();
   auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (this->IsShared() && !this->AgreeOnBlocks(blocks))
+  {
+    this->Internals->EndRun();
+    return 0;
+  }
   if (blocks)
   {
     this->ProcessBlocks(blocks, vtkDataObjectTree::SafeDownCast(output));
@@ -280,6 +285,26 @@ int vtkSPHAlgorithm::RequestData(
   }
   this->Internals->EndRun();
   return blocks || this->ErrorMessage.empty() ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+// Each block is a run that all processes take part in.
+bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
+{
+  bool good = true;
+#if MCOR_HAS_RANKS
+  vtkSPHRanks ranks(this->Controller);
+  const std::int64_t count =
+    blocks ? static_cast<std::int64_t>(vtkSPHNameBlocks(blocks).size()) : -1;
+  std::int64_t ends[2] = { count, -count };
+  ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
+  good = ends[0] == -ends[1];
+#endif
+  if (!good)
+  {
+    this->Fail("The processes have different numbers of blocks. Merge the blocks of each.");
+  }
+  return good;
 }
 
 //------------------------------------------------------------------------------
@@ -388,7 +413,7 @@ bool vtkSPHAlgorithm::CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& part
 bool vtkSPHAlgorithm::IsShared() const
 {
 #if MCOR_HAS_RANKS
-  return this->Controller && this->Controller->IsA("vtkMPIController") &&
+  return this->SharesRuns && this->Controller && this->Controller->IsA("vtkMPIController") &&
     this->Controller->GetNumberOfProcesses() > 1;
 #else
   return false;

@@ -349,7 +349,7 @@ protected:
     const std::function<int(mcor_context*)>& call);
 
   /**
-   * Whether processes share a run, in a build that can.
+   * Whether processes share a run, in a build and a class that can.
    */
   bool IsShared() const;
 
@@ -389,6 +389,7 @@ protected:
   int DeviceMemoryLimit = 0;
   vtkTypeBool KeepDeviceData = 1;
   vtkMultiProcessController* Controller = nullptr;
+  bool SharesRuns = false; ///< whether a subclass's Process() is for many processes
 
   std::string ErrorMessage;
   std::set<int> Warned;  // kinds of warnings that this run has given
@@ -403,6 +404,7 @@ private:
 
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
+  bool AgreeOnBlocks(vtkDataObjectTree* blocks);
   int RunCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call, std::string& message);
 };

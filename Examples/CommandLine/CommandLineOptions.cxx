@@ -4,6 +4,7 @@
 
 #include "CollectionFile.h"
 #include "ParticleFile.h"
+#include "RankLaunch.h"
 #include "SafeText.h"
 #include "SurfaceFile.h"
 
@@ -431,7 +432,8 @@ void Check(const CommandLineOptions& options)
     return;
   }
   CheckFilm(options);
-  if (!IsFilm(options) && !IsSurfaceFile(options.Output))
+  if (!IsFilm(options) && !IsSurfaceFile(options.Output) &&
+    !(LaunchedCount() > 1 && EndsWith(options.Output, ".pvtp")))
   {
     throw UsageError("the output is a " + SurfaceFileEndings() +
       " file, or .pvd for a film, not '" + options.Output + "'");
@@ -598,7 +600,8 @@ std::string CommandLineHelp()
           "Extracts an isosurface from SPH particles. INPUT is a "
        << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
        << " file. With OUTPUT.pvd a film: one surface for each step,\n"
-          "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ...\n";
+          "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ...\n"
+         "With mpirun, processes share a surface, see the guide; OUTPUT may be a .pvtp file then.\n";
   for (const Option& option : AllOptions())
   {
     if (option.Name[0] == '\0')

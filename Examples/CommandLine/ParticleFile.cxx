@@ -307,6 +307,36 @@ bool IsList(const std::string& file)
   return format && !format->Process;
 }
 
+/// The pieces of a list of them, or the file itself.
+std::vector<std::string> ListParts(const std::string& file, MessageCapture* messages)
+{
+  CheckReadable(file);
+  if (!IsList(file))
+  {
+    return { file };
+  }
+  const std::vector<std::string> parts = ReadPieces(file, messages);
+  for (const std::string& part : parts)
+  {
+    if (IsList(part))
+    {
+      throw std::runtime_error(file + " cannot be read: its piece " + part + " is a list itself");
+    }
+  }
+  return parts;
+}
+
+/// Adds what the file holds, unless it holds no points.
+void ReadPart(const std::string& file, std::vector<vtkSmartPointer<vtkPointSet>>& parts,
+  MessageCapture* messages)
+{
+  vtkSmartPointer<vtkPointSet> points = ReadFile(file, messages);
+  if (points->GetNumberOfPoints() > 0)
+  {
+    parts.push_back(points);
+  }
+}
+
 }
 
 //------------------------------------------------------------------------------
@@ -328,19 +358,9 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   std::vector<vtkSmartPointer<vtkPointSet>> parts;
   for (const std::string& file : files)
   {
-    CheckReadable(file);
-    for (const std::string& part :
-      IsList(file) ? ReadPieces(file, messages) : std::vector<std::string>{ file })
+    for (const std::string& part : ListParts(file, messages))
     {
-      if (IsList(file) && IsList(part))
-      {
-        throw std::runtime_error(file + " cannot be read: its piece " + part + " is a list itself");
-      }
-      vtkSmartPointer<vtkPointSet> points = ReadFile(part, messages);
-      if (points->GetNumberOfPoints() > 0)
-      {
-        parts.push_back(points);
-      }
+      ReadPart(part, parts, messages);
     }
   }
   if (parts.empty())
@@ -349,6 +369,24 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   }
   const bool isWhole = files.size() == 1 && !IsList(files.front());
   return isWhole ? parts.front() : JoinParts(parts);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> ReadParticlesPart(
+  const std::string& file, int rank, int count, MessageCapture* messages)
+{
+  const std::vector<std::string> all = ListParts(file, messages);
+  std::vector<vtkSmartPointer<vtkPointSet>> parts;
+  for (auto i = static_cast<std::size_t>(rank); i < all.size();
+       i += static_cast<std::size_t>(count))
+  {
+    ReadPart(all[i], parts, messages);
+  }
+  if (parts.empty())
+  {
+    return vtkSmartPointer<vtkPolyData>::New();
+  }
+  return IsList(file) ? JoinParts(parts) : parts.front();
 }
 
 //------------------------------------------------------------------------------

@@ -25,6 +25,11 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCaptu
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages);
 
+/// Of `count` processes, the part that this one reads: every so manieth piece of a file that lists
+/// pieces; another file is the first one's. May have no points.
+vtkSmartPointer<vtkPointSet> ReadParticlesPart(
+  const std::string& file, int rank, int count, MessageCapture* messages);
+
 /// Reads a data set of any class, with the same care; as it is, but for names.
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages);
 

@@ -34,7 +34,8 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "AmbiguousCells", "Tunnels", "Points", "Triangles", "TrianglesBeforeTrimming", "CorrectionMean",
   "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance",
   "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices",
-  "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing" };
+  "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
+  "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

@@ -199,13 +199,7 @@ void SetPeriod(
   {
     double extent[6];
     particles->GetBounds(extent);
-    bounds.assign(6, 0.0);
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      const double length = options.Periodic[a];
-      bounds[2 * a] = length > 0.0 ? BeginOfPeriod(length, extent[2 * a], extent[2 * a + 1]) : 0.0;
-      bounds[2 * a + 1] = bounds[2 * a] + length;
-    }
+    bounds = BoundsOfPeriod(options.Periodic, extent);
   }
   if (!bounds.empty())
   {
@@ -271,6 +265,19 @@ void PrintProgress(vtkObject* caller, unsigned long, void* data, void*)
   std::fflush(stderr);
 }
 
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> BoundsOfPeriod(const std::vector<double>& lengths, const double extent[6])
+{
+  std::vector<double> bounds(6, 0.0);
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    const double length = lengths[a];
+    bounds[2 * a] = length > 0.0 ? BeginOfPeriod(length, extent[2 * a], extent[2 * a + 1]) : 0.0;
+    bounds[2 * a + 1] = bounds[2 * a] + length;
+  }
+  return bounds;
 }
 
 //------------------------------------------------------------------------------

@@ -49,4 +49,7 @@ Run Extract(
 /// What the user should know of a run that went well, one sentence each.
 std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages);
 
+/// Where periods of these lengths (0: open) begin and end, for particles within `extent`.
+std::vector<double> BoundsOfPeriod(const std::vector<double>& lengths, const double extent[6]);
+
 #endif

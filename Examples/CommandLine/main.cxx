@@ -10,6 +10,7 @@
 #include "OwnLinker.h"
 #include "ParticleFile.h"
 #include "ProbeRun.h"
+#include "RankLaunch.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
 #include "Supervisor.h"
@@ -17,6 +18,9 @@
 #include "SurfacePicture.h"
 #include "SurfaceRun.h"
 #include "TemporaryCache.h"
+#if MCOR_HAS_RANKS
+#include "RankRun.h"
+#endif
 
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
@@ -126,6 +130,12 @@ bool Execute(const CommandLineOptions& options, int first, FilmRecord* record)
   vtkNew<MessageCapture> messages;
   vtkOutputWindow::SetInstance(messages);
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+#if MCOR_HAS_RANKS
+  if (LaunchedCount() > 1)
+  {
+    return MakeSurfaceTogether(options, messages);
+  }
+#endif
   if (record)
   {
     return MakeFilm(options, first, *record, messages);
@@ -160,7 +170,10 @@ int Status(const std::function<bool()>& run)
   }
   catch (const UsageError& error)
   {
-    Say(std::string(error.what()) + " (see --help)");
+    if (LaunchedRank() == 0) // all of them say the same
+    {
+      Say(std::string(error.what()) + " (see --help)");
+    }
     return 2;
   }
   catch (const std::bad_alloc&)
@@ -199,7 +212,10 @@ int main(int argc, char* argv[])
     [&]
     {
       options = ParseCommandLine(argc, argv);
-      if (options.Help)
+      if ((options.Help || options.Version) && LaunchedRank() > 0)
+      {
+      }
+      else if (options.Help)
       {
         std::cout << CommandLineHelp();
       }
@@ -218,6 +234,7 @@ int main(int argc, char* argv[])
   {
     return status;
   }
+  ShareProcessors();
   TemporaryCache cache;
   return RunSupervised([&](int first)
     { return Status([&] { return Execute(options, first, record.get()); }); },

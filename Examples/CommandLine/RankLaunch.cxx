@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RankLaunch.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <initializer_list>
+#include <string>
+#include <thread>
+
+namespace
+{
+
+/// The first of these variables that is set, as a number.
+int Number(std::initializer_list<const char*> names, int otherwise)
+{
+  for (const char* name : names)
+  {
+    if (const char* text = std::getenv(name))
+    {
+      return std::atoi(text);
+    }
+  }
+  return otherwise;
+}
+
+}
+
+//------------------------------------------------------------------------------
+int LaunchedCount()
+{
+#if MCOR_HAS_RANKS
+  return Number({ "OMPI_COMM_WORLD_SIZE", "PMI_SIZE" }, 1);
+#else
+  return 1;
+#endif
+}
+
+//------------------------------------------------------------------------------
+int LaunchedRank()
+{
+  return LaunchedCount() > 1 ? Number({ "OMPI_COMM_WORLD_RANK", "PMI_RANK" }, 0) : 0;
+}
+
+//------------------------------------------------------------------------------
+// PoCL starts a thread for each processor of the machine, in each process.
+void ShareProcessors()
+{
+  const int here = Number({ "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS" }, 1);
+  if (LaunchedCount() == 1 || here <= 1)
+  {
+    return;
+  }
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  const bool keep = false; // what the user has set stays
+  setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(std::max(1, processors / here)).c_str(), keep);
+  if (Number({ "OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID" }, 0) > 0)
+  {
+    setenv("MCOR_COMPILER", "", keep);
+  }
+}

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RankRun.h"
+
+#include "CommandLineOptions.h"
+#include "MessageCapture.h"
+#include "OutputFile.h"
+#include "ParticleFile.h"
+#include "RankOutput.h"
+#include "RankSession.h"
+#include "RunStatistics.h"
+#include "SafeText.h"
+#include "SurfaceFile.h"
+#include "SurfaceRun.h"
+
+#include "vtkFieldData.h"
+#include "vtkMPIController.h"
+#include "vtkMarchingCorrectors.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+namespace
+{
+
+void CheckUse(const CommandLineOptions& options, const RankSession& session)
+{
+  if (IsFilm(options) || !options.Probe.empty() || !options.Derive.empty() ||
+    !options.PictureFile.empty() || options.Repeat > 1)
+  {
+    throw std::runtime_error("several processes share a surface, but no film, --probe, --derive, "
+                             "--screenshot or --repeat; run these without mpirun");
+  }
+  if (session.IsFirst())
+  {
+    std::vector<std::string> outputs = { options.Output };
+    if (!options.StatisticsFile.empty())
+    {
+      outputs.push_back(options.StatisticsFile);
+    }
+    CheckOutputs(options.Inputs, outputs);
+  }
+  if (IsInPieces(options.Output))
+  {
+    CheckOutputs(options.Inputs, { PieceName(options.Output, session.GetRank()) });
+  }
+}
+
+/// Processes without particles get the arrays, without values, that the first one with some has: what a
+/// name in the options is must not depend on who asks.
+vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet* particles)
+{
+  vtkMPIController* controller = session.GetController();
+  const int own = particles->GetNumberOfPoints() > 0 ? session.GetRank() : session.GetCount();
+  int from = own;
+  controller->AllReduce(&own, &from, 1, vtkCommunicator::MIN_OP);
+  if (from == session.GetCount())
+  {
+    throw std::runtime_error("the input holds no points");
+  }
+  vtkNew<vtkPolyData> form;
+  if (from == session.GetRank())
+  {
+    // With one particle: of none, VTK does not send the arrays.
+    vtkNew<vtkPoints> points;
+    vtkPointData* arrays = form->GetPointData();
+    points->InsertNextPoint(particles->GetPoint(0));
+    form->SetPoints(points);
+    arrays->CopyAllOn();
+    arrays->CopyAllocate(particles->GetPointData(), 1);
+    arrays->CopyData(particles->GetPointData(), vtkIdType(0), vtkIdType(0));
+  }
+  controller->Broadcast(form, from);
+  if (particles->GetNumberOfPoints() > 0)
+  {
+    return particles;
+  }
+  vtkNew<vtkPoints> none;
+  form->SetPoints(none);
+  form->GetPointData()->SetNumberOfTuples(0);
+  return form.Get();
+}
+
+/// --periodic with lengths alone asks where all particles are.
+void ResolvePeriod(CommandLineOptions& options, const RankSession& session, vtkPointSet* particles)
+{
+  if (options.Periodic.size() != 3)
+  {
+    return;
+  }
+  double ends[6], all[6];
+  particles->GetBounds(ends);
+  const bool isEmpty = particles->GetNumberOfPoints() == 0;
+  for (int side = 0; side < 6; ++side)
+  {
+    ends[side] = isEmpty ? 1e300 : side % 2 == 0 ? ends[side] : -ends[side];
+  }
+  session.GetController()->AllReduce(ends, all, 6, vtkCommunicator::MIN_OP);
+  for (int side = 1; side < 6; side += 2)
+  {
+    all[side] = -all[side];
+  }
+  options.Periodic = BoundsOfPeriod(options.Periodic, all);
+}
+
+void WriteResult(const CommandLineOptions& options, RankSession& session, vtkPolyData* surface,
+  MessageCapture* messages)
+{
+  if (IsInPieces(options.Output))
+  {
+    session.Together(
+      [&] { WriteSurface(PieceName(options.Output, session.GetRank()), surface, messages); });
+    session.Together(
+      [&]
+      {
+        if (session.IsFirst())
+        {
+          WriteOutput(options.Output, ListPieces(options.Output, session.GetCount(), surface));
+        }
+      });
+    return;
+  }
+  const vtkSmartPointer<vtkPolyData> whole = MergeOnFirst(session.GetController(), surface);
+  session.Together(
+    [&]
+    {
+      if (session.IsFirst())
+      {
+        WriteSurface(options.Output, whole, messages);
+      }
+    });
+}
+
+void Report(
+  const CommandLineOptions& options, const Run& run, const std::vector<std::string>& warnings)
+{
+  if (!options.Quiet)
+  {
+    std::cout << DescribeRun(run.Statistics) << DescribeSeconds(run.Statistics) << std::flush;
+  }
+  for (const std::string& warning : warnings)
+  {
+    Say("warning: " + warning);
+  }
+}
+
+void Share(CommandLineOptions options, RankSession& session, MessageCapture* messages)
+{
+  vtkSmartPointer<vtkPointSet> particles;
+  vtkNew<vtkMarchingCorrectors> filter;
+  std::unique_ptr<Run> run;
+  session.Together([&] { CheckUse(options, session); });
+  session.Together(
+    [&]
+    {
+      particles =
+        ReadParticlesPart(options.Inputs.front(), session.GetRank(), session.GetCount(), messages);
+    });
+  particles = GiveArrays(session, particles);
+  ResolvePeriod(options, session, particles);
+  session.Together([&] { SetUpFilter(filter, options, particles); });
+  session.Together([&] { run.reset(new Run(Extract(filter, options, messages))); });
+  vtkDataArray* triangles = run->Surface->GetFieldData()->GetArray("Triangles");
+  const std::vector<std::string> warnings = triangles && triangles->GetComponent(0, 0) > 0
+    ? messages->GetWarnings()
+    : Warnings(run->Surface, messages);
+  if (session.IsFirst())
+  {
+    Report(options, *run, warnings);
+  }
+  const double peakResidentBytes = PeakResidentBytes();
+  WriteResult(options, session, run->Surface, messages);
+  session.Together(
+    [&]
+    {
+      if (session.IsFirst() && !options.StatisticsFile.empty())
+      {
+        std::cout.flush();
+        WriteOutput(options.StatisticsFile,
+          StatisticsAsJson(
+            options, { run->Statistics.Get() }, { run->WallSeconds }, warnings, peakResidentBytes));
+      }
+    });
+}
+
+}
+
+//------------------------------------------------------------------------------
+bool MakeSurfaceTogether(const CommandLineOptions& options, MessageCapture* messages)
+{
+  RankSession session;
+  try
+  {
+    Share(options, session, messages);
+  }
+  catch (const std::exception& error)
+  {
+    if (session.IsFirst())
+    {
+      Say(error.what());
+    }
+    return false;
+  }
+  return true;
+}

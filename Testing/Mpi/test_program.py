@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program under mpirun: what processes make together, and what they say where one of them fails.
+
+    test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLPPolyDataReader
+
+PROGRAM, MPIRUN, DATA, RANKS = sys.argv[1:5]
+PARTICLES = os.path.join(DATA, "double_dam_break_small.vtp")
+BOUND = 240  # seconds in which a job ends, whatever happens
+
+
+def read(file):
+    reader = vtkXMLPPolyDataReader() if file.endswith(".pvtp") else vtkXMLPolyDataReader()
+    reader.SetFileName(file)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def corners(surface):
+    """Triangles as rows of point numbers, sorted."""
+    rows = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return rows[np.lexsort(rows.T[::-1])]
+
+
+def write_pieces(folder, count):
+    """The particles in files of their own, in no order; returns the .pvtp file."""
+    whole = read(PARTICLES)
+    arrays = [whole.GetPointData().GetArray(i) for i in range(whole.GetPointData().GetNumberOfArrays())]
+    owner = np.random.default_rng(7).integers(0, count, whole.GetNumberOfPoints())
+    for piece in range(count):
+        part = vtkPolyData()
+        ids = vtkIdList()
+        for i in np.flatnonzero(owner == piece):
+            ids.InsertNextId(int(i))
+        points = whole.GetPoints().NewInstance()
+        points.SetDataType(whole.GetPoints().GetDataType())
+        whole.GetPoints().GetPoints(ids, points)
+        part.SetPoints(points)
+        for array in arrays:
+            own = array.NewInstance()
+            own.SetName(array.GetName())
+            own.SetNumberOfComponents(array.GetNumberOfComponents())
+            own.SetNumberOfTuples(ids.GetNumberOfIds())
+            array.GetTuples(ids, own)
+            part.GetPointData().AddArray(own)
+        writer = vtkXMLPolyDataWriter()
+        writer.SetDataModeToBinary()
+        writer.SetFileName(os.path.join(folder, f"piece_{piece}.vtp"))
+        writer.SetInputData(part)
+        writer.Write()
+    text = "".join(f'<Piece Source="piece_{i}.vtp"/>' for i in range(count))
+    file = os.path.join(folder, "pieces.pvtp")
+    with open(file, "w", encoding="ascii") as stream:
+        stream.write('<?xml version="1.0"?>\n<VTKFile type="PPolyData" version="1.0">'
+                     f'<PPolyData GhostLevel="0">{text}</PPolyData></VTKFile>\n')
+    return file
+
+
+class Program(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def run_alone(self, *arguments):
+        return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=BOUND, check=False)
+
+    def run_ranks(self, *arguments):
+        return subprocess.run([MPIRUN, "-n", RANKS, PROGRAM, *arguments], capture_output=True, text=True,
+                              timeout=BOUND, check=False)
+
+    def sentences(self, done):
+        return [line for line in done.stderr.splitlines() if line.startswith("marching-correctors:")]
+
+    def check_fails(self, done, *words):
+        self.assertNotEqual(done.returncode, 0, done.stderr)
+        sentences = self.sentences(done)
+        self.assertEqual(len(sentences), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, sentences[0])
+
+    def test_one_file(self):
+        """One file, written as one: the points, and what they carry, are those of one process."""
+        how = ["--scalar", "Speed", "--iso", "2"]
+        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), *how).returncode, 0)
+        done = self.run_ranks(PARTICLES, self.path("ranks.vtp"), *how, "--stats", self.path("s.json"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
+        self.assertGreater(alone.GetNumberOfPolys(), 1000)
+        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()),
+                                      vtk_to_numpy(ranks.GetPoints().GetData()))
+        np.testing.assert_array_equal(corners(alone), corners(ranks))
+        names = [alone.GetPointData().GetArrayName(i) for i in range(alone.GetPointData().GetNumberOfArrays())]
+        for name in names:
+            np.testing.assert_array_equal(vtk_to_numpy(alone.GetPointData().GetArray(name)),
+                                          vtk_to_numpy(ranks.GetPointData().GetArray(name)), name)
+        with open(self.path("s.json"), encoding="utf-8") as stream:
+            self.assertIn("rank_particles", stream.read())
+        self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
+
+    def test_pieces(self):
+        """Pieces in, pieces out: more of them than processes."""
+        pieces = write_pieces(self.folder.name, 5)
+        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface").returncode, 0)
+        done = self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        alone, ranks = read(self.path("alone.vtp")), read(self.path("out.pvtp"))
+        self.assertEqual(alone.GetNumberOfPolys(), ranks.GetNumberOfPolys())
+        ids = vtk_to_numpy(ranks.GetPointData().GetArray("GlobalPointIds"))
+        self.assertEqual(len(np.unique(ids)), alone.GetNumberOfPoints())
+        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData())[ids],
+                                      vtk_to_numpy(ranks.GetPoints().GetData()))
+
+    def test_damaged_piece(self):
+        pieces = write_pieces(self.folder.name, 3)
+        with open(self.path("piece_1.vtp"), "r+", encoding="latin-1") as stream:
+            stream.truncate(3000)
+        done = self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface")
+        self.check_fails(done, "piece_1.vtp", "end is missing")
+        self.assertFalse(os.path.exists(self.path("out.pvtp")))
+
+    def test_missing_array(self):
+        self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--scalar", "Nope", "--iso", "1"), "Nope")
+
+    def test_bad_value(self):
+        """A particle of one piece that is not a number."""
+        pieces = write_pieces(self.folder.name, 2)
+        part = read(self.path("piece_1.vtp"))
+        part.GetPoints().SetPoint(5, float("nan"), 0, 0)
+        writer = vtkXMLPolyDataWriter()
+        writer.SetDataModeToBinary()
+        writer.SetFileName(self.path("piece_1.vtp"))
+        writer.SetInputData(part)
+        writer.Write()
+        self.check_fails(self.run_ranks(pieces, self.path("o.vtp"), "--free-surface"), "Rank 1", "particle 5")
+
+    def test_killed(self):
+        """A process that is killed ends the job."""
+        job = subprocess.Popen([MPIRUN, "-n", RANKS, PROGRAM, os.path.join(DATA, "dam_break_45k.vtp"),
+                                self.path("o.vtp"), "--free-surface", "--cube-factor", "0.2"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+        try:
+            victim = None
+            end = time.monotonic() + 60
+            while victim is None and time.monotonic() < end:
+                time.sleep(0.2)
+                found = subprocess.run(["ps", "--ppid", str(job.pid), "-o", "pid="], capture_output=True,
+                                       text=True, check=False).stdout.split()
+                victim = int(found[-1]) if len(found) == int(RANKS) else None
+            self.assertIsNotNone(victim)
+            time.sleep(0.5)
+            os.kill(victim, signal.SIGKILL)
+            job.communicate(timeout=60)
+            self.assertNotEqual(job.returncode, 0)
+        finally:
+            if job.poll() is None:
+                os.killpg(job.pid, signal.SIGKILL)
+                job.communicate()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -511,6 +511,7 @@ class Options(CommandLineTest):
 
     def test_surface_ends_at_walls(self):
         wall = self.succeed(*ISO, "--fluid", "Kind=0", "--solids", "wall")
+        half_way = self.output.read_bytes()
         self.assertEqual(wall["fluid"]["solids"], "wall")
         self.assertEqual(wall["fluid"]["wall_share"], 0.5)
         farther = self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", "--wall-share=0.95")
@@ -518,7 +519,11 @@ class Options(CommandLineTest):
         measured = self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", "--wall-share=measured")
         self.assertGreater(measured["fluid"]["wall_share"], 0.5)
         self.assertLess(measured["fluid"]["wall_share"], 0.95)
-        self.assertGreater(measured["statistics"]["triangles"], wall["statistics"]["triangles"])
+        at_walls = self.output.read_bytes()
+        given = f"--wall-share={measured['fluid']['wall_share']!r}"
+        self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", given)
+        self.assertEqual(self.output.read_bytes(), at_walls)
+        self.assertNotEqual(at_walls, half_way)
         triangles = wall["statistics"]["triangles"]
         self.assertLess(triangles, weight["statistics"]["triangles"])
         self.assertLess(triangles, farther["statistics"]["triangles"])

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #define PATTERNS 216636160
+
 typedef struct cell_totals
 {
   long long cells, loops, flat, pairs;

@@ -40,6 +40,7 @@ struct DataCase
   double HScale;
   bool Double;
   double Eigenvalue = 0.0; // above 0: trimmed where the boundary eigenvalue is lower
+  bool Graded = false;     // adaptive cubes
 };
 
 constexpr mcor_sph_kernel Cubic = MCOR_CUBIC_SPLINE;
@@ -78,6 +79,9 @@ const DataCase LargeCases[] = {
   { "evrard_collapse_74k", "Density", 1.0, MCOR_SHEPARD, Cubic, H, 0, 0.01, 0, false },
   { "evrard_collapse_74k", "Density", 50.0, MCOR_SHEPARD, Cubic, H, 0, 0.007, 0, false },
   { "evrard_collapse_74k", "LogDensity", 0.5, MCOR_SUM, Cubic, H, 0, 0.01, 0, false },
+  { "evrard_collapse_74k", nullptr, 0.5, MCOR_WEIGHT_SUM, Cubic, H, 0, 0, 0, false, 0, true },
+  { "evrard_collapse_74k", "Density", 1.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0, true },
+  { "sedov_blast_148k", "Density", 1.5, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0, true },
   { "vortex_rings_200k", "VorticityMagnitude", 5.0, MCOR_SHEPARD, MCOR_M_PRIME_4, H, 0, 0, 0,
     false },
   { "vortex_rings_200k", "VorticityMagnitude", 20.0, MCOR_SUM, MCOR_M_PRIME_4, H, 0, 0, 0, false },
@@ -146,11 +150,11 @@ void NameCase(const DataCase& one, oracle_case& at)
     std::snprintf(eigenvalue, sizeof(eigenvalue), "/eigenvalue%g", one.Eigenvalue);
   }
   static const char* const fields[] = { "shepard", "sum", "weight" };
-  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s", one.File,
+  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s%s", one.File,
     one.Scalar ? one.Scalar : "free", one.Iso, mcor_sph_kernel_name(one.Kernel), fields[one.Field],
     one.CubeSize > 0.0 ? one.CubeSize : at.options.cube_size_factor, at.options.h_scale,
     std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "", one.Double ? "/double" : "",
-    eigenvalue);
+    eigenvalue, one.Graded ? "/graded" : "");
 }
 
 void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one)
@@ -170,7 +174,8 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
     at.options.vertex_threshold = one.Eigenvalue;
     at.options.boundary_eigenvalue = 1;
   }
-  at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;
+  at.options.cube_size_mode = one.Graded ? MCOR_CUBES_ADAPTIVE : MCOR_CUBES_UNIFORM;
+  at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0 || one.Graded;
   NameCase(one, at);
   if (!oracle_wants_case(&suite, at.name))
   {

@@ -10,20 +10,34 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
 {
   memset(comparison, 0, sizeof(*comparison));
   const size_t points = (size_t)surface->point_count + 1;
-  const size_t components = (size_t)reference->surface.component_count + 1;
+  const size_t components = (size_t)(reference->adaptive ? reference->graded.component_count
+                                                         : reference->surface.component_count) +
+    1;
+  const size_t edges =
+    (size_t)(reference->adaptive ? reference->graded.edge_count : reference->surface.edge_count) +
+    1;
   compare_state state = { reference, options, surface, mesh, trimmed, comparison,
-    malloc(points * sizeof(int64_t)),
-    malloc(((size_t)reference->surface.edge_count + 1) * sizeof(int64_t)),
-    malloc(((size_t)reference->surface.edge_count + 1) * sizeof(int64_t)),
-    malloc(3 * points * sizeof(double)) };
+    malloc(points * sizeof(int64_t)), malloc(edges * sizeof(int64_t)),
+    malloc(edges * sizeof(int64_t)), malloc(3 * points * sizeof(double)),
+    malloc(points * sizeof(double)) };
   int64_t* count = calloc(2 * components, sizeof(int64_t));
-  int enough =
-    state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient && count;
-  if (enough)
+  int enough = state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient &&
+    state.vertex_cube && count;
+  if (enough && reference->adaptive)
+  {
+    compare_graded(&state, count, count + components);
+    compare_vertices(&state);
+    enough = compare_orientation(&state);
+  }
+  else if (enough)
   {
     comparison->edges = reference->surface.edge_count;
     comparison->components = reference->surface.component_count;
     compare_assign(&state);
+    for (size_t v = 0; v < points; ++v)
+    {
+      state.vertex_cube[v] = reference->lattice.cube;
+    }
     compare_missing(&state, count, count + components);
     compare_extra(&state);
     compare_vertices(&state);
@@ -38,6 +52,7 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
   free(state.edge_vertex);
   free(state.second_vertex);
   free(state.gradient);
+  free(state.vertex_cube);
   free(count);
   return enough;
 }

@@ -24,11 +24,13 @@ typedef struct compare_state
   const mesh_report* mesh;
   int trimmed;
   oracle_comparison* result;
-  int64_t* vertex_edge; /* [point_count], an edge of the lattice or COMPARE_* */
+  /* [point_count], an edge of the lattice (3 * number + axis) or COMPARE_*. */
+  int64_t* vertex_edge;
   /* [edge_count] of the oracle's surface, a point or -1. A pinched edge has a second vertex, as
    * each of its two cells has a fan of its own. */
   int64_t *edge_vertex, *second_vertex;
-  double* gradient; /* [point_count][3], by the oracle */
+  double* gradient;    /* [point_count][3], by the oracle */
+  double* vertex_cube; /* [point_count], length of the vertex's edge */
 } compare_state;
 
 /* ---- oracle_compare_state.c ---- */
@@ -54,6 +56,10 @@ void compare_assign(compare_state* state);
 /* present, absent: of each component, and one more; counted up. */
 void compare_missing(compare_state* state, int64_t* present, int64_t* absent);
 void compare_extra(compare_state* state);
+
+/* ---- oracle_compare_graded.c: these and those on faces, for cubes of several sizes ---- */
+
+void compare_graded(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */
 

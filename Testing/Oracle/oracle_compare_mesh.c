@@ -13,20 +13,22 @@
 /* Distance to the surface f = iso, in cubes: by the gradient, or, where that is small, the smallest
  * step along the edge that brackets a crossing. */
 static double compare_distance(
-  const compare_state* state, const double point[3], int axis, const oracle_sample* sample)
+  const compare_state* state, int64_t v, int axis, const oracle_sample* sample)
 {
   const oracle_reference* reference = state->reference;
+  const double* point = &state->surface->points[3 * v];
+  const double cube = state->vertex_cube[v];
   const double* g = sample->gradient;
   const double slope = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  double distance = fabs(sample->value - reference->limits.iso) / (slope * reference->lattice.cube);
+  double distance = fabs(sample->value - reference->limits.iso) / (slope * cube);
   for (double step = 1e-6; distance > 1e-5 && step < distance; step *= 2.0)
   {
     double p[3] = { point[0], point[1], point[2] };
     oracle_sample low;
     oracle_sample high;
-    p[axis] = point[axis] - step * reference->lattice.cube;
+    p[axis] = point[axis] - step * cube;
     oracle_evaluate(&reference->field, NULL, p, &low);
-    p[axis] = point[axis] + step * reference->lattice.cube;
+    p[axis] = point[axis] + step * cube;
     oracle_evaluate(&reference->field, NULL, p, &high);
     if ((low.value >= reference->limits.iso) != (high.value >= reference->limits.iso))
     {
@@ -266,7 +268,7 @@ static int compare_edge_vertex(
         (long long)v, point[0], point[1], point[2], residual, sample->trim_weight, sample->weight);
     }
   }
-  result->distance = fmax(result->distance, compare_distance(state, point, axis, sample));
+  result->distance = fmax(result->distance, compare_distance(state, v, axis, sample));
   return 1;
 }
 

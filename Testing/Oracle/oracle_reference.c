@@ -128,9 +128,52 @@ int oracle_set_iso(oracle_reference* reference, double iso)
   reference->field.center = iso;
   reference->limits.close = relative * reference->range;
   reference->limits.margin = relative;
+  if (reference->adaptive)
+  {
+    oracle_march_graded(&reference->graded, &reference->field, &reference->limits);
+    return 1;
+  }
   oracle_free_surface(&reference->surface);
   oracle_classify(&reference->lattice, reference->field.kind, &reference->limits);
   return oracle_create_surface(&reference->surface, &reference->lattice);
+}
+
+/* Whether cubes of more than one size are asked for. */
+static int reference_is_graded(const oracle_particles* particles, const mcor_options* options)
+{
+  double largest = 0.0;
+  for (int64_t j = 0; j < particles->count; ++j)
+  {
+    largest = particles->solid[j] ? largest : fmax(largest, particles->smoothing_length[j]);
+  }
+  return options->cube_size_mode == MCOR_CUBES_ADAPTIVE && options->level_limit > 0 &&
+    largest >= 2.0 * oracle_smallest_h(particles);
+}
+
+/* Evaluates all nodes. */
+static int reference_lattice(
+  oracle_reference* reference, const mcor_options* options, int64_t node_limit)
+{
+  const double cube = options->cube_size > 0.0
+    ? options->cube_size
+    : options->cube_size_factor * oracle_smallest_h(&reference->particles);
+  const oracle_lattice* nodes =
+    reference->adaptive ? &reference->graded.nodes : &reference->lattice;
+  const int enough = reference->adaptive
+    ? oracle_create_graded(
+        &reference->graded, &reference->field, cube, options->level_limit, node_limit)
+    : oracle_create_lattice(&reference->lattice, &reference->field, cube, node_limit);
+  reference->lattice.cube = cube;
+  reference->greatest_weight = 1.0;
+  for (int64_t n = 0; enough && n < oracle_node_count(nodes); ++n)
+  {
+    reference->greatest_weight = fmax(reference->greatest_weight, nodes->trim_weight[n]);
+  }
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    reference->range = reference->greatest_weight;
+  }
+  return enough;
 }
 
 int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
@@ -150,6 +193,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
+  reference->adaptive = reference_is_graded(&reference->particles, options);
   reference->range =
     options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
   if (!(reference->range > 0.0))
@@ -157,24 +201,11 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     const double any = reference->particles.count > 0 ? reference->particles.scalar[0] : 0.0;
     reference->range = any != 0.0 ? fabs(any) : 1.0;
   }
-  const double cube = options->cube_size > 0.0
-    ? options->cube_size
-    : options->cube_size_factor * oracle_smallest_h(&reference->particles);
-  if (!oracle_create_lattice(&reference->lattice, &reference->field, cube, node_limit))
+  if (!reference_lattice(reference, options, node_limit))
   {
     snprintf(message, 256, "more than %lld nodes, or out of memory", (long long)node_limit);
     oracle_free_reference(reference);
     return 0;
-  }
-  reference->greatest_weight = 1.0;
-  for (int64_t n = 0; n < oracle_node_count(&reference->lattice); ++n)
-  {
-    reference->greatest_weight =
-      fmax(reference->greatest_weight, reference->lattice.trim_weight[n]);
-  }
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    reference->range = reference->greatest_weight;
   }
   if (!oracle_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5))
   {
@@ -189,6 +220,7 @@ void oracle_free_reference(oracle_reference* reference)
 {
   oracle_free_surface(&reference->surface);
   oracle_free_lattice(&reference->lattice);
+  oracle_free_graded(&reference->graded);
   oracle_free_field(&reference->field);
   oracle_free_particles(&reference->particles);
   memset(reference, 0, sizeof(*reference));

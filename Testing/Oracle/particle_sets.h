@@ -41,6 +41,11 @@ mcor_array particle_array(const double* data, int components, double constant);
  * memory ran out. */
 int particle_set_random(particle_set* set, uint64_t seed);
 
+/* Five drops that touch, and a medium that is the finer the nearer to the origin, with the sphere
+ * scalar = 0 from there to far away; smoothing lengths differ by the ratio. 0 if memory ran out. */
+int particle_set_drops(particle_set* set, double ratio);
+int particle_set_medium(particle_set* set, double ratio);
+
 void particle_set_free(particle_set* set);
 
 /* The set as input of mcor_extract; borrowed from the set. */

@@ -3,7 +3,8 @@
 
 /* The library against the oracle on particles and options without any plan.
  *
- *   test_oracle_random --results FILE [--first SEED] [--count N]     (the table is not used)
+ *   test_oracle_random --results FILE [--first SEED] [--count N] [--adaptive]     (the table is not
+ *   used)
  */
 
 #include "oracle_case.h"
@@ -56,7 +57,7 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
   }
 }
 
-static void run_seed(oracle_suite* suite, uint64_t seed)
+static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
 {
   particle_set set;
   oracle_case at;
@@ -71,8 +72,14 @@ static void run_seed(oracle_suite* suite, uint64_t seed)
   }
   at.input = particle_set_input(&set);
   fill_options(&at, &state, &iso);
-  snprintf(at.name, sizeof(at.name), "random/%llu/%s/f%d", (unsigned long long)seed,
-    mcor_sph_kernel_name(at.options.sph_kernel), (int)at.options.field);
+  if (adaptive)
+  {
+    at.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+    at.skip_pairs = 1;
+  }
+  snprintf(at.name, sizeof(at.name), "random/%llu/%s/f%d%s", (unsigned long long)seed,
+    mcor_sph_kernel_name(at.options.sph_kernel), (int)at.options.field,
+    adaptive ? "/adaptive" : "");
   if (set.count > 0)
   {
     oracle_run_case(suite, &at);
@@ -86,6 +93,7 @@ int main(int argc, char** argv)
   uint64_t count = 60;
   char* others[16];
   int other_count = 0;
+  int adaptive = 0;
   for (int n = 0; n < argc && other_count < 16; ++n)
   {
     if (n + 1 < argc && strcmp(argv[n], "--first") == 0)
@@ -95,6 +103,10 @@ int main(int argc, char** argv)
     else if (n + 1 < argc && strcmp(argv[n], "--count") == 0)
     {
       count = strtoull(argv[++n], NULL, 10);
+    }
+    else if (strcmp(argv[n], "--adaptive") == 0)
+    {
+      adaptive = 1;
     }
     else
     {
@@ -108,7 +120,7 @@ int main(int argc, char** argv)
   }
   for (uint64_t seed = first; seed < first + count; ++seed)
   {
-    run_seed(&suite, seed);
+    run_seed(&suite, seed, adaptive);
   }
   return oracle_end_suite(&suite);
 }

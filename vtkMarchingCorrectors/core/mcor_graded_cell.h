@@ -52,6 +52,7 @@ typedef struct mcor_graded_loop
 {
   int length;
   MCOR_TYPE(uchar) slot[MCOR_GRADED_VERTICES];
+  MCOR_TYPE(uchar) place[MCOR_GRADED_VERTICES][3]; /* 0..4, in quarters of the cell's edge */
   MCOR_TYPE(uint) facets[MCOR_GRADED_VERTICES];
 } mcor_graded_loop;
 
@@ -134,35 +135,48 @@ MCOR_GRADED_FUNCTION void mcor_graded_link(
   }
 }
 
-/* Coordinate of a slot's vertex, the middle of the half-edge or edge, in quarters of the cell's
- * edge. */
-MCOR_GRADED_FUNCTION int mcor_graded_place(MCOR_TYPE(uint) split, int slot, int axis)
+/* Takes the loop through a slot out of the links. */
+MCOR_GRADED_FUNCTION void mcor_graded_take_loop(
+  int slot, mcor_graded_links* links, mcor_graded_loop* loop)
 {
-  const int node = slot & 31, along = slot >> 5;
-  const int step = axis == 0 ? 1 : axis == 1 ? 3 : 9, at = node / step % 3;
-  if (along != axis)
+  loop->length = 0;
+  while (links->next[slot] != 0xff)
   {
-    return 2 * at;
+    const int next = links->next[slot];
+    loop->slot[loop->length++] = (MCOR_TYPE(uchar))slot;
+    links->next[slot] = 0xff;
+    slot = next;
   }
-  /* Where the next position is no node, this is an edge that is not split. */
-  return (split >> (node + step) & 1) || at > 0 ? 2 * at + 1 : 2;
 }
 
-MCOR_GRADED_FUNCTION MCOR_TYPE(uint) mcor_graded_facets(MCOR_TYPE(uint) split, int slot)
+/* Where a vertex is: in the middle of its half-edge or edge. */
+MCOR_GRADED_FUNCTION void mcor_graded_place(
+  MCOR_TYPE(uint) split, int slot, MCOR_TYPE(uchar) place[3])
+{
+  const int axis = slot >> 5, node = slot & 31, step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
+  place[0] = (MCOR_TYPE(uchar))(2 * (node % 3));
+  place[1] = (MCOR_TYPE(uchar))(2 * (node / 3 % 3));
+  place[2] = (MCOR_TYPE(uchar))(2 * (node / 9));
+  /* Where the next position is no node, this is an edge that is not split. */
+  place[axis] =
+    (MCOR_TYPE(uchar))(place[axis] + (place[axis] > 0 || (split >> (node + step) & 1) ? 1 : 2));
+}
+
+MCOR_GRADED_FUNCTION MCOR_TYPE(uint)
+  mcor_graded_facets(MCOR_TYPE(uint) split, const MCOR_TYPE(uchar) place[3])
 {
   MCOR_TYPE(uint) facets = 0;
-  for (int face = 0; face < 6; ++face)
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const int axis = face >> 1;
-    if (mcor_graded_place(split, slot, axis) != 4 * (face & 1))
+    if (place[axis] & 3)
     {
       continue;
     }
+    const int face = 2 * axis + (place[axis] >> 2);
+    const int u = place[(axis + 1) % 3], v = place[(axis + 2) % 3];
     MCOR_TYPE(uint) part = 15;
     if (split >> mcor_graded_face_middle(face) & 1)
     {
-      const int u = mcor_graded_place(split, slot, (axis + 1) % 3);
-      const int v = mcor_graded_place(split, slot, (axis + 2) % 3);
       part = (u <= 2 ? 5 : 0) | (u >= 2 ? 10 : 0);
       part &= (v <= 2 ? 3 : 0) | (v >= 2 ? 12 : 0);
     }
@@ -171,19 +185,12 @@ MCOR_GRADED_FUNCTION MCOR_TYPE(uint) mcor_graded_facets(MCOR_TYPE(uint) split, i
   return facets;
 }
 
-/* Takes the loop through a slot out of the links. */
-MCOR_GRADED_FUNCTION void mcor_graded_take_loop(
-  MCOR_TYPE(uint) split, int slot, mcor_graded_links* links, mcor_graded_loop* loop)
+MCOR_GRADED_FUNCTION void mcor_graded_locate(MCOR_TYPE(uint) split, mcor_graded_loop* loop)
 {
-  loop->length = 0;
-  while (links->next[slot] != 0xff)
+  for (int i = 0; i < loop->length; ++i)
   {
-    const int next = links->next[slot];
-    loop->slot[loop->length] = (MCOR_TYPE(uchar))slot;
-    loop->facets[loop->length] = mcor_graded_facets(split, slot);
-    ++loop->length;
-    links->next[slot] = 0xff;
-    slot = next;
+    mcor_graded_place(split, loop->slot[i], loop->place[i]);
+    loop->facets[i] = mcor_graded_facets(split, loop->place[i]);
   }
 }
 
@@ -216,8 +223,7 @@ MCOR_GRADED_FUNCTION int mcor_graded_cost(
     cost += (facets_a & facets_b) >> 24 ? MCOR_GRADED_FLAT : 0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const int d = mcor_graded_place(split, loop->slot[a], axis) -
-        mcor_graded_place(split, loop->slot[b], axis);
+      const int d = loop->place[a][axis] - loop->place[b][axis];
       cost += d * d;
     }
   }
@@ -308,9 +314,10 @@ MCOR_GRADED_FUNCTION int mcor_graded_count(
   mcor_graded_link(split, above, &links);
   for (int slot = 0; slot < MCOR_GRADED_SLOTS; ++slot)
   {
-    mcor_graded_take_loop(split, slot, &links, &loop);
+    mcor_graded_take_loop(slot, &links, &loop);
     if (loop.length > 2)
     {
+      mcor_graded_locate(split, &loop);
       count += loop.length - 2;
       *flat_caps += mcor_graded_is_flat(&loop);
     }
@@ -329,9 +336,10 @@ MCOR_GRADED_FUNCTION int mcor_graded_triangulate(
   mcor_graded_link(split, above, &links);
   for (int slot = 0; slot < MCOR_GRADED_SLOTS; ++slot)
   {
-    mcor_graded_take_loop(split, slot, &links, &loop);
+    mcor_graded_take_loop(slot, &links, &loop);
     if (loop.length > 2)
     {
+      mcor_graded_locate(split, &loop);
       count += mcor_graded_cut_loop(split, &loop, triangles + 3 * count);
     }
   }

@@ -1,0 +1,94 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle_graded.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void graded_out_of_memory(void)
+{
+  fprintf(stderr, "out of memory for the graded lattice\n");
+  abort();
+}
+
+void* graded_grow(void* array, int64_t count, int64_t* capacity, size_t size)
+{
+  if (count < *capacity)
+  {
+    return array;
+  }
+  *capacity = *capacity > 0 ? 2 * *capacity : 1024;
+  void* grown = realloc(array, (size_t)*capacity * size);
+  if (!grown)
+  {
+    graded_out_of_memory();
+  }
+  return grown;
+}
+
+static int64_t graded_map_slot(const graded_map* map, const int64_t at[3], int64_t tag)
+{
+  uint64_t hash = (uint64_t)tag;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    hash = (hash ^ (uint64_t)at[axis]) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 29;
+  }
+  int64_t slot = (int64_t)(hash & (uint64_t)(map->capacity - 1));
+  for (;; slot = (slot + 1) & (map->capacity - 1))
+  {
+    const int64_t* held = &map->slots[5 * slot];
+    if (held[4] < 0 || (held[0] == at[0] && held[1] == at[1] && held[2] == at[2] && held[3] == tag))
+    {
+      return slot;
+    }
+  }
+}
+
+static void graded_map_grow(graded_map* map)
+{
+  const graded_map old = *map;
+  map->capacity = old.capacity > 0 ? 2 * old.capacity : 1024;
+  map->slots = malloc((size_t)map->capacity * 5 * sizeof(int64_t));
+  if (!map->slots)
+  {
+    graded_out_of_memory();
+  }
+  memset(map->slots, 0xff, (size_t)map->capacity * 5 * sizeof(int64_t));
+  for (int64_t n = 0; n < old.capacity; ++n)
+  {
+    const int64_t* held = &old.slots[5 * n];
+    if (held[4] >= 0)
+    {
+      memcpy(&map->slots[5 * graded_map_slot(map, held, held[3])], held, 5 * sizeof(int64_t));
+    }
+  }
+  free(old.slots);
+}
+
+int64_t* graded_map_find(graded_map* map, const int64_t at[3], int64_t tag, int add)
+{
+  if (2 * map->count >= map->capacity)
+  {
+    graded_map_grow(map);
+  }
+  int64_t* held = &map->slots[5 * graded_map_slot(map, at, tag)];
+  if (held[4] < 0)
+  {
+    if (!add)
+    {
+      return NULL;
+    }
+    memcpy(held, at, 3 * sizeof(int64_t));
+    held[3] = tag;
+    ++map->count;
+  }
+  return &held[4];
+}
+
+void graded_map_free(graded_map* map)
+{
+  free(map->slots);
+  memset(map, 0, sizeof(*map));
+}

@@ -1,0 +1,133 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Sets whose smoothing lengths differ by a large ratio. */
+
+#include "particle_sets.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int graded_reserve(particle_set* set)
+{
+  memset(set, 0, sizeof(*set));
+  set->capacity = 400000;
+  set->position = calloc(3 * (size_t)set->capacity, sizeof(double));
+  set->smoothing_length = calloc((size_t)set->capacity, sizeof(double));
+  set->volume = calloc((size_t)set->capacity, sizeof(double));
+  set->scalar = calloc((size_t)set->capacity, sizeof(double));
+  set->solid = calloc((size_t)set->capacity, 1);
+  if (!set->position || !set->smoothing_length || !set->volume || !set->scalar || !set->solid)
+  {
+    particle_set_free(set);
+    return 0;
+  }
+  return 1;
+}
+
+static double length_of(const double x[3])
+{
+  return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+static void graded_add(particle_set* set, const double x[3], double h, double volume, double scalar)
+{
+  const int64_t j = set->count;
+  if (j < set->capacity)
+  {
+    memcpy(&set->position[3 * j], x, 3 * sizeof(double));
+    set->smoothing_length[j] = h;
+    set->volume[j] = volume;
+    set->scalar[j] = scalar;
+    ++set->count;
+  }
+}
+
+/* A ball of particles, jittered. */
+static void graded_drop(particle_set* set, const double centre[3], double radius, uint64_t* state)
+{
+  const int64_t n = 10;
+  const double spacing = 2.0 * radius / (double)n;
+  for (int64_t c = 0; c < n * n * n; ++c)
+  {
+    const int64_t at[3] = { c % n, c / n % n, c / n / n };
+    double x[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double jitter = 0.3 * (random_unit(state) - 0.5);
+      x[axis] = ((double)at[axis] + 0.5 + jitter) * spacing - radius;
+    }
+    if (length_of(x) < radius)
+    {
+      const double scalar = x[0] / radius + 0.5 * sin(4.0 * x[1] / radius);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        x[axis] += centre[axis];
+      }
+      graded_add(set, x, 1.2 * spacing, pow(spacing, 3.0), scalar);
+    }
+  }
+}
+
+int particle_set_drops(particle_set* set, double ratio)
+{
+  uint64_t state = 11;
+  double centre[3] = { 0.0, 0.0, 0.0 };
+  if (!graded_reserve(set))
+  {
+    return 0;
+  }
+  const int drops = 5;
+  for (int drop = 0; drop < drops; ++drop)
+  {
+    /* Each one beside the larger one before it, close enough for their weights to meet. */
+    const double radius = pow(ratio, -(double)drop / (drops - 1));
+    const double before = drop > 0 ? pow(ratio, -(double)(drop - 1) / (drops - 1)) : 0.0;
+    const double turn = 0.7 * drop;
+    const double away = drop > 0 ? before + 1.15 * radius : 0.0;
+    centre[0] += away * cos(turn);
+    centre[1] += away * sin(turn);
+    centre[2] += 0.05 * away;
+    graded_drop(set, centre, radius, &state);
+  }
+  return 1;
+}
+
+int particle_set_medium(particle_set* set, double ratio)
+{
+  const double fineness = 0.3; /* spacing / distance from the origin */
+  const double least = 1.0 / ratio;
+  uint64_t state = 12;
+  if (!graded_reserve(set))
+  {
+    return 0;
+  }
+  /* Blocks around the origin, each but the first without the one before it. */
+  for (double size = least; size < 1.6; size *= 2.0)
+  {
+    const int64_t n = 2 * (int64_t)ceil(1.0 / fineness);
+    const double spacing = 2.0 * size / (double)n;
+    for (int64_t c = 0; c < n * n * n; ++c)
+    {
+      const int64_t at[3] = { c % n, c / n % n, c / n / n };
+      double x[3];
+      double largest = 0.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        x[axis] = ((double)at[axis] + 0.5) * spacing - size;
+        largest = fmax(largest, fabs(x[axis]));
+        x[axis] += 0.3 * (random_unit(&state) - 0.5) * spacing;
+      }
+      if (largest > 0.5 * size || size == least)
+      {
+        /* A sphere from near the origin to far away; its distance relative to that of the origin. */
+        const double r = length_of(x);
+        const double from[3] = { x[0] - 0.7 - 0.5 * least, x[1], x[2] };
+        const double scalar = (length_of(from) - 0.7) / (r + least);
+        graded_add(set, x, 1.3 * fineness * fmax(r, 0.7 * least), pow(spacing, 3.0), scalar);
+      }
+    }
+  }
+  return 1;
+}

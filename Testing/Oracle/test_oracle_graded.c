@@ -1,0 +1,216 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Cubes as fine as the particles are: the oracle's own levels against their definition, its graded
+ * lattice against the uniform one where they must agree, then the library against it. */
+
+#include "oracle_case.h"
+#include "particle_sets.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void expect(oracle_suite* suite, int condition, const char* name, const char* what)
+{
+  if (!condition)
+  {
+    printf("  FAILED: %s: %s\n", name, what);
+    ++suite->failures;
+  }
+}
+
+/* ---- the oracle itself ------------------------------------------------------------------------- */
+
+static int64_t size_of(const graded_brick* brick)
+{
+  return (int64_t)GRADED_BRICK << brick->level;
+}
+
+/* Bricks that touch differ by one level at most; one that no such brick and no particle keeps from
+ * being larger is not there. */
+static void check_levels(oracle_suite* suite, const char* name, const oracle_reference* reference)
+{
+  const oracle_graded* graded = &reference->graded;
+  const oracle_particles* p = &reference->particles;
+  const double least = oracle_smallest_h(p);
+  int64_t uneven = 0, unfit = 0;
+  for (int64_t a = 0; a < graded->brick_count; ++a)
+  {
+    const graded_brick* one = &graded->bricks[a];
+    int fits = 1;
+    for (int64_t b = 0; b < graded->brick_count; ++b)
+    {
+      const graded_brick* other = &graded->bricks[b];
+      int touch = 1;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        touch = touch && one->at[axis] <= other->at[axis] + size_of(other) &&
+          other->at[axis] <= one->at[axis] + size_of(one);
+      }
+      uneven += touch && abs(one->level - other->level) > 1;
+    }
+    for (int64_t j = 0; fits && j < p->count; ++j)
+    {
+      double square = 0.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double low = (double)one->at[axis] * graded->cube - p->position[3 * j + axis];
+        const double d = fmax(0.0, fmax(low, -low - (double)size_of(one) * graded->cube));
+        square += d * d;
+      }
+      const double support =
+        oracle_support(reference->field.kernel) * reference->field.h_scale * p->smoothing_length[j];
+      fits = one->level == 0 || sqrt(square) > support * (1.0 + 1e-12) ||
+        p->smoothing_length[j] >= least * ldexp(1.0, one->level);
+    }
+    unfit += !fits;
+  }
+  expect(suite, uneven == 0, name, "bricks that touch differ by more than one level");
+  expect(suite, unfit == 0, name, "a brick is too large for a particle");
+  expect(suite, graded->top > 0 && graded->brick_count > 0, name, "it is not graded");
+}
+
+static int make_reference(oracle_suite* suite, const char* name, const particle_set* set,
+  const mcor_options* options, oracle_reference* reference)
+{
+  char message[256];
+  const mcor_input input = particle_set_input(set);
+  const int made = oracle_create_reference(reference, &input, options, 60000000, message);
+  expect(suite, made, name, message);
+  return made;
+}
+
+/* Level 0 alone is the uniform lattice. */
+static void check_uniform(
+  oracle_suite* suite, const char* name, const particle_set* set, double iso)
+{
+  oracle_reference uniform;
+  oracle_graded graded;
+  const mcor_options options = oracle_case_options(&iso);
+  if (!make_reference(suite, name, set, &options, &uniform))
+  {
+    return;
+  }
+  const int made = oracle_create_graded(&graded, &uniform.field, uniform.lattice.cube, 0, 60000000);
+  expect(suite, made, name, "no memory");
+  if (made)
+  {
+    int64_t used = 0, valid = 0;
+    oracle_march_graded(&graded, &uniform.field, &uniform.limits);
+    for (int64_t e = 0; e < graded.edge_count; ++e)
+    {
+      used += graded.edges[e].used;
+    }
+    for (int64_t c = 0; c < graded.cell_count; ++c)
+    {
+      valid += graded.cells[c].valid;
+    }
+    expect(suite, used == uniform.surface.edge_count, name, "not the uniform lattice's edges");
+    expect(suite, valid == uniform.surface.cell_count, name, "not the uniform lattice's cells");
+    expect(suite, used > 100, name, "too few edges for a test");
+  }
+  oracle_free_graded(&graded);
+  oracle_free_reference(&uniform);
+}
+
+static void test_oracle(oracle_suite* suite)
+{
+  particle_set set;
+  oracle_reference reference;
+  double iso = 0.0;
+  mcor_options options = oracle_case_options(&iso);
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  if (particle_set_medium(&set, 10.0))
+  {
+    if (make_reference(suite, "medium/10/levels", &set, &options, &reference))
+    {
+      check_levels(suite, "medium/10/levels", &reference);
+      oracle_free_reference(&reference);
+    }
+  }
+  particle_set_free(&set);
+  if (particle_set_drops(&set, 2.0))
+  {
+    check_uniform(suite, "drops/2/uniform", &set, 0.1);
+  }
+  particle_set_free(&set);
+  if (particle_set_drops(&set, 100.0))
+  {
+    if (make_reference(suite, "drops/100/levels", &set, &options, &reference))
+    {
+      check_levels(suite, "drops/100/levels", &reference);
+      oracle_free_reference(&reference);
+    }
+  }
+  particle_set_free(&set);
+}
+
+/* ---- the library ------------------------------------------------------------------------------- */
+
+typedef struct graded_entry
+{
+  const char* name;
+  int (*make)(particle_set* set, double ratio);
+  double ratio, iso;
+  mcor_field field;
+  mcor_sph_kernel kernel;
+  mcor_type precision;
+} graded_entry;
+
+static void run_entry(oracle_suite* suite, const graded_entry* entry)
+{
+  particle_set set;
+  oracle_case at;
+  memset(&at, 0, sizeof(at));
+  if (!entry->make(&set, entry->ratio))
+  {
+    expect(suite, 0, entry->name, "no memory");
+    return;
+  }
+  at.input = particle_set_input(&set);
+  at.options = oracle_case_options(&entry->iso);
+  at.options.field = entry->field;
+  at.options.sph_kernel = entry->kernel;
+  at.options.precision = entry->precision;
+  at.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  at.skip_pairs = 1;
+  snprintf(at.name, sizeof(at.name), "graded/%s/%g/%s/%s%s", entry->name, entry->ratio,
+    entry->field == MCOR_WEIGHT_SUM ? "weight"
+      : entry->field == MCOR_SUM    ? "sum"
+                                    : "shepard",
+    mcor_sph_kernel_name(entry->kernel), entry->precision == MCOR_FLOAT64 ? "/double" : "");
+  oracle_run_case(suite, &at);
+  particle_set_free(&set);
+}
+
+int main(int argc, char** argv)
+{
+  static const graded_entry entries[] = {
+    { "drops", particle_set_drops, 10, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "drops", particle_set_drops, 100, 0.5, MCOR_WEIGHT_SUM, MCOR_WENDLAND_C2, MCOR_FLOAT64 },
+    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "drops", particle_set_drops, 10, 0.1, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "drops", particle_set_drops, 100, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "medium", particle_set_medium, 10, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "medium", particle_set_medium, 10, 0.0, MCOR_SHEPARD, MCOR_M_PRIME_4, MCOR_FLOAT64 },
+    { "medium", particle_set_medium, 100, 0.0, MCOR_SHEPARD, MCOR_QUINTIC_SPLINE, MCOR_FLOAT32 },
+    { "medium", particle_set_medium, 1000, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "medium", particle_set_medium, 1000, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT64 },
+  };
+  oracle_suite suite;
+  if (!oracle_begin_suite(&suite, argc, argv))
+  {
+    return 1;
+  }
+  if (!suite.filter)
+  {
+    test_oracle(&suite);
+  }
+  for (size_t n = 0; n < sizeof(entries) / sizeof(*entries); ++n)
+  {
+    run_entry(&suite, &entries[n]);
+  }
+  return oracle_end_suite(&suite);
+}

@@ -99,6 +99,38 @@ static void graded_claim(compare_state* state, int64_t v, int64_t e)
   }
 }
 
+/* Whether rounding may have put a vertex there: an end of its edge, the nearest nodes on its line, is
+ * as good as on the other side. */
+static int graded_doubtful(const compare_state* state, const double point[3], int axis)
+{
+  const oracle_reference* reference = state->reference;
+  oracle_graded* graded = (oracle_graded*)&reference->graded;
+  for (int level = 0; level <= graded->top; ++level)
+  {
+    const double length = ldexp(1.0, level);
+    for (int end = 0; end < (axis < 0 ? 1 : 2); ++end)
+    {
+      double p[3];
+      int64_t at[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        const double u = point[a] / graded->cube;
+        at[a] = a == axis ? (int64_t)((floor(u / length) + end) * length) : llround(u);
+        p[a] = (double)at[a] * graded->cube;
+      }
+      const int64_t* node = graded_map_find(&graded->node_map, at, 0, 0);
+      if (node &&
+        (graded->nodes.flags[*node] & (ORACLE_NODE_CLOSE | ORACLE_NODE_MARGIN) ||
+          fabs(graded->nodes.value[*node] - reference->limits.iso) <=
+            oracle_rounding(&reference->field, p, reference->unit)))
+      {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
 /* A vertex that no open edge is left for: a cut; a second one on its edge; one too many. */
 static void graded_leave(compare_state* state, int64_t v, int axis)
 {
@@ -118,13 +150,8 @@ static void graded_leave(compare_state* state, int64_t v, int axis)
   else
   {
     /* Numbers from edge_count on: on edges that are not crossed. */
-    oracle_sample sample;
     state->vertex_edge[v] = 3 * reference->graded.edge_count + (axis < 0 ? 0 : axis);
-    oracle_evaluate(&reference->field, NULL, point, &sample);
-    if (state->result->excused < 2 + reference->graded.edge_count / 2000 &&
-      fabs(sample.value - reference->limits.iso) <=
-        reference->limits.close + oracle_rounding(&reference->field, point, reference->unit) &&
-      reference->unit > 1e-10)
+    if (graded_doubtful(state, point, axis))
     {
       ++state->result->excused;
       return;

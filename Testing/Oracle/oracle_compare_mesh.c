@@ -260,7 +260,7 @@ static int compare_edge_vertex(
   else if (!(residual <= result->residual))
   {
     result->residual = residual;
-    if (!(residual < 1e-5))
+    if (!(residual < 5e-6))
     {
       compare_note(state,
         "vertex %lld at (%.9g, %.9g, %.9g) has residual %.3g; weight %.3g,"

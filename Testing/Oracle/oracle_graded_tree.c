@@ -24,6 +24,7 @@ typedef struct graded_descent
   const oracle_field* field;
   int* level; /* [particle count], -1: of no account */
   int listing;
+  int64_t node_limit;
 } graded_descent;
 
 static int graded_counts(const oracle_particles* p, int64_t j)
@@ -81,6 +82,128 @@ static void graded_split(oracle_graded* graded, const graded_brick* brick)
   *graded_map_find(&graded->split, brick->at, brick->level, 1) = 1;
 }
 
+/* ---- nodes ------------------------------------------------------------------------------------ */
+
+static int64_t graded_node(oracle_graded* graded, const int64_t at[3], int add)
+{
+  int64_t* index = graded_map_find(&graded->node_map, at, 0, add);
+  if (index && *index < 0)
+  {
+    int64_t capacity[3] = { graded->node_capacity, graded->node_capacity, graded->node_capacity };
+    oracle_lattice* nodes = &graded->nodes;
+    const int64_t count = graded->node_count;
+    nodes->value = graded_grow(nodes->value, count, &capacity[0], sizeof(double));
+    nodes->weight = graded_grow(nodes->weight, count, &capacity[1], sizeof(double));
+    nodes->trim_weight = graded_grow(nodes->trim_weight, count, &capacity[2], sizeof(double));
+    graded->node_at =
+      graded_grow(graded->node_at, count, &graded->node_capacity, 3 * sizeof(int64_t));
+    memcpy(&graded->node_at[3 * graded->node_count], at, 3 * sizeof(int64_t));
+    *index = graded->node_count++;
+  }
+  return index ? *index : -1;
+}
+
+/* Whether bricks of half the size touch the point of the brick's border: sides[axis] says on which
+ * side of the brick it lies, 0: on neither. */
+static int graded_finer(oracle_graded* graded, const graded_brick* brick, const int sides[3])
+{
+  for (int some = 1; some < 8; ++some)
+  {
+    graded_brick beside = *brick;
+    int there = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int step = some >> axis & 1 ? sides[axis] : 0;
+      there = there && (step != 0 || !(some >> axis & 1));
+      beside.at[axis] += step * graded_brick_size(brick->level);
+    }
+    if (there && graded_is_split(graded, &beside))
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+void oracle_graded_nodes(
+  oracle_graded* graded, const graded_brick* brick, const int64_t at[3], int add, int64_t node[27])
+{
+  const int64_t size = graded_brick_size(brick->level);
+  for (int n = 0; n < 27; ++n)
+  {
+    const int place[3] = { n % 3, n / 3 % 3, n / 9 };
+    const int middles = (place[0] == 1) + (place[1] == 1) + (place[2] == 1);
+    int64_t p[3];
+    int sides[3] = { 0, 0, 0 };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      p[axis] = at[axis] + (((int64_t)place[axis] << brick->level) >> 1);
+      if (place[axis] != 1)
+      {
+        sides[axis] = p[axis] == brick->at[axis] ? -1 : p[axis] == brick->at[axis] + size;
+      }
+    }
+    const int is_node =
+      middles == 0 || (middles < 3 && brick->level > 0 && graded_finer(graded, brick, sides));
+    node[n] = is_node ? graded_node(graded, p, add) : -1;
+  }
+}
+
+/* The sums at a new node, over the particles that reach its brick. */
+static void graded_evaluate(oracle_graded* graded, const oracle_field* field, int64_t node,
+  const int64_t* list, int64_t count)
+{
+  const oracle_particles* p = field->particles;
+  oracle_lattice* nodes = &graded->nodes;
+  double fluid = 0.0;
+  double solid = 0.0;
+  double value = 0.0;
+  for (int64_t n = 0; n < count; ++n)
+  {
+    const int64_t j = list[n];
+    double offset[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      offset[axis] =
+        (double)graded->node_at[3 * node + axis] * graded->cube - p->position[3 * j + axis];
+    }
+    const double w = p->volume[j] *
+      oracle_kernel_value(field->kernel, field->h_scale * p->smoothing_length[j], offset, NULL);
+    *(p->solid[j] ? &solid : &fluid) += w;
+    value += p->solid[j] ? 0.0 : p->scalar[j] * w;
+  }
+  nodes->weight[node] = fluid;
+  nodes->trim_weight[node] = fluid + solid;
+  nodes->value[node] = field->kind == ORACLE_WEIGHT ? fluid
+    : field->kind == ORACLE_SUM                     ? value
+    : fluid > 0.0                                   ? value / fluid
+                                                    : 0.0;
+}
+
+static void graded_add_brick(
+  graded_descent* descent, const graded_brick* brick, const int64_t* list, int64_t count)
+{
+  oracle_graded* graded = descent->graded;
+  const int64_t first = graded->node_count;
+  graded->bricks =
+    graded_grow(graded->bricks, graded->brick_count, &graded->brick_capacity, sizeof(graded_brick));
+  graded->bricks[graded->brick_count++] = *brick;
+  for (int cell = 0; cell < 64 && graded->node_count <= descent->node_limit; ++cell)
+  {
+    const int64_t at[3] = { brick->at[0] + ((int64_t)(cell & 3) << brick->level),
+      brick->at[1] + ((int64_t)(cell >> 2 & 3) << brick->level),
+      brick->at[2] + ((int64_t)(cell >> 4) << brick->level) };
+    int64_t node[27];
+    oracle_graded_nodes(graded, brick, at, 1, node);
+  }
+  for (int64_t node = first; node < graded->node_count; ++node)
+  {
+    graded_evaluate(graded, descent->field, node, list, count);
+  }
+}
+
+/* ---- the descent ------------------------------------------------------------------------------ */
+
 static void graded_descend(
   graded_descent* descent, const graded_brick* brick, const int64_t* above, int64_t count)
 {
@@ -116,9 +239,7 @@ static void graded_descend(
   }
   else if (reaching > 0 && descent->listing)
   {
-    graded->bricks = graded_grow(
-      graded->bricks, graded->brick_count, &graded->brick_capacity, sizeof(graded_brick));
-    graded->bricks[graded->brick_count++] = *brick;
+    graded_add_brick(descent, brick, list, reaching);
   }
   free(list);
 }
@@ -190,103 +311,11 @@ static void graded_balance(oracle_graded* graded)
   }
 }
 
-/* ---- nodes ------------------------------------------------------------------------------------ */
-
-static int64_t graded_node(oracle_graded* graded, const int64_t at[3], int add)
-{
-  int64_t* index = graded_map_find(&graded->node_map, at, 0, add);
-  if (index && *index < 0)
-  {
-    graded->node_at =
-      graded_grow(graded->node_at, graded->node_count, &graded->node_capacity, 3 * sizeof(int64_t));
-    memcpy(&graded->node_at[3 * graded->node_count], at, 3 * sizeof(int64_t));
-    *index = graded->node_count++;
-  }
-  return index ? *index : -1;
-}
-
-/* Whether bricks of half the size touch the point of the brick's border: sides[axis] says on which
- * side of the brick it lies, 0: on neither. */
-static int graded_finer(oracle_graded* graded, const graded_brick* brick, const int sides[3])
-{
-  for (int some = 1; some < 8; ++some)
-  {
-    graded_brick beside = *brick;
-    int there = 1;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int step = some >> axis & 1 ? sides[axis] : 0;
-      there = there && (step != 0 || !(some >> axis & 1));
-      beside.at[axis] += step * graded_brick_size(brick->level);
-    }
-    if (there && graded_is_split(graded, &beside))
-    {
-      return 1;
-    }
-  }
-  return 0;
-}
-
-void oracle_graded_nodes(
-  oracle_graded* graded, const graded_brick* brick, const int64_t at[3], int add, int64_t node[27])
-{
-  const int64_t size = graded_brick_size(brick->level);
-  for (int n = 0; n < 27; ++n)
-  {
-    const int place[3] = { n % 3, n / 3 % 3, n / 9 };
-    const int middles = (place[0] == 1) + (place[1] == 1) + (place[2] == 1);
-    int64_t p[3];
-    int sides[3] = { 0, 0, 0 };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      p[axis] = at[axis] + (((int64_t)place[axis] << brick->level) >> 1);
-      if (place[axis] != 1)
-      {
-        sides[axis] = p[axis] == brick->at[axis] ? -1 : p[axis] == brick->at[axis] + size;
-      }
-    }
-    const int is_node =
-      middles == 0 || (middles < 3 && brick->level > 0 && graded_finer(graded, brick, sides));
-    node[n] = is_node ? graded_node(graded, p, add) : -1;
-  }
-}
-
-static int graded_evaluate(oracle_graded* graded, const oracle_field* field)
-{
-  const size_t count = (size_t)graded->node_count + 1;
-  oracle_lattice* nodes = &graded->nodes;
-  nodes->cube = graded->cube;
-  nodes->size[0] = graded->node_count;
-  nodes->size[1] = nodes->size[2] = 1;
-  nodes->value = malloc(count * sizeof(double));
-  nodes->weight = malloc(count * sizeof(double));
-  nodes->trim_weight = malloc(count * sizeof(double));
-  nodes->flags = calloc(count, 1);
-  if (!nodes->value || !nodes->weight || !nodes->trim_weight || !nodes->flags)
-  {
-    return 0;
-  }
-  for (int64_t n = 0; n < graded->node_count; ++n)
-  {
-    oracle_sample sample;
-    double p[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      p[axis] = (double)graded->node_at[3 * n + axis] * graded->cube;
-    }
-    oracle_evaluate(field, NULL, p, &sample);
-    nodes->value[n] = sample.value;
-    nodes->weight[n] = sample.weight;
-    nodes->trim_weight[n] = sample.trim_weight;
-  }
-  return 1;
-}
-
 int oracle_create_graded(oracle_graded* graded, const oracle_field* field, double cube,
   int level_limit, int64_t node_limit)
 {
   graded_descent descent = { graded, field,
-    malloc(((size_t)field->particles->count + 1) * sizeof(int)), 0 };
+    malloc(((size_t)field->particles->count + 1) * sizeof(int)), 0, node_limit };
   memset(graded, 0, sizeof(*graded));
   if (!descent.level)
   {
@@ -299,19 +328,11 @@ int oracle_create_graded(oracle_graded* graded, const oracle_field* field, doubl
   descent.listing = 1;
   graded_descend_all(&descent);
   free(descent.level);
-  for (int64_t b = 0; b < graded->brick_count && graded->node_count <= node_limit; ++b)
-  {
-    const graded_brick* brick = &graded->bricks[b];
-    for (int cell = 0; cell < 64; ++cell)
-    {
-      const int64_t at[3] = { brick->at[0] + ((int64_t)(cell & 3) << brick->level),
-        brick->at[1] + ((int64_t)(cell >> 2 & 3) << brick->level),
-        brick->at[2] + ((int64_t)(cell >> 4) << brick->level) };
-      int64_t node[27];
-      oracle_graded_nodes(graded, brick, at, 1, node);
-    }
-  }
-  return graded->node_count <= node_limit && graded_evaluate(graded, field);
+  graded->nodes.cube = cube;
+  graded->nodes.size[0] = graded->node_count;
+  graded->nodes.size[1] = graded->nodes.size[2] = 1;
+  graded->nodes.flags = calloc((size_t)graded->node_count + 1, 1);
+  return graded->node_count <= node_limit && graded->nodes.flags;
 }
 
 void oracle_free_graded(oracle_graded* graded)

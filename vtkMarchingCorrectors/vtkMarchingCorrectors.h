@@ -324,7 +324,7 @@ public:
   /**
    * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, particles and
    * all they carry repeat along x with that period, and their images count. The surface is that of
-   * one period, open at its sides, where it meets itself up to rounding. Periods are whole numbers of
+   * one period, open at its sides, where it meets itself, to the last bit. Periods are whole numbers of
    * cubes: the cube size is made to fit, see "CubeSize" in the field data.
    */
   vtkSetVector6Macro(PeriodicBounds, double);

@@ -53,6 +53,11 @@ FAULTS = [
     Fault("gather: planes of rows stop short upwards", ["core_grid", "core_correct"],
           "const int z = next < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level->cells[2];",
           "const int z = next + 1 < end ? mcor_cell_of_particle(level, 2, grid->pz[next]) : level->cells[2];"),
+    # ---- periods, ranks ----
+    Fault("period: search cells are not those of the first period again", ["core_period"],
+          "if (period == 0)\n  {\n    level->inv_cell", "if (period >= 0)\n  {\n    level->inv_cell"),
+    Fault("ranks: rounds end before cells of other boxes have grown", ["core_ranks", "core_period"],
+          "*grown = fresh != 0;", "*grown = false;"),
     # ---- graded cells ----
     Fault("graded: diagonals on an edge of the cell", ["core_graded_cell", "core_graded_trees"],
           "(common & 0xffffff) != 0 || (faces & (faces - 1)) != 0;", "(common & 0xffffff) != 0;"),

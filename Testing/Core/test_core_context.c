@@ -314,7 +314,8 @@ static void test_statistics(void** state)
   CORE_CHECK(s->smoothing_length_min == 1.3 && s->smoothing_length_max == 1.3, "smoothing length");
   CORE_CHECK(s->virtual_cells == s->lattice_cells[0] * s->lattice_cells[1] * s->lattice_cells[2],
     "virtual cells");
-  CORE_CHECK(s->cells_used == s->seed_cells - s->seed_cells_not_intersected && s->cells_used > 0,
+  const int64_t hits = s->seed_cells - s->seed_cells_not_intersected;
+  CORE_CHECK(hits > 0 && hits <= s->cells_used && s->cells_used <= s->seed_cells,
     "%lld cells of %lld used", (long long)s->cells_used, (long long)s->seed_cells);
   CORE_CHECK(s->triangles_before_trimming >= s->cells_used, "triangles before trimming");
   CORE_CHECK(s->correction_max >= s->correction_mean && s->correction_mean > 0 &&

@@ -227,11 +227,15 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(ARRAYS, correction_length), AT(ARRAYS, residual), AT(ARRAYS, boundary_flag),
   AT(ARRAYS, iso_value_array), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };
 
+/* Of the surface and the counts of cells that go with it. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)
 {
   mcor_surface surface = core_extract(context, &call->input, &call->options);
+  const mcor_statistics* s = &surface.statistics;
   CORE_CHECK(surface.triangle_count > 0, "%s: no triangles", step);
-  const uint64_t hash = core_hash(&surface);
+  CORE_CHECK(s->seed_cells > s->seed_cells_not_intersected, "%s: no seeds", step);
+  const uint64_t hash = core_hash(&surface) + 1000003 * (uint64_t)s->seed_cells +
+    7919 * (uint64_t)s->seed_cells_not_intersected + (uint64_t)s->cells_used;
   mcor_free_surface(&surface);
   return hash;
 }

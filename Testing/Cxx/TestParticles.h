@@ -211,8 +211,7 @@ inline bool SameSurface(vtkPolyData* a, vtkPolyData* b)
   return same;
 }
 
-/** Bitwise, and of the same names in the same order; says what differs. Seed cells apart: cells
- * that are kept are examined, too. */
+/** Bitwise, and of the same names in the same order; says what differs. */
 inline bool SameFieldData(vtkFieldData* a, vtkFieldData* b)
 {
   bool same = a->GetNumberOfArrays() == b->GetNumberOfArrays();
@@ -221,9 +220,8 @@ inline bool SameFieldData(vtkFieldData* a, vtkFieldData* b)
     auto* text = vtkStringArray::SafeDownCast(a->GetAbstractArray(i));
     auto* otherText = vtkStringArray::SafeDownCast(b->GetAbstractArray(i));
     same = !std::strcmp(a->GetAbstractArray(i)->GetName(), b->GetAbstractArray(i)->GetName()) &&
-      (!std::strncmp(a->GetAbstractArray(i)->GetName(), "SeedCells", 9) ||
-        SameValues(a->GetArray(i), b->GetArray(i))) &&
-      !text == !otherText && (!text || text->GetValue(0) == otherText->GetValue(0));
+      SameValues(a->GetArray(i), b->GetArray(i)) && !text == !otherText &&
+      (!text || text->GetValue(0) == otherText->GetValue(0));
     if (!same)
     {
       std::cerr << "field data differs: " << a->GetAbstractArray(i)->GetName() << std::endl;

@@ -5,6 +5,8 @@
 
 #include "mcor_box.h"
 
+#include <stdlib.h>
+
 /* The first size has the smallest cubes of which no more than this many cover the lattice. */
 #define MCOR_FIRST_CUBES 32768
 
@@ -29,8 +31,45 @@ static uint64_t mcor_cube_total(const mcor_cubes* cubes)
   return (uint64_t)cubes->n[0] * (uint64_t)cubes->n[1] * (uint64_t)cubes->n[2];
 }
 
-/* States of the cubes whose keys are the block keys now, and which of them are inactive. */
-static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor_cubes* cubes)
+/* Blocks that are there because they are kept, in cubes that are inactive now, become void: as if
+ * they were not there. children: the first keys of those that became the blocks. */
+static mcor_status mcor_void_kept(mcor_context* context, int children)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  const size_t count = (size_t)bricks->block_count, keys = (size_t)children;
+  cl_int* index = malloc((keys + 1) * sizeof *index);
+  uint8_t* states = malloc(count + 1);
+  bool* divided = calloc(count + 1, sizeof *divided);
+  const bool complete = index && states && divided;
+  mcor_status status = complete
+    ? mcor_read(context, &bricks->child_index, 0, index, keys * sizeof *index)
+    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  if (status == MCOR_OK)
+  {
+    status = mcor_read(context, &bricks->block_states, 0, states, count);
+  }
+  for (size_t i = 0; status == MCOR_OK && i < keys; ++i)
+  {
+    divided[index[i]] = true;
+  }
+  for (size_t i = 0; status == MCOR_OK && i < count; ++i)
+  {
+    states[i] = divided[i] ? states[i] : MCOR_VOID;
+  }
+  if (status == MCOR_OK)
+  {
+    status = mcor_write(context, &context->bricks.block_states, states, count);
+  }
+  free(index);
+  free(states);
+  free(divided);
+  return status;
+}
+
+/* States of the cubes whose keys are the block keys now, and which of them are inactive. children:
+ * see mcor_void_kept, 0 where no blocks are kept. */
+static mcor_status mcor_test_cubes(
+  mcor_context* context, double iso, const mcor_cubes* cubes, int children)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count;
@@ -44,58 +83,59 @@ static mcor_status mcor_test_cubes(mcor_context* context, double iso, const mcor
     MCOR_BUFFER(&bricks->block_states)));
   MCOR_TRY(
     mcor_void_cubes(context, cubes->n[0], cubes->n[1], MCOR_BLOCK_CUBES << cubes->doublings));
+  if (children > 0)
+  {
+    MCOR_TRY(mcor_void_kept(context, children));
+  }
   return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
     MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),
     MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Replaces the cubes by the parts of those that are active, and by the blocks `kept` where these
- * are blocks already. */
-static mcor_status mcor_divide_cubes(
-  mcor_context* context, const mcor_cubes* cubes, const mcor_buffer* kept, int kept_count)
+/* Replaces the cubes by the *children parts of those that are active, and by the blocks `kept` where
+ * these are blocks already. */
+static mcor_status mcor_divide_cubes(mcor_context* context, const mcor_cubes* cubes,
+  const mcor_buffer* kept, int kept_count, int* children)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer *counts = &bricks->child_counts, *keys = &bricks->child_keys,
               *index_of = &bricks->child_index;
   const mcor_cubes finer = mcor_cubes_of(context, cubes->doublings - 1);
   const int count = bricks->block_count, added = finer.doublings == 0 ? kept_count : 0;
-  int children;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_BUFFER(&bricks->inactive), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]),
     MCOR_INT(finer.n[2]), MCOR_BUFFER(counts)));
-  MCOR_TRY(mcor_scan(context, counts, count, &children));
-  MCOR_RETURN_IF((int64_t)children + added > INT32_MAX / MCOR_BLOCK_BRICKS, context,
+  MCOR_TRY(mcor_scan(context, counts, count, children));
+  MCOR_RETURN_IF((int64_t)*children + added > INT32_MAX / MCOR_BLOCK_BRICKS, context,
     MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: there may be surface in %lld cubes of %d cells along each "
     "axis, and %d is the limit. Use a larger cube size.",
-    (long long)children + added, MCOR_BLOCK_CUBES << finer.doublings,
+    (long long)*children + added, MCOR_BLOCK_CUBES << finer.doublings,
     INT32_MAX / MCOR_BLOCK_BRICKS);
-  MCOR_TRY(mcor_reserve(context, keys, ((size_t)children + (size_t)added) * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, keys, ((size_t)*children + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]), MCOR_BUFFER(counts),
     MCOR_BUFFER(keys)));
   MCOR_TRY(mcor_copy(
-    context, kept, keys, (size_t)children * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
-  return mcor_unique(context, keys, children + added, mcor_cube_total(&finer), &bricks->block_keys,
+    context, kept, keys, (size_t)*children * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
+  return mcor_unique(context, keys, *children + added, mcor_cube_total(&finer), &bricks->block_keys,
     index_of, &bricks->block_count);
 }
 
-/* Bits of bricks for the blocks: those are kept of which nodes are known. */
+/* Requests the bricks of which nodes are known. */
 mcor_status mcor_request_known(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
-  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   return MCOR_LAUNCH(context, "mcor_block_request_known", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
 
-/* The active blocks, and those of bricks that exist. iso: relative to A0. */
+/* The active blocks, and those of bricks that are known, which are requested. iso: relative to A0. */
 mcor_status mcor_make_blocks(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -105,6 +145,7 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
     cubes = mcor_cubes_of(context, cubes.doublings + 1);
   }
   mcor_buffer kept = { 0 };
+  int children = 0;
   const int kept_count = bricks->now.count > 0 ? bricks->block_count : 0;
   if (kept_count > 0)
   {
@@ -122,14 +163,17 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
   for (; cubes.doublings > 0 && status == MCOR_OK;
        cubes = mcor_cubes_of(context, cubes.doublings - 1))
   {
-    status = mcor_test_cubes(context, iso, &cubes);
+    status = mcor_test_cubes(context, iso, &cubes, 0);
     if (status == MCOR_OK)
     {
-      status = mcor_divide_cubes(context, &cubes, &kept, kept_count);
+      status = mcor_divide_cubes(context, &cubes, &kept, kept_count, &children);
     }
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_test_cubes(context, iso, &cubes));
+  MCOR_TRY(mcor_test_cubes(context, iso, &cubes, kept_count > 0 ? children : 0));
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
+  MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));
   return mcor_request_known(context);
 }

@@ -117,7 +117,7 @@ mcor_status mcor_void_bricks(mcor_context* context)
         (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
         MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
         MCOR_BUFFER(&bricks->block_keys), MCOR_NEAR_ARGS(&context->box),
-        MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits));
+        MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
 }
 
 /* One more node than cells. */
@@ -149,15 +149,16 @@ mcor_status mcor_clip_used(mcor_context* context)
   return context->box.is_part ? mcor_clip(context, used, used, MCOR_BOX_RING) : MCOR_OK;
 }
 
-mcor_status mcor_count_cells(mcor_context* context, const mcor_buffer* cells, int* count)
+mcor_status mcor_count_cells(
+  mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count)
 {
   mcor_buffer* clipped = &context->box.clipped;
   if (!context->box.is_part)
   {
-    return mcor_count_bits(context, cells, context->bricks.now.count, count);
+    return mcor_count_bits(context, cells, within, context->bricks.now.count, count);
   }
   MCOR_TRY(mcor_clip(context, cells, clipped, 0));
-  return mcor_count_bits(context, clipped, context->bricks.now.count, count);
+  return mcor_count_bits(context, clipped, within, context->bricks.now.count, count);
 }
 
 /* ---- Particles ---- */

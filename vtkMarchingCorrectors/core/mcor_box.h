@@ -60,10 +60,11 @@ mcor_status mcor_void_bricks(mcor_context* context);
 /* Extraction: nodes off the box and its ring, of evaluated bricks, are no more valid; so that pairs
  * do not grow there. */
 mcor_status mcor_void_nodes(mcor_context* context);
-/* Leaves used cells of the box and its ring; counts owned ones of any cells, and owned
- * triangles. */
+/* Leaves used cells of the box and its ring; counts owned ones of any cells that are within others,
+ * and owned triangles. */
 mcor_status mcor_clip_used(mcor_context* context);
-mcor_status mcor_count_cells(mcor_context* context, const mcor_buffer* cells, int* count);
+mcor_status mcor_count_cells(
+  mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 mcor_status mcor_mark_owned(mcor_context* context, int* count);
 
 mcor_status mcor_trim_owned(

@@ -32,9 +32,9 @@ void mcor_release_bricks(mcor_context* context)
 {
   mcor_bricks* b = &context->bricks;
   MCOR_RELEASE(context, &b->block_keys, &b->block_buckets, &b->block_states, &b->inactive,
-    &b->states, &b->bits, &b->base, &b->neighbours, &b->placed, &b->slot_of, &b->need, &b->fresh,
-    &b->bit_counts, &b->child_counts, &b->child_keys, &b->child_index, &b->regions, &b->pair_cells,
-    &b->found);
+    &b->states, &b->bits, &b->base, &b->seed_bits, &b->seeds, &b->neighbours, &b->placed,
+    &b->slot_of, &b->need, &b->fresh, &b->bit_counts, &b->child_counts, &b->child_keys,
+    &b->child_index, &b->regions, &b->pair_cells, &b->found);
   mcor_release_brick_data(context, &b->now);
 }
 
@@ -44,8 +44,10 @@ static mcor_status mcor_fill_bricks(
 {
   mcor_bricks* bricks = &context->bricks;
   MCOR_TRY(mcor_reserve_bricks(context, &bricks->now, count));
+  MCOR_TRY(mcor_reserve(context, &bricks->seeds, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_MEDIUM, words, MCOR_BRICK_ARGS(context),
-    MCOR_BUFFER(&bricks->now.bricks)));
+    MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->seeds)));
   if (last->count > 0)
   {
     MCOR_TRY(

@@ -428,7 +428,7 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_clip", MCOR_MEDIUM, graded->count,
     MCOR_LEAF_BOX_ARGS(context, box), MCOR_INT(graded->count), MCOR_BUFFER(&mesh->used),
     MCOR_BUFFER(clipped)));
-  MCOR_TRY(mcor_count_bits(context, clipped, graded->count, &used));
+  MCOR_TRY(mcor_count_bits(context, clipped, clipped, graded->count, &used));
   s->flat_caps += caps;
   s->cells_used += used;
   s->seed_cells_not_intersected += 64 * (int64_t)graded->count - used;

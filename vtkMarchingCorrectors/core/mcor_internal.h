@@ -109,6 +109,7 @@ typedef struct mcor_bricks
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
+  mcor_buffer seed_bits, seeds; /* of complete seeds: bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   mcor_buffer neighbours; /* see mcor_brick_neighbours */
   bool neighbours_valid;
@@ -411,7 +412,8 @@ mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
-mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks, int count, int* total);
+mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks,
+  const mcor_buffer* within, int count, int* total);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);

@@ -35,30 +35,35 @@ static mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
   return flag & 2 ? mcor_append_bricks(context) : MCOR_OK;
 }
 
+/* Of the seed cells, which have been counted as not intersected, those that are used. */
+static mcor_status mcor_count_hits(mcor_context* context, const mcor_buffer* seeds)
+{
+  int hits;
+  MCOR_TRY(mcor_count_cells(context, &context->mesh.used, seeds, &hits));
+  context->statistics->seed_cells_not_intersected -= hits;
+  return MCOR_OK;
+}
+
 /* Evaluates and grows until nothing is new. Ends with the used cells. */
 static mcor_status mcor_find_cells(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
-  mcor_statistics* statistics = context->statistics;
   const bool pairs = mcor_uses_pairs(context);
-  int seeds = 0, hits, used;
+  int used;
   mcor_end_rounds(context);
-  MCOR_TRY(mcor_count_cells(context, &bricks->now.cells, &seeds));
-  statistics->seed_cells += seeds;
   for (bool first = true, grown = true; grown; first = false)
   {
     MCOR_TRY(mcor_find_neighbours(context));
     MCOR_TRY(mcor_evaluate_nodes(context));
     MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
     MCOR_TRY(pairs ? mcor_void_nodes(context) : MCOR_OK);
-    if (first)
+    if (first && pairs) /* before other cells join them */
     {
       MCOR_TRY(mcor_classify_cells(context));
-      MCOR_TRY(mcor_count_cells(context, &mesh->used, &hits));
-      statistics->seed_cells_not_intersected += seeds - hits;
+      MCOR_TRY(mcor_count_hits(context, &bricks->now.cells));
     }
-    ++statistics->march_rounds;
+    ++context->statistics->march_rounds;
     MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
     MCOR_TRY(pairs && !grown ? mcor_exchange_cells(context, &grown) : MCOR_OK);
   }
@@ -68,8 +73,9 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
     MCOR_TRY(mcor_find_neighbours(context));
   }
   MCOR_TRY(mcor_classify_cells(context));
-  MCOR_TRY(mcor_count_cells(context, &mesh->used, &used));
-  statistics->cells_used += used;
+  MCOR_TRY(pairs ? MCOR_OK : mcor_count_hits(context, &bricks->seeds));
+  MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
+  context->statistics->cells_used += used;
   return MCOR_OK;
 }
 

@@ -30,12 +30,23 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
-/* Places the bricks that the regions leave uncertain; lists these regions. */
+static mcor_status mcor_count_seeds(mcor_context* context, const mcor_buffer* seeds)
+{
+  int count;
+  MCOR_TRY(mcor_count_cells(context, seeds, seeds, &count));
+  context->statistics->seed_cells += count;
+  context->statistics->seed_cells_not_intersected += count;
+  return MCOR_OK;
+}
+
+/* Places the bricks that the regions leave uncertain, which are the seeds, and those that are known
+ * from earlier iso values; lists these regions. */
 static mcor_status mcor_test_regions(
   mcor_context* context, double iso, mcor_buffer* list, int* listed)
 {
   mcor_bricks* bricks = &context->bricks;
   const int regions = bricks->block_count * MCOR_BLOCK_REGIONS;
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   mcor_buffer* list_count = &bricks->found;
   MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
   MCOR_TRY(mcor_reserve(context, list, (size_t)regions * sizeof(cl_int)));
@@ -44,11 +55,13 @@ static mcor_status mcor_test_regions(
     MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
     MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
     MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states),
-    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
+    MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
   cl_int count;
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
   *listed = count;
   MCOR_TRY(mcor_void_bricks(context));
+  MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0, words * sizeof(cl_uint)));
+  MCOR_TRY(mcor_request_known(context));
   return mcor_place_bricks(context);
 }
 
@@ -59,6 +72,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   mcor_buffer* list = &bricks->regions;
   int listed;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
+  MCOR_TRY(mcor_count_seeds(context, &bricks->seeds));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
   /* One item per region where one gathers for many lanes, else one per brick. */
   const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
@@ -67,6 +81,8 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_MEDIUM,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
@@ -109,7 +125,8 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
   MCOR_TRY(mcor_make_blocks(context, iso));
   if (mcor_uses_pairs(context))
   {
-    return mcor_seed_pairs(context, iso);
+    MCOR_TRY(mcor_seed_pairs(context, iso));
+    return mcor_count_seeds(context, &bricks->now.cells);
   }
   MCOR_TRY(mcor_place_complete(context, iso));
   return mcor_fill(context, &bricks->now.cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));

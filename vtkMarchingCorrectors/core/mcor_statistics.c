@@ -83,8 +83,9 @@ mcor_status mcor_finish_statistics(mcor_context* context)
     s->virtual_cells *= s->lattice_cells[a];
   }
   s->bricks = context->bricks.now.count;
+  const mcor_buffer* known = &context->bricks.now.known;
   int nodes = 0;
-  MCOR_TRY(mcor_count_bits(context, &context->bricks.now.known, context->bricks.now.count, &nodes));
+  MCOR_TRY(mcor_count_bits(context, known, known, context->bricks.now.count, &nodes));
   s->nodes_evaluated = nodes;
   s->correction_mean = n > 0 ? context->correction_sum / n : 0;
   s->correction_deviation = n > 0

@@ -101,8 +101,9 @@ __kernel void mcor_brick_count(
 }
 
 /* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of
- * each brick to its slot. */
-__kernel void mcor_brick_fill(MCOR_BRICK_PARAMS, __global int4* bricks)
+ * each brick to its slot, and its cells where it is chosen as seed. */
+__kernel void mcor_brick_fill(
+  MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
   const int word = get_global_id(0);
   if (word >= block_count * MCOR_BLOCK_WORDS)
@@ -113,7 +114,8 @@ __kernel void mcor_brick_fill(MCOR_BRICK_PARAMS, __global int4* bricks)
   for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
   {
     const int b = 31 - (int)clz(bits & -bits);
-    bricks[slot++] = mcor_brick_of_number(block_keys, blocks_x, blocks_y, word * 32 + b);
+    bricks[slot] = mcor_brick_of_number(block_keys, blocks_x, blocks_y, word * 32 + b);
+    seeds[slot++] = seed_bits[word] >> b & 1 ? ~0UL : 0;
   }
 }
 

@@ -350,12 +350,13 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
 }
 
 /* One work-item = one mask. Writes its number of bits. */
-__kernel void mcor_march_bits(const int count, __global const ulong* masks, __global int* bits)
+__kernel void mcor_march_bits(
+  const int count, __global const ulong* masks, __global const ulong* within, __global int* bits)
 {
   const int i = get_global_id(0);
   if (i < count)
   {
-    bits[i] = (int)popcount(masks[i]);
+    bits[i] = (int)popcount(masks[i] & within[i]);
   }
 }
 #endif

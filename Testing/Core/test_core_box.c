@@ -384,6 +384,7 @@ static void given_globals(void** state)
   sort_triangles(&all);
   assert_int_equal(all.count, whole.count);
   assert_memory_equal(all.bytes, whole.bytes, (size_t)all.count * all.width);
+  input = input_of(&set, attributes);
   input.attribute_count = 2;
   set_box(&options, cuts + 3, none);
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);

@@ -6,30 +6,21 @@
  * numbers, no triangle that names a point twice, and the same bits from a context that keeps what it
  * can from call to call as from one that keeps nothing. */
 
-#include "mcor.h"
+#include "fuzz.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
-
 #define FUZZ_PARTICLES 48
-typedef struct fuzz_bytes
-{
-  const uint8_t* at;
-  size_t left;
-} fuzz_bytes;
-
 /* The input under way, to be written to the file FUZZ_FOUND of the environment where a check fails:
  * OpenCL drivers take the signal by which the fuzzer would learn of it. */
 static fuzz_bytes fuzz_input;
 
-static void fuzz_fail(const char* condition, int line)
+void fuzz_fail(const char* condition, const char* where, int line)
 {
-  fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, line, condition);
+  fprintf(stderr, "%s:%d: not true: %s\n", where, line, condition);
   const char* name = getenv("FUZZ_FOUND");
   FILE* file = name ? fopen(name, "wb") : NULL;
   if (file)
@@ -40,16 +31,7 @@ static void fuzz_fail(const char* condition, int line)
   abort();
 }
 
-#define FUZZ_CHECK(condition)                                                                      \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      fuzz_fail(#condition, __LINE__);                                                             \
-    }                                                                                              \
-  } while (0)
-
-static unsigned fuzz_byte(fuzz_bytes* bytes)
+unsigned fuzz_byte(fuzz_bytes* bytes)
 {
   if (bytes->left == 0)
   {
@@ -60,14 +42,14 @@ static unsigned fuzz_byte(fuzz_bytes* bytes)
 }
 
 /* Mostly ordinary, now and then a number that no one should use. */
-static double fuzz_scale(fuzz_bytes* bytes)
+double fuzz_scale(fuzz_bytes* bytes)
 {
   static const double scales[] = { 1e-30, 1e30, 1e-9, 1e9, 1e-300, 1e300, 1e-20, 1e20 };
   const unsigned b = fuzz_byte(bytes);
   return b < 248 ? 1 : scales[b - 248];
 }
 
-static double fuzz_positive(fuzz_bytes* bytes)
+double fuzz_positive(fuzz_bytes* bytes)
 {
   static const double odd[] = { 0, -1, NAN, INFINITY, 1e-40, 1e38, 1e-7, 1e4 };
   const unsigned b = fuzz_byte(bytes);
@@ -75,7 +57,7 @@ static double fuzz_positive(fuzz_bytes* bytes)
 }
 
 /* A few values only, so that equal ones are frequent. */
-static double fuzz_value(fuzz_bytes* bytes)
+double fuzz_value(fuzz_bytes* bytes)
 {
   static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 0.1, 1e300 };
   const unsigned b = fuzz_byte(bytes);
@@ -88,16 +70,6 @@ static double fuzz_threshold(fuzz_bytes* bytes)
   const unsigned b = fuzz_byte(bytes);
   return b < 252 ? values[b % 8] : b == 252 ? -1 : b == 253 ? NAN : b == 254 ? 1e30 : INFINITY;
 }
-
-/* One call; every array is a heap block of exactly its size. */
-typedef struct fuzz_call
-{
-  mcor_input input;
-  mcor_options options;
-  mcor_array attributes[2];
-  double iso[2];
-  void* arrays[7];
-} fuzz_call;
 
 static double* fuzz_array(fuzz_call* call, int slot, size_t count)
 {
@@ -199,7 +171,7 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   call->iso[1] = fuzz_value(bytes);
 }
 
-static int fuzz_finite(const double* values, int64_t count)
+int fuzz_finite(const double* values, int64_t count)
 {
   for (int64_t i = 0; values && i < count; ++i)
   {
@@ -253,7 +225,7 @@ static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
   }
 }
 
-static void fuzz_check_bits(const void* a, const void* b, size_t bytes)
+void fuzz_check_bits(const void* a, const void* b, size_t bytes)
 {
   FUZZ_CHECK(!a == !b);
   FUZZ_CHECK(!a || bytes == 0 || memcmp(a, b, bytes) == 0);
@@ -262,6 +234,9 @@ static void fuzz_check_bits(const void* a, const void* b, size_t bytes)
 static void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
 {
   FUZZ_CHECK(a->point_count == b->point_count && a->triangle_count == b->triangle_count);
+  const mcor_statistics *p = &a->statistics, *q = &b->statistics;
+  FUZZ_CHECK(p->seed_cells == q->seed_cells && p->cells_used == q->cells_used);
+  FUZZ_CHECK(p->seed_cells_not_intersected == q->seed_cells_not_intersected);
   const size_t n = (size_t)a->point_count, t = (size_t)a->triangle_count;
   fuzz_check_bits(a->points, b->points, n * 3 * sizeof(double));
   fuzz_check_bits(a->triangles, b->triangles, t * 3 * sizeof(int32_t));
@@ -302,7 +277,7 @@ static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mc
 
 /* Contexts are kept, two for each device program: to make one takes longer than a call. `forgetful`:
  * one that keeps nothing from its last call. */
-static mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
+mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
 {
   static mcor_context* contexts[2][2][3][2];
   const mcor_options* o = &call->options;
@@ -457,6 +432,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   fuzz_particles(&bytes, &call);
   fuzz_parts(rules, &call);
   const unsigned change = fuzz_byte(&bytes) + (unsigned)size;
+  const unsigned rooms = fuzz_byte(&bytes);
+  fuzz_regions(rooms, &bytes, &call);
   call.input.particles_version = call.input.scalar_version = version += 2;
   fuzz_compare(&call);
   if (size % 4 == 1)
@@ -473,6 +450,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   }
   fuzz_compare(&changed);
   fuzz_compare(&call);
+  fuzz_other_calls(rooms, &bytes, &call);
   for (size_t i = 0; i < sizeof changed.arrays / sizeof changed.arrays[0]; ++i)
   {
     free(changed.arrays[i]);

@@ -1,0 +1,55 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef fuzz_h
+#define fuzz_h
+
+#include "mcor.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+typedef struct fuzz_bytes
+{
+  const uint8_t* at;
+  size_t left;
+} fuzz_bytes;
+
+/* Writes the input under way, and aborts. */
+void fuzz_fail(const char* condition, const char* where, int line);
+
+#define FUZZ_CHECK(condition)                                                                      \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      fuzz_fail(#condition, __FILE__, __LINE__);                                                   \
+    }                                                                                              \
+  } while (0)
+
+/* The next byte, 0 at the end; and numbers made of it, odd ones among them. */
+unsigned fuzz_byte(fuzz_bytes* bytes);
+double fuzz_scale(fuzz_bytes* bytes);
+double fuzz_positive(fuzz_bytes* bytes);
+double fuzz_value(fuzz_bytes* bytes);
+
+/* One call; every array is a heap block of exactly its size. */
+typedef struct fuzz_call
+{
+  mcor_input input;
+  mcor_options options;
+  mcor_array attributes[2];
+  double iso[2];
+  void* arrays[7];
+} fuzz_call;
+
+mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
+int fuzz_finite(const double* values, int64_t count);
+void fuzz_check_bits(const void* a, const void* b, size_t bytes);
+
+/* fuzz_rooms.c. Sets box, period and walls; then globals, probe and derivatives of the same call. */
+void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
+void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
+
+#endif

@@ -1,0 +1,187 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The rooms beside the phases: box, period, walls, globals, probe, derivatives. */
+
+#include "fuzz.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FUZZ_POINTS 24
+
+static double fuzz_side(fuzz_bytes* bytes)
+{
+  static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 1e300, -1e300 };
+  const unsigned b = fuzz_byte(bytes);
+  return b < 248 ? 0.25 * (int)(b % 24) - 1 : odd[b - 248];
+}
+
+void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
+{
+  static const double shares[] = { 0.5, 0.1, 0.9, 1e-3, 0.999999, 1, -1, NAN };
+  mcor_options* o = &call->options;
+  o->has_box = rooms & 1;
+  for (int a = 0; a < 3 && o->has_box; ++a)
+  {
+    o->box[2 * a] = fuzz_side(bytes);
+    o->box[2 * a + 1] = o->box[2 * a] + fabs(fuzz_side(bytes));
+  }
+  for (int a = 0; a < 3 && rooms >> 1 & 1; ++a)
+  {
+    const double from = fuzz_side(bytes), length = fuzz_side(bytes);
+    o->periodic[2 * a] = length < 1 ? 0 : from;
+    o->periodic[2 * a + 1] = length < 1 ? 0 : from + length;
+  }
+  o->wall_share = rooms >> 2 & 1 ? shares[fuzz_byte(bytes) % 8] : 0;
+}
+
+static void fuzz_check_failure(const mcor_context* context, mcor_status status)
+{
+  FUZZ_CHECK(status > MCOR_OK && status < MCOR_CANCELLED && status != MCOR_DEVICE_ERROR);
+  FUZZ_CHECK(mcor_last_error(context)[0] != '\0');
+}
+
+/* A run with globals measured of its own input is a run without. */
+static void fuzz_globals(const fuzz_call* call)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  mcor_globals globals;
+  mcor_surface surfaces[2] = { { 0 } };
+  const mcor_status measured =
+    mcor_measure_globals(context, &call->input, &call->options, &globals);
+  if (measured != MCOR_OK)
+  {
+    fuzz_check_failure(context, measured);
+    FUZZ_CHECK(!globals.components && globals.fluid_particles == 0);
+    return;
+  }
+  mcor_options options = call->options;
+  mcor_status status[2];
+  for (int given = 0; given < 2; ++given)
+  {
+    options.globals = given ? &globals : NULL;
+    status[given] = mcor_extract(context, &call->input, &options, &surfaces[given]);
+  }
+  FUZZ_CHECK(status[0] == status[1]);
+  FUZZ_CHECK(surfaces[0].point_count == surfaces[1].point_count);
+  fuzz_check_bits(
+    surfaces[0].points, surfaces[1].points, (size_t)surfaces[0].point_count * 3 * sizeof(double));
+  fuzz_check_bits(surfaces[0].triangles, surfaces[1].triangles,
+    (size_t)surfaces[0].triangle_count * 3 * sizeof(int32_t));
+  for (int given = 0; given < 2; ++given)
+  {
+    mcor_free_surface(&surfaces[given]);
+  }
+  mcor_free_globals(&globals);
+}
+
+static void fuzz_check_samples(const fuzz_call* call, const mcor_samples* s)
+{
+  FUZZ_CHECK(fuzz_finite(s->weight_sum, s->count));
+  FUZZ_CHECK(fuzz_finite(s->weight_gradient, 3 * s->count));
+  FUZZ_CHECK(s->attribute_count == call->input.attribute_count);
+  for (int64_t i = 0; i < s->count; ++i)
+  {
+    FUZZ_CHECK(s->valid[i] <= 1);
+    FUZZ_CHECK(!s->valid[i] || s->weight_sum[i] >= call->options.node_threshold);
+  }
+  for (int a = 0; a < s->attribute_count; ++a)
+  {
+    const int64_t values = s->count * (a ? 3 : 1);
+    FUZZ_CHECK(!s->values[a] == (s->attribute_not_finite[a] >= 0));
+    FUZZ_CHECK(fuzz_finite(s->values[a], values));
+  }
+}
+
+/* The field at points of which some are particles', some odd; the same bits of one by itself. */
+static void fuzz_probe(fuzz_bytes* bytes, const fuzz_call* call)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  const size_t n = fuzz_byte(bytes) % (FUZZ_POINTS + 1);
+  const double* particles = call->input.positions.data;
+  double* at = malloc(3 * n * sizeof *at + (n == 0)); /* exactly */
+  FUZZ_CHECK(at);
+  for (size_t i = 0; i < 3 * n; ++i)
+  {
+    const unsigned b = fuzz_byte(bytes);
+    const size_t from = 3 * (b % (size_t)(call->input.count + 1)) + i % 3;
+    at[i] = call->input.count > 0 && b < 200 && b % (size_t)(call->input.count + 1) > 0
+      ? particles[from - 3]
+      : fuzz_side(bytes);
+  }
+  mcor_array points = { .data = at, .type = MCOR_FLOAT64, .components = 3 };
+  mcor_samples all, one;
+  const mcor_status status =
+    mcor_probe(context, &call->input, &call->options, &points, (int64_t)n, &all);
+  if (status != MCOR_OK)
+  {
+    fuzz_check_failure(context, status);
+    FUZZ_CHECK(!all.weight_sum && all.count == 0);
+    free(at);
+    return;
+  }
+  FUZZ_CHECK(all.count == (int64_t)n);
+  fuzz_check_samples(call, &all);
+  if (n > 0)
+  {
+    points.data = at + 3 * (n - 1);
+    FUZZ_CHECK(mcor_probe(context, &call->input, &call->options, &points, 1, &one) == MCOR_OK);
+    fuzz_check_bits(one.weight_sum, all.weight_sum + n - 1, sizeof(double));
+    fuzz_check_bits(one.valid, all.valid + n - 1, 1);
+    mcor_free_samples(&one);
+  }
+  mcor_free_samples(&all);
+  free(at);
+}
+
+static void fuzz_derive(fuzz_bytes* bytes, const fuzz_call* call)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  mcor_derivatives d;
+  const mcor_gradient form = (mcor_gradient)(fuzz_byte(bytes) % 3);
+  const mcor_status status = mcor_derive(context, &call->input, &call->options, form, &d);
+  FUZZ_CHECK(status != MCOR_OK || (unsigned)form <= MCOR_GRADIENT_STANDARD);
+  if (status != MCOR_OK)
+  {
+    fuzz_check_failure(context, status);
+    FUZZ_CHECK(!d.gradients && d.count == 0);
+    return;
+  }
+  FUZZ_CHECK(d.count == call->input.count);
+  for (int a = 0; a < d.attribute_count; ++a)
+  {
+    const int64_t values = 3 * d.count * (a ? 3 : 1);
+    FUZZ_CHECK(!d.gradients[a] == (d.attribute_not_finite[a] >= 0));
+    for (int64_t i = 0; d.gradients[a] && i < values; ++i)
+    {
+      FUZZ_CHECK(!isnan(d.gradients[a][i]));
+    }
+  }
+  if (d.attribute_count > 1 && d.gradients[1])
+  {
+    double* q = malloc(((size_t)d.count + 1) * sizeof *q);
+    const mcor_flow flow = { .q_criterion = q };
+    FUZZ_CHECK(q && mcor_decompose_gradients(d.gradients[1], d.count, &flow) == MCOR_OK);
+    free(q);
+  }
+  mcor_free_derivatives(&d);
+}
+
+void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
+{
+  call->input.particles_version = call->input.scalar_version = 0;
+  if (rooms >> 3 & 1)
+  {
+    fuzz_globals(call);
+  }
+  if (rooms >> 4 & 1)
+  {
+    fuzz_probe(bytes, call);
+  }
+  if (rooms >> 5 & 1)
+  {
+    fuzz_derive(bytes, call);
+  }
+}

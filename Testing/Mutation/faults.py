@@ -30,7 +30,7 @@ FAULTS = [
           "&t->keys, &t->distinct, &t->index,", "&t->distinct, &t->index,"),
     # ---- particles and volumes ----
     Fault("estimate: the smoothing length is 8 % too large", ["core_grid"],
-          "*estimate = 1.3 * job.spacing", "*estimate = 1.4 * job.spacing"),
+          "*estimate = 1.3 * mcor_median_of", "*estimate = 1.4 * mcor_median_of"),
     Fault("volumes: those computed of solids are off", ["core_grid"],
           "weight[i] = solid[order[i]] ? (real)0 : w;",
           "weight[i] = solid[order[i]] ? (real)0 : w; trim_weight[i] = solid[order[i]] ? mass[i] : w;"),

@@ -232,6 +232,12 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const auto self = static_cast<std::size_t>(ranks.GetRank());
   const vtkSPHRanksBox& box = partition.GetBox(ranks.GetRank());
   std::copy(box.begin(), box.end(), route.Box);
+  if (box[0] >= box[1] || box[2] >= box[3] || box[4] >= box[5])
+  {
+    // More ranks than bricks: to the core, which wants a box, one where there is nothing.
+    const double nowhere[6] = { 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 };
+    std::copy(nowhere, nowhere + 6, route.Box);
+  }
   route.OwnedParticles = totals[self];
   route.Particles = totals[count + self];
   return route;

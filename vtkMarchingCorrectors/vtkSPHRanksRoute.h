@@ -19,7 +19,7 @@ class vtkSPHRanks;
 struct vtkSPHRanksRoute
 {
   std::vector<std::vector<vtkIdType>> To; ///< indices of the particles that each rank gets
-  double Box[6];                          ///< this rank's, as in mcor_options; may be empty
+  double Box[6];                          ///< this rank's, as in mcor_options; may hold nothing
   std::int64_t OwnedParticles;            ///< those in its box
   std::int64_t Particles;                 ///< the same and copies
 };

@@ -51,6 +51,10 @@ std::string ComparePoints(vtkPolyData* part, vtkPolyData* whole, std::vector<boo
 {
   vtkPointData *arrays = part->GetPointData(), *expected = whole->GetPointData();
   vtkDataArray* numbers = arrays->GetGlobalIds();
+  if (part->GetNumberOfPoints() == 0)
+  {
+    return ""; // VTK sends no arrays then
+  }
   if (!numbers || std::string(numbers->GetName()) != "GlobalPointIds")
   {
     return "there are no global point ids";
@@ -88,7 +92,7 @@ std::string Compare(const std::vector<vtkSmartPointer<vtkPolyData>>& parts, vtkP
   std::vector<bool> seen(static_cast<std::size_t>(whole->GetNumberOfPoints()), false);
   std::vector<Triangle> triangles, expected;
   AddTriangles(whole, nullptr, expected);
-  if (expected.size() < 500)
+  if (expected.size() < 200)
   {
     return "only " + std::to_string(expected.size()) + " triangles to compare with";
   }

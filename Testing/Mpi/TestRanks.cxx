@@ -84,6 +84,28 @@ const std::vector<Case> Cases = {
       f->UseBoxOn();
       f->SetBox(-0.4, 0.51, -10.0, 0.33, -0.2, 10.0);
     } },
+  { "fewer bricks than ranks", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->SetFluidArrayName("ParticleType");
+      f->SetCubeSize(0.12);
+      f->UseBoxOn();
+      f->SetBox(0.0, 3.0, 0.0, 0.96, 0.0, 0.96);
+    } },
+  { "pairs", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourSpeed(f);
+      f->SetSeedModeToPairs();
+    } },
+  { "periods", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->SetCubeSize(0.025);
+      f->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
+    } },
   { "walls", "dam_break_45k",
     [](vtkMarchingCorrectors* f)
     {

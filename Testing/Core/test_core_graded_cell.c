@@ -153,8 +153,13 @@ static void check_pattern(const core_shape* cell, uint32_t index, cell_totals* t
   CORE_CHECK(loops.triangles <= MCOR_GRADED_TRIANGLES, "split %x, above %x: %d triangles",
     cell->split, above, loops.triangles);
   const int count = mcor_graded_triangulate(cell->split, above, triangles);
-  CORE_CHECK(count == loops.triangles && mcor_graded_count(cell->split, above, &flat) == count,
-    "split %x, above %x: %d triangles, not %d", cell->split, above, count, loops.triangles);
+  CORE_CHECK(count == loops.triangles, "split %x, above %x: %d triangles, not %d", cell->split,
+    above, count, loops.triangles);
+  if (index % 8 == 0) /* enough: it adds up lengths of the same loops */
+  {
+    CORE_CHECK(mcor_graded_count(cell->split, above, &flat) == count,
+      "split %x, above %x: not %d triangles", cell->split, above, count);
+  }
   check_triangles(cell, above, next, &loops, triangles, count);
   ++totals->cells;
   totals->flat += flat;
@@ -166,9 +171,9 @@ static void check_pattern(const core_shape* cell, uint32_t index, cell_totals* t
 
 static void check_totals(const cell_totals* totals, int all)
 {
-  print_message(
-    "%lld cells: %lld loops, %lld of two vertices, %lld flat; at most %d vertices, %d in "
-    "a loop, %d loops, %d triangles\n",
+  print_message("%lld cells: %lld loops, %lld of two vertices, %lld flat (in an eighth); at most "
+                "%d vertices, %d in "
+                "a loop, %d loops, %d triangles\n",
     totals->cells, totals->loops, totals->pairs, totals->flat, totals->vertices, totals->longest,
     totals->cell_loops, totals->triangles);
   if (all)

@@ -92,16 +92,17 @@ extern "C"
                               * a cube are those of the field */
   } mcor_topology;
 
-  /* How large the cubes of the virtual grid are. */
+  /* How large the cubes of the virtual grid are. Adaptive: as fine as the particles are, with an edge
+   * of 2^L times the cube size where all particles that reach a brick of 4^3 such cubes have 2^L
+   * times the smallest smoothing length or more; bricks that touch differ by one level at most. The
+   * surface is closed across levels. With one smoothing length for all it is that of uniform cubes,
+   * to the last bit. Where there are several levels, ambiguous faces are as with
+   * MCOR_TOPOLOGY_TABLE, and with a box all particles are evaluated. Not with MCOR_PAIRS, a period,
+   * given globals or point keys. */
   typedef enum mcor_cube_size_mode
   {
     MCOR_CUBES_UNIFORM = 0, /* all alike; the default */
-    MCOR_CUBES_ADAPTIVE =
-      1 /* as fine as the particles are: an edge of 2^L times the cube size where
-                             * all particles that reach a brick of 4^3 such cubes have 2^L times the
-                             * smallest smoothing length or more; bricks that touch differ by one
-                             * level at most. The surface is closed across levels. With one
-                             * smoothing length for all, the same as uniform, to the last bit. */
+    MCOR_CUBES_ADAPTIVE = 1
   } mcor_cube_size_mode;
 
 #define MCOR_CUBE_LEVELS 25 /* of adaptive cubes, 0 to 24 */

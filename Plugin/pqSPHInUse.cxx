@@ -4,6 +4,7 @@
 
 #include "pqCoreUtilities.h"
 #include "pqProxyWidget.h"
+#include "pqUndoStack.h"
 #include "vtkCommand.h"
 #include "vtkSMDocumentation.h"
 #include "vtkSMDoubleVectorProperty.h"
@@ -126,6 +127,7 @@ void pqSPHInUse::showValues()
 // The range is the domain of the list of iso values, which shows it and follows it.
 void pqSPHInUse::lookAhead()
 {
+  SCOPED_UNDO_EXCLUDE(); // nothing that a user did
   const vtkSmartPointer<vtkSMProxy> twin = makeTwin(this->proxy());
   if (!twin)
   {

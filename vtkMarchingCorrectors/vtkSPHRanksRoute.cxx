@@ -159,10 +159,6 @@ public:
       const double volumes = this->ComputesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
       const double nearest = o.nearest_particle ? radius + cubes : 0.0;
       radius = std::max({ radius > 0.0 ? volumes : 0.0, radius > 0.0 ? nearest : 0.0, pairs });
-      // With M'4 a density may be too low, and is refused; to know, the core wants all particles.
-      radius = this->ComputesVolumes && o.sph_kernel == MCOR_M_PRIME_4
-        ? std::numeric_limits<double>::max() / 4
-        : radius;
     }
     return radii;
   }

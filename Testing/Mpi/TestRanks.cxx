@@ -76,6 +76,15 @@ const std::vector<Case> Cases = {
       f->DetectArraysOff();
       f->EstimateSmoothingLengthOn();
     } },
+  { "M'4, computed volumes, scaled", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->DetectArraysOff();
+      f->SetSmoothingLength(0.06);
+      f->SetKernelToMPrime4();
+      f->SetHScaleFactor(0.9);
+    } },
   { "box, preview", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
     {

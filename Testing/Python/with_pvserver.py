@@ -7,7 +7,8 @@ with_pvserver.py SECONDS PVSERVER [ARGUMENT...] -- CLIENT [ARGUMENT...]
 
 The client finds HOST:PORT in MCOR_TEST_SERVER. What the server writes goes to a file, and is shown if
 something fails: a pipe that nobody reads would fill up and stop the server. After SECONDS both are
-ended, with their stacks shown where gdb is there.
+ended, with their stacks shown where gdb is there; then this waits for ctest, which is to count it as a
+test whose time ran out: see TIMEOUT_AFTER_MATCH.
 """
 import os
 import shutil
@@ -69,7 +70,6 @@ def run_client(command, server, port, seconds):
     try:
         return client.wait(seconds)
     except subprocess.TimeoutExpired:
-        print(f"no end after {seconds} s", flush=True)
         show_stacks(client, server)
         return None
     finally:
@@ -98,6 +98,9 @@ def main(seconds, server_command, client_command):
             end(server)
         if status != 0:
             print("status", status, "and the server wrote:", read(log).decode(errors="replace")[-8000:], sep="\n")
+            if status is None:
+                print(f"no end after {seconds:g} s", flush=True)
+                time.sleep(STOP_SECONDS)
             sys.exit(1)
 
 

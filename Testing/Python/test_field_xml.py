@@ -12,7 +12,7 @@ TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorP
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
 NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray"}
 # Setters without a property: (automatic) in the panel's lists stands for the first.
-NOT_IN_XML = {"SetDetectArrays"}
+NOT_IN_XML = {"SetController", "SetDetectArrays"}
 
 
 class TestFieldXml(unittest.TestCase):

@@ -18,6 +18,7 @@ COMMAND_KEYS = ("command", "set_number_command", "clean_command")
 
 # Setters without a property, and why.
 NOT_IN_XML = {
+    "SetController": "ParaView's processes have one, which is the default",
     "SetBox": "set by SetPanelBoxPosition and SetPanelBoxLength",
     "SetDetectArrays": "(automatic) in the panel's lists of arrays",
     "SetNumberOfFreeSurfaceValues": "SetFreeSurfaceValue makes it 1",

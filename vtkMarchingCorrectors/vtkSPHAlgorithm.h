@@ -234,9 +234,9 @@ public:
 
   ///@{
   /**
-   * The processes that share a surface; VTK's global controller by default. With MPI and more than one
-   * process, all update together, each with some of the particles or none, see vtkMarchingCorrectors.
-   * Probe and derivatives are each process's own.
+   * The processes that share a surface; VTK's global controller by default. With MPI and more than
+   * one process, all update together, each with some of the particles or none, see
+   * vtkMarchingCorrectors. Probe and derivatives are each process's own.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);

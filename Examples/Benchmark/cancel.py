@@ -13,10 +13,8 @@ places in a run. The particles are those of Examples/Data/make_tank.py.
 import argparse
 import time
 
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-from marchingcorrectors import vtkMarchingCorrectors, vtkSPHProbe
-from probe import exclude_others, make_image
+from marchingcorrectors import vtkMarchingCorrectors
+from probe import make_image, make_probe, read_particles
 
 
 class Watch:
@@ -58,13 +56,9 @@ def make_surface(particles, array, iso):
     return filter_
 
 
-def make_probe(particles, points, array):
-    filter_ = vtkSPHProbe()
-    filter_.SetInputData(points)
-    filter_.SetSourceData(particles)
+def make_fresh_probe(particles, points, array=None):
+    filter_ = make_probe(particles, points, array)
     filter_.KeepDeviceDataOff()
-    if array:
-        exclude_others(filter_, particles, array)
     return filter_
 
 
@@ -89,17 +83,14 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--stops", type=int, default=8)
     options = parser.parse_args()
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(options.particles)
-    reader.Update()
-    particles = reader.GetOutput()
+    particles = read_particles(options.particles)
     n = options.volume
     volume = make_image(particles.GetBounds(), (n, n, n))
     kinds = {
         f"{options.array} {options.iso:g}": make_surface(particles, options.array, options.iso),
         "free surface": make_surface(particles, None, 0),
-        "slice of 512^2": make_probe(particles, make_image(particles.GetBounds(), (512, 512, 1)), None),
-        f"volume of {n}^3": make_probe(particles, volume, options.array),
+        "slice of 512^2": make_fresh_probe(particles, make_image(particles.GetBounds(), (512, 512, 1))),
+        f"volume of {n}^3": make_fresh_probe(particles, volume, options.array),
     }
     print(f"{particles.GetNumberOfPoints()} particles")
     for name, filter_ in kinds.items():

@@ -47,11 +47,20 @@ def exclude_others(filter_, particles, array):
             filter_.AddExcludedArray(data.GetArrayName(i))
 
 
-def make_probe(particles, image, array):
+def read_particles(path):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def make_probe(particles, image, array=None):
+    """Of this array alone, or of all."""
     probe = vtkSPHProbe()
     probe.SetInputData(image)
     probe.SetSourceData(particles)
-    exclude_others(probe, particles, array)
+    if array:
+        exclude_others(probe, particles, array)
     return probe
 
 
@@ -128,10 +137,7 @@ def main():
     parser.add_argument("--volume", type=int, default=256)
     parser.add_argument("--runs", type=int, default=5)
     options = parser.parse_args()
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(options.particles)
-    reader.Update()
-    particles = reader.GetOutput()
+    particles = read_particles(options.particles)
     print(f"{particles.GetNumberOfPoints()} particles, array {options.array}")
     compare_slices(particles, options.array, options.slice, options.runs)
     if options.volume > 0:

@@ -41,6 +41,8 @@ struct DataCase
   bool Double;
   double Eigenvalue = 0.0; // above 0: trimmed where the boundary eigenvalue is lower
   bool Graded = false;     // adaptive cubes
+  char PeriodAxis = 0;     // 'x', 'y' or 'z'; from 0 on, through the middle of the data
+  double Period = 0.0;
 };
 
 constexpr mcor_sph_kernel Cubic = MCOR_CUBIC_SPLINE;
@@ -82,6 +84,14 @@ const DataCase LargeCases[] = {
   { "evrard_collapse_74k", nullptr, 0.5, MCOR_WEIGHT_SUM, Cubic, H, 0, 0, 0, false, 0, true },
   { "evrard_collapse_74k", "Density", 1.0, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0, true },
   { "sedov_blast_148k", "Density", 1.5, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0, true },
+  { "sedov_blast_148k", "Density", 1.5, MCOR_SHEPARD, Cubic, H, 0, 0, 0, false, 0, false, 'x',
+    1.0 },
+  { "sedov_blast_148k", "Density", 0.3, MCOR_SHEPARD, Cubic, H, 0, 0, 0, true, 0, false, 'y',
+    0.9923207 },
+  { "sedov_blast_148k", "Pressure", 1.0, MCOR_SUM, MCOR_WENDLAND_C2, H, 1, 0, 0, false, 0, false,
+    'z', 1.0036104 },
+  { "sedov_blast_148k", nullptr, 0.5, MCOR_WEIGHT_SUM, Cubic, H, 1, 0, 0, false, 0, false, 'x',
+    1.0 },
   { "vortex_rings_200k", "VorticityMagnitude", 5.0, MCOR_SHEPARD, MCOR_M_PRIME_4, H, 0, 0, 0,
     false },
   { "vortex_rings_200k", "VorticityMagnitude", 20.0, MCOR_SUM, MCOR_M_PRIME_4, H, 0, 0, 0, false },
@@ -149,12 +159,17 @@ void NameCase(const DataCase& one, oracle_case& at)
   {
     std::snprintf(eigenvalue, sizeof(eigenvalue), "/eigenvalue%g", one.Eigenvalue);
   }
+  char period[16] = "";
+  if (one.PeriodAxis)
+  {
+    std::snprintf(period, sizeof(period), "/period-%c", one.PeriodAxis);
+  }
   static const char* const fields[] = { "shepard", "sum", "weight" };
-  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s%s", one.File,
+  std::snprintf(at.name, sizeof(at.name), "%s/%s%g/%s/%s/c%g/h%g%s%s%s%s%s", one.File,
     one.Scalar ? one.Scalar : "free", one.Iso, mcor_sph_kernel_name(one.Kernel), fields[one.Field],
     one.CubeSize > 0.0 ? one.CubeSize : at.options.cube_size_factor, at.options.h_scale,
     std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "", one.Double ? "/double" : "",
-    eigenvalue, one.Graded ? "/graded" : "");
+    eigenvalue, one.Graded ? "/graded" : "", period);
 }
 
 void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one)
@@ -177,6 +192,10 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
   at.options.cube_size_mode = one.Graded ? MCOR_CUBES_ADAPTIVE : MCOR_CUBES_UNIFORM;
   at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0 || one.Graded;
   at.no_table = one.Graded;
+  if (one.PeriodAxis)
+  {
+    at.options.periodic[2 * (one.PeriodAxis - 'x') + 1] = one.Period;
+  }
   NameCase(one, at);
   if (!oracle_wants_case(&suite, at.name))
   {

@@ -130,6 +130,7 @@ extern "C"
   {
     double cube;
     int64_t origin[3], size[3];
+    int64_t first[3], end[3]; /* cells whose lowest node is not in between do not exist */
     double* value;
     double* weight;
     double* trim_weight; /* the same pointer as weight where no solids count */

@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "oracle_case.h"
+#include "oracle_period.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -151,6 +152,25 @@ static void case_check_mesh(case_run* run)
       run->mesh.first[fault]);
   }
   case_expect(run, c->holes == 0, "%lld holes: %s", (long long)c->holes, c->first);
+}
+
+/* A periodic box: the surface meets itself, and only what ends it elsewhere ends it there. */
+static void case_check_seam(case_run* run)
+{
+  oracle_seam seam;
+  if (!oracle_is_periodic(&run->options))
+  {
+    return;
+  }
+  const int enough =
+    oracle_check_seam(&run->options, &run->reference->lattice, &run->surface, &run->mesh, &seam);
+  case_expect(run, enough, "out of memory");
+  case_expect(run, seam.open == 0, "%lld edges at faces without their like", (long long)seam.open);
+  case_expect(run, seam.torn == 0, "%lld edges at faces do not fit", (long long)seam.torn);
+  case_expect(run, seam.different == 0, "%lld points differ from themselves a period away",
+    (long long)seam.different);
+  case_expect(run, seam.joined > 0, "the surface does not meet itself");
+  printf("  %lld edges join opposite faces\n", (long long)seam.joined);
 }
 
 static void case_check_edges(case_run* run, int pairs)
@@ -306,6 +326,7 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   case_expect(
     run, fabs(cube / run->reference->lattice.cube - 1.0) < 1e-12, "cube size %.17g", cube);
   case_check_mesh(run);
+  case_check_seam(run);
   case_check_edges(run, pairs);
   case_check_accuracy(run, trimmed);
   if (!trimmed && !pairs)

@@ -66,6 +66,7 @@ static int oracle_set_extent(oracle_lattice* lattice, const oracle_field* field,
     }
     lattice->origin[axis] = (int64_t)floor(low / lattice->cube) - 1;
     lattice->size[axis] = (int64_t)ceil(high / lattice->cube) + 2 - lattice->origin[axis];
+    lattice->end[axis] = lattice->size[axis] - 1;
     nodes *= (double)lattice->size[axis];
   }
   return nodes <= (double)node_limit;
@@ -212,8 +213,8 @@ void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_lim
 static int oracle_cell_flags(
   const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k, int corners[8])
 {
-  if (i < 0 || j < 0 || k < 0 || i + 1 >= lattice->size[0] || j + 1 >= lattice->size[1] ||
-    k + 1 >= lattice->size[2])
+  if (i < lattice->first[0] || j < lattice->first[1] || k < lattice->first[2] ||
+    i >= lattice->end[0] || j >= lattice->end[1] || k >= lattice->end[2])
   {
     return 0;
   }

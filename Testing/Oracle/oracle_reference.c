@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "oracle_compare.h"
+#include "oracle_period.h"
 
 #include <float.h>
 #include <math.h>
@@ -67,8 +68,9 @@ static oracle_kind reference_kind(mcor_field field)
   return field == MCOR_SUM ? ORACLE_SUM : field == MCOR_WEIGHT_SUM ? ORACLE_WEIGHT : ORACLE_SHEPARD;
 }
 
+/* source: what each is an image of; NULL: of itself. */
 static int reference_volumes(
-  oracle_particles* particles, const mcor_input* input, oracle_kernel kernel)
+  oracle_particles* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
 {
   const size_t n = (size_t)particles->count + 1;
   double* mass = input->has_mass ? malloc(n * sizeof(double)) : NULL;
@@ -78,17 +80,44 @@ static int reference_volumes(
   {
     if (mass)
     {
-      mass[j] = reference_read(&input->mass, j, 0);
+      mass[j] = reference_read(&input->mass, source ? source[j] : j, 0);
     }
     if (density)
     {
-      density[j] = reference_read(&input->density, j, 0);
+      density[j] = reference_read(&input->density, source ? source[j] : j, 0);
     }
   }
   enough = enough && oracle_compute_volumes(particles, kernel, mass, density);
+  for (int64_t j = 0; enough && source && j < particles->count; ++j)
+  {
+    particles->volume[j] = particles->volume[source[j]];
+  }
   free(mass);
   free(density);
   return enough;
+}
+
+static double reference_cube(const oracle_particles* particles, const mcor_options* options)
+{
+  const double cube = options->cube_size > 0.0
+    ? options->cube_size
+    : options->cube_size_factor * oracle_smallest_h(particles);
+  return oracle_is_periodic(options) ? oracle_fit_cube(options, cube) : cube;
+}
+
+/* All images of a periodic box as particles. */
+static int reference_images(oracle_particles* particles, const mcor_options* options,
+  oracle_kernel kernel, int own_volumes, int64_t** source)
+{
+  const double support = oracle_support(kernel);
+  double largest = 0.0;
+  for (int64_t j = 0; j < particles->count; ++j)
+  {
+    largest = fmax(largest, particles->smoothing_length[j]);
+  }
+  /* A computed volume is a sum over the whole support, not scaled. */
+  return oracle_add_images(particles, options, support * options->h_scale,
+    own_volumes ? 0.0 : support * largest, reference_cube(particles, options), source);
 }
 
 static int reference_particles(
@@ -117,7 +146,13 @@ static int reference_particles(
     particles->volume[j] = input->has_volume ? reference_read(&input->volume, j, 0) : 0.0;
     particles->scalar[j] = options->field == MCOR_WEIGHT_SUM ? 0.0 : reference_scalar(input, j);
   }
-  return input->has_volume || reference_volumes(particles, input, kernel);
+  int64_t* source = NULL;
+  const int enough = (!oracle_is_periodic(options) ||
+                       reference_images(particles, options, kernel,
+                         input->has_volume || (input->has_mass && input->has_density), &source)) &&
+    (input->has_volume || reference_volumes(particles, input, kernel, source));
+  free(source);
+  return enough;
 }
 
 int oracle_set_iso(oracle_reference* reference, double iso)
@@ -154,9 +189,7 @@ static int reference_is_graded(const oracle_particles* particles, const mcor_opt
 static int reference_lattice(
   oracle_reference* reference, const mcor_options* options, int64_t node_limit)
 {
-  const double cube = options->cube_size > 0.0
-    ? options->cube_size
-    : options->cube_size_factor * oracle_smallest_h(&reference->particles);
+  const double cube = reference_cube(&reference->particles, options);
   const oracle_lattice* nodes =
     reference->adaptive ? &reference->graded.nodes : &reference->lattice;
   const int enough = reference->adaptive
@@ -164,6 +197,10 @@ static int reference_lattice(
         &reference->graded, &reference->field, cube, options->level_limit, node_limit)
     : oracle_create_lattice(&reference->lattice, &reference->field, cube, node_limit);
   reference->lattice.cube = cube;
+  if (enough && oracle_is_periodic(options))
+  {
+    oracle_own_period(&reference->lattice, options);
+  }
   reference->greatest_weight = 1.0;
   for (int64_t n = 0; enough && n < oracle_node_count(nodes); ++n)
   {

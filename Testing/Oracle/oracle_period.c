@@ -1,0 +1,320 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "oracle_period.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double period_length(const mcor_options* options, int axis)
+{
+  return options->periodic[2 * axis + 1] - options->periodic[2 * axis];
+}
+
+int oracle_is_periodic(const mcor_options* options)
+{
+  return period_length(options, 0) > 0.0 || period_length(options, 1) > 0.0 ||
+    period_length(options, 2) > 0.0;
+}
+
+/* ---- the cube size --------------------------------------------------------------------------- */
+
+static int period_fits(const mcor_options* options, double cube)
+{
+  int fits = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double cubes = period_length(options, axis) / cube;
+    fits = fits && fabs(cubes - round(cubes)) <= 1e-9 * cubes;
+  }
+  return fits;
+}
+
+double oracle_fit_cube(const mcor_options* options, double cube)
+{
+  double best = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = period_length(options, axis);
+    for (double n = 1.0; length > 0.0 && length / n > 0.5 * cube; n += 1.0)
+    {
+      const double trial = length / n;
+      if (trial <= cube * (1.0 + 1e-9) && trial > best && period_fits(options, trial))
+      {
+        best = trial;
+      }
+    }
+  }
+  return best;
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+/* Whether something of this reach at x matters along the axis. */
+static int period_reaches(
+  const mcor_options* options, int axis, double x, double reach, double cube)
+{
+  const double *side = &options->periodic[2 * axis], margin = reach + 2.0 * cube;
+  return !(side[0] < side[1]) || (x >= side[0] - margin && x <= side[1] + margin);
+}
+
+/* Whether an image of particle p, at x, matters. */
+static int period_matters(const oracle_particles* particles, const mcor_options* options, int64_t p,
+  const int image[3], double reach, double cube, double x[3])
+{
+  int matters = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = period_length(options, axis);
+    x[axis] = particles->position[3 * p + axis] + image[axis] * length;
+    matters = matters && (image[axis] == 0 || length > 0.0) &&
+      period_reaches(options, axis, x[axis], reach, cube);
+  }
+  return matters;
+}
+
+/* Fills the images in, from number from->count on, or only counts all where `to` is NULL. */
+static int64_t period_list(oracle_particles* to, int64_t* source, const oracle_particles* from,
+  const mcor_options* options, double support, double margin, double cube)
+{
+  int64_t count = from->count;
+  for (int64_t p = 0; p < from->count; ++p)
+  {
+    const double reach = fmax(support * from->smoothing_length[p], margin);
+    for (int n = 0; n < 343; ++n)
+    {
+      const int image[3] = { n % 7 - 3, n / 7 % 7 - 3, n / 49 - 3 };
+      double x[3];
+      if (n == 171 || !period_matters(from, options, p, image, reach, cube, x))
+      {
+        continue;
+      }
+      if (to)
+      {
+        memcpy(&to->position[3 * count], x, sizeof(x));
+        to->smoothing_length[count] = from->smoothing_length[p];
+        to->volume[count] = from->volume[p];
+        to->scalar[count] = from->scalar[p];
+        to->solid[count] = from->solid[p];
+        source[count] = p;
+      }
+      ++count;
+    }
+  }
+  return count;
+}
+
+/* Each where it is within the period. */
+static void period_wrap(oracle_particles* particles, const mcor_options* options)
+{
+  for (int64_t i = 0; i < 3 * particles->count; ++i)
+  {
+    const double length = period_length(options, (int)(i % 3));
+    double* x = &particles->position[i];
+    *x -= length > 0.0 ? floor((*x - options->periodic[2 * (i % 3)]) / length) * length : 0.0;
+  }
+}
+
+int oracle_add_images(oracle_particles* particles, const mcor_options* options, double support,
+  double margin, double cube, int64_t** source)
+{
+  oracle_particles all;
+  period_wrap(particles, options);
+  const int64_t count = period_list(NULL, NULL, particles, options, support, margin, cube);
+  *source = malloc(((size_t)count + 1) * sizeof(int64_t));
+  if (!*source || !oracle_create_particles(&all, count))
+  {
+    return 0;
+  }
+  const size_t n = (size_t)particles->count;
+  memcpy(all.position, particles->position, 3 * n * sizeof(double));
+  memcpy(all.smoothing_length, particles->smoothing_length, n * sizeof(double));
+  memcpy(all.scalar, particles->scalar, n * sizeof(double));
+  memcpy(all.volume, particles->volume, n * sizeof(double));
+  memcpy(all.solid, particles->solid, n);
+  all.ignore_solids = particles->ignore_solids;
+  for (size_t p = 0; p < n; ++p)
+  {
+    (*source)[p] = (int64_t)p;
+  }
+  period_list(&all, *source, particles, options, support, margin, cube);
+  oracle_free_particles(particles);
+  *particles = all;
+  return 1;
+}
+
+void oracle_own_period(oracle_lattice* lattice, const mcor_options* options)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = ceil(options->periodic[2 * axis] / lattice->cube - 0.5);
+    if (period_length(options, axis) > 0.0)
+    {
+      lattice->first[axis] = (int64_t)first - lattice->origin[axis];
+      lattice->end[axis] =
+        lattice->first[axis] + (int64_t)round(period_length(options, axis) / lattice->cube);
+    }
+  }
+}
+
+/* ---- the surface against itself -------------------------------------------------------------- */
+
+/* A point of the border within the first period, in fractions of a cube too small to matter and
+ * large enough for rounding. */
+typedef struct seam_point
+{
+  int64_t at[3];
+  int32_t point;
+} seam_point;
+
+typedef struct seam_edge
+{
+  int32_t a, b; /* representatives, a < b */
+  int forward, flagged;
+} seam_edge;
+
+static int seam_compare_points(const void* x, const void* y)
+{
+  const seam_point *p = x, *q = y;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (p->at[axis] != q->at[axis])
+    {
+      return p->at[axis] < q->at[axis] ? -1 : 1;
+    }
+  }
+  return (p->point > q->point) - (p->point < q->point);
+}
+
+static int seam_compare_edges(const void* x, const void* y)
+{
+  const seam_edge *p = x, *q = y;
+  return p->a != q->a ? (p->a < q->a ? -1 : 1) : (p->b > q->b) - (p->b < q->b);
+}
+
+static seam_point seam_place(const mcor_options* options, const oracle_lattice* lattice,
+  const mcor_surface* surface, int32_t point)
+{
+  seam_point place = { { 0 }, point };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = (double)(lattice->origin[axis] + lattice->first[axis]);
+    const double cubes = (double)(lattice->end[axis] - lattice->first[axis]);
+    double u = surface->points[3 * (int64_t)point + axis] / lattice->cube;
+    if (period_length(options, axis) > 0.0)
+    {
+      u -= floor((u - low + 1e-9) / cubes) * cubes;
+    }
+    place.at[axis] = (int64_t)floor((u - low) * 0x1p27 + 0.5);
+  }
+  return place;
+}
+
+static int seam_differ(const float* values, int32_t a, int32_t b, size_t components)
+{
+  return values &&
+    memcmp(&values[components * (size_t)a], &values[components * (size_t)b],
+      components * sizeof(float)) != 0;
+}
+
+/* Whether two points that are one are not equal in all they carry. */
+static int seam_points_differ(
+  const mcor_options* options, const mcor_surface* s, int32_t a, int32_t b)
+{
+  int differ = seam_differ(s->normals, a, b, 3) || seam_differ(s->weight_sum, a, b, 1) ||
+    seam_differ(s->boundary_eigenvalue, a, b, 1) || seam_differ(s->residual, a, b, 1) ||
+    seam_differ(s->correction_length, a, b, 1) ||
+    (s->boundary_flag && s->boundary_flag[a] != s->boundary_flag[b]);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double x = s->points[3 * (int64_t)a + axis], y = s->points[3 * (int64_t)b + axis];
+    const double length = period_length(options, axis);
+    differ = differ || (x != y && !(length > 0.0 && fabs(x - y) > 0.5 * length)) ||
+      (s->gradients && s->gradients[3 * (int64_t)a + axis] != s->gradients[3 * (int64_t)b + axis]);
+  }
+  return differ;
+}
+
+/* one[p]: the point that stands for p and all that are one with it. */
+static void seam_glue(const mcor_options* options, const mcor_surface* surface, seam_point* places,
+  int64_t count, int32_t* one, oracle_seam* seam)
+{
+  qsort(places, (size_t)count, sizeof(*places), seam_compare_points);
+  for (int64_t n = 0; n < count; ++n)
+  {
+    const seam_point* before = n > 0 ? &places[n - 1] : NULL;
+    const int32_t point = places[n].point;
+    if (before && before->point == point)
+    {
+      continue;
+    }
+    one[point] = point;
+    if (before && memcmp(before->at, places[n].at, sizeof(before->at)) == 0)
+    {
+      one[point] = one[before->point];
+      seam->different += seam_points_differ(options, surface, one[point], point);
+    }
+  }
+}
+
+static void seam_count(seam_edge* edges, int64_t count, oracle_seam* seam)
+{
+  qsort(edges, (size_t)count, sizeof(*edges), seam_compare_edges);
+  for (int64_t first = 0, next = 0; first < count; first = next)
+  {
+    int forward = 0;
+    for (next = first;
+         next < count && edges[next].a == edges[first].a && edges[next].b == edges[first].b; ++next)
+    {
+      forward += edges[next].forward;
+    }
+    const int64_t sides = next - first;
+    seam->joined += sides == 2;
+    seam->open += sides == 1 && !edges[first].flagged;
+    seam->torn += sides > 2 || (sides == 2 && forward != 1);
+  }
+}
+
+int oracle_check_seam(const mcor_options* options, const oracle_lattice* lattice,
+  const mcor_surface* surface, const mesh_report* mesh, oracle_seam* seam)
+{
+  const size_t n = (size_t)mesh->boundary_edges + 1;
+  seam_edge* edges = malloc(n * sizeof(*edges));
+  seam_point* places = malloc(2 * n * sizeof(*places));
+  int32_t* one = malloc(((size_t)surface->point_count + 1) * sizeof(*one));
+  const int enough = edges && places && one;
+  int64_t count = 0;
+  memset(seam, 0, sizeof(*seam));
+  for (int64_t s = 0; enough && s < mesh->side_count; ++s)
+  {
+    const mesh_edge* side = &mesh->side[s];
+    if (mesh_count_sides(mesh, side->a, side->b) == 1)
+    {
+      const uint8_t* flag = surface->boundary_flag;
+      edges[count] =
+        (seam_edge){ side->a, side->b, side->forward, flag && flag[side->a] && flag[side->b] };
+      places[2 * count] = seam_place(options, lattice, surface, side->a);
+      places[2 * count + 1] = seam_place(options, lattice, surface, side->b);
+      ++count;
+    }
+  }
+  if (enough)
+  {
+    seam_glue(options, surface, places, 2 * count, one, seam);
+  }
+  for (int64_t e = 0; enough && e < count; ++e)
+  {
+    const int32_t a = one[edges[e].a], b = one[edges[e].b];
+    edges[e].forward = (edges[e].forward != 0) == (a < b);
+    edges[e].a = a < b ? a : b;
+    edges[e].b = a < b ? b : a;
+  }
+  if (enough)
+  {
+    seam_count(edges, count, seam);
+  }
+  free(edges);
+  free(places);
+  free(one);
+  return enough;
+}

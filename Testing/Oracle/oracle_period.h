@@ -1,0 +1,51 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef oracle_period_h
+#define oracle_period_h
+
+/* Periodic boxes, for oracle_reference.c and oracle_case.c: the particles and images of them as plain
+ * particles, one period's cells of the lattice, and the surface glued to itself. */
+
+#include "mcor.h"
+#include "mesh_check.h"
+#include "oracle.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+  /* Whether the particles repeat along any axis. */
+  int oracle_is_periodic(const mcor_options* options);
+
+  /* The largest cube, not larger than this one, that all periods are whole numbers of; 0: there is
+   * none of more than half of it. */
+  double oracle_fit_cube(const mcor_options* options, double cube);
+
+  /* Takes the particles into the period, and adds all images whose support (h times `support`), or
+   * `margin` if that is more, reaches it or what lies within two cubes of it. (*source)[i]: what
+   * particle i is an image of; to be freed. 0 if memory ran out. */
+  int oracle_add_images(oracle_particles* particles, const mcor_options* options, double support,
+    double margin, double cube, int64_t** source);
+
+  /* Leaves one period's cells: those with their centres in it. */
+  void oracle_own_period(oracle_lattice* lattice, const mcor_options* options);
+
+  typedef struct oracle_seam
+  {
+    int64_t joined;    /* edges of the border that are one with another, a period away */
+    int64_t open;      /* other ones that nothing explains */
+    int64_t torn;      /* that have more than two triangles, or two of unlike orientation */
+    int64_t different; /* points that are not, bit for bit, what they are a period away */
+  } oracle_seam;
+
+  /* Glues opposite sides of the surface together: points that are a period apart become one. 0 if
+   * memory ran out. */
+  int oracle_check_seam(const mcor_options* options, const oracle_lattice* lattice,
+    const mcor_surface* surface, const mesh_report* mesh, oracle_seam* seam);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -120,7 +120,7 @@ static void balance(plain_levels* plain)
   }
 }
 
-static void make_tree(
+static void measure(
   mcor_context* context, const core_set* set, int limit, mcor_options* options, mcor_input* input)
 {
   static const double iso = 0.5;
@@ -132,6 +132,12 @@ static void make_tree(
   context->options = options;
   context->uses_solids = false;
   CORE_OK(context, mcor_measure_input(context, input, options));
+}
+
+static void make_tree(
+  mcor_context* context, const core_set* set, int limit, mcor_options* options, mcor_input* input)
+{
+  measure(context, set, limit, options, input);
   CORE_OK(context, mcor_make_tree(context, input));
   context->options = NULL;
 }
@@ -254,10 +260,52 @@ static void levels_of_particles(void** state)
   assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0); /* of a solid */
 }
 
+/* So many levels that bricks of the lowest could not be numbered. */
+static void more_bricks_than_numbers(void** state)
+{
+  mcor_context* context = *state;
+  mcor_options options;
+  mcor_input input;
+  core_set set = core_make_block(4, 0, 1, core_slope);
+  measure(context, &set, 24, &options, &input);
+  context->lattice.top = 23; /* as with h 1:10^7 and a cube size that lets the lattice be */
+  assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
+  CORE_CHECK(strstr(mcor_last_error(context), "adaptive cubes of 24 levels"), "%s",
+    mcor_last_error(context));
+  context->options = NULL;
+  core_free_set(&set);
+}
+
+/* Particles that reach far beyond their volume: that there are too many leaves is known before the sets
+ * of bricks grow large. */
+static void more_leaves_than_the_limit(void** state)
+{
+  mcor_context* context = *state;
+  mcor_options options;
+  mcor_input input;
+  core_set set = core_make_random(3, 40, 1, 1, 3);
+  set.smoothing_length[0] = 8;
+  measure(context, &set, 24, &options, &input);
+  options.h_scale = 220;
+  CORE_OK(context, mcor_measure_input(context, &input, &options));
+  assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
+  CORE_CHECK(strstr(mcor_last_error(context), "leaves"), "%s", mcor_last_error(context));
+  size_t room = 0;
+  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
+  {
+    room += context->tree.split[l].capacity * sizeof(uint64_t);
+  }
+  CORE_CHECK(room < 50000000, "%lld bytes", (long long)room);
+  mcor_release_tree(&context->tree);
+  context->options = NULL;
+  core_free_set(&set);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(leaves_are_those_of_the_definition),
-    cmocka_unit_test(order_and_limit), cmocka_unit_test(regions),
-    cmocka_unit_test(levels_of_particles) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(more_bricks_than_numbers),
+    cmocka_unit_test(more_leaves_than_the_limit),
+    cmocka_unit_test(leaves_are_those_of_the_definition), cmocka_unit_test(order_and_limit),
+    cmocka_unit_test(regions), cmocka_unit_test(levels_of_particles) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

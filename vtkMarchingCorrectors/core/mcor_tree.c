@@ -53,10 +53,15 @@ static bool mcor_set_grow(mcor_brick_set* set)
   return true;
 }
 
-/* False where memory ran out. */
+/* More leaves than this are not made. Of the parts of each split brick, 8, all but those that are split
+ * are leaves: seven more for each brick at least. */
+#define MCOR_LEAF_LIMIT (INT32_MAX / 64)
+#define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
+
+/* False where memory ran out, or there would be too many leaves: before the sets take much of either. */
 static bool mcor_set_add(mcor_brick_set* set, uint64_t key)
 {
-  if (2 * set->count >= set->capacity && !mcor_set_grow(set))
+  if (2 * set->count >= set->capacity && (set->count > MCOR_SPLIT_LIMIT || !mcor_set_grow(set)))
   {
     return false;
   }
@@ -91,11 +96,15 @@ int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
     : 0;
 }
 
+/* Of level 0. Those of all levels are a seventh more. */
+#define MCOR_BRICK_LIMIT 0x1p63
+
 /* Numbers the bricks of all levels up to the one above the highest leaves'. The lattice is a whole number
- * of these. */
-static void mcor_number_bricks(const mcor_lattice* lattice, mcor_tree* tree)
+ * of these. False where there are too many for numbers. */
+static bool mcor_number_bricks(const mcor_lattice* lattice, mcor_tree* tree)
 {
   uint64_t base = 0;
+  double most = 1; /* bricks of all levels, nearly */
   tree->top = lattice->top;
   for (int l = 0; l <= tree->top + 1; ++l)
   {
@@ -106,12 +115,18 @@ static void mcor_number_bricks(const mcor_lattice* lattice, mcor_tree* tree)
       const int above = MCOR_BRICK << (tree->top + 1);
       rung->n[a] = (int)((lattice->last[a] / above + 2) << (tree->top + 1 - l));
       bricks *= (uint64_t)rung->n[a];
+      most *= l == 0 ? rung->n[a] : 1;
+    }
+    if (most > MCOR_BRICK_LIMIT)
+    {
+      return false;
     }
     rung->base = base;
     rung->unused = 0;
     base += bricks;
   }
   tree->key_limit = base;
+  return true;
 }
 
 bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
@@ -295,9 +310,6 @@ static bool mcor_split_above(mcor_tree* tree, int level)
 
 /* ---- Leaves ---- */
 
-/* More leaves than this are not made. */
-#define MCOR_LEAF_LIMIT (INT32_MAX / 64)
-
 /* Lists the leaves of one level: the parts of split bricks that are not split. */
 static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
 {
@@ -383,7 +395,10 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
     "The virtual grid is too large: with cube size %g the particles fill about %.3g bricks of %d "
     "adaptive cubes, and %d is the limit. Use a larger cube size.",
     context->lattice.cube, guess, MCOR_BRICK_NODES, MCOR_LEAF_LIMIT);
-  mcor_number_bricks(&context->lattice, tree);
+  MCOR_RETURN_IF(!mcor_number_bricks(&context->lattice, tree), context, MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or remove "
+    "particles whose smoothing length is far from that of the others.",
+    context->lattice.top + 1);
   bool made = mcor_split_by_particles(context, input, tree);
   size_t room = 0;
   for (int l = 1; l <= tree->top && made; ++l)

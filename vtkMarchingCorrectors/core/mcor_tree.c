@@ -61,7 +61,7 @@ static bool mcor_set_grow(mcor_brick_set* set)
 /* False where memory ran out, or there would be too many leaves: before the sets take much of either. */
 static bool mcor_set_add(mcor_brick_set* set, uint64_t key)
 {
-  if (2 * set->count >= set->capacity && (set->count > MCOR_SPLIT_LIMIT || !mcor_set_grow(set)))
+  if (set->count > MCOR_SPLIT_LIMIT || (2 * set->count >= set->capacity && !mcor_set_grow(set)))
   {
     return false;
   }

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """NumPy arrays to the core and back."""
 import ctypes
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ._library import InvalidArgument, lib
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
+WORDS = {int: "whole number", float: "number"}
 OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"}}
 
 
@@ -17,14 +19,49 @@ def is_real(array):
     return array.dtype.kind == "f"
 
 
+def as_array(values, role):
+    """np.asarray, with one sentence where that fails or would lose something."""
+    if np.ma.is_masked(values):
+        raise InvalidArgument(f"The {role} has masked elements. Remove such particles, or fill them.")
+    try:
+        return np.asarray(values)
+    except (TypeError, ValueError) as error:
+        raise InvalidArgument(f"The {role} is no array: {error}") from None
+
+
 def contiguous(values, role):
     """float and double arrays that lie in one piece as they are, all others as a copy."""
-    array = np.asarray(values)
+    array = as_array(values, role)
     if array.dtype.kind not in "fiub":
         raise InvalidArgument(f"The {role} does not hold numbers, but {array.dtype}.")
     if array.dtype not in FLOATS:
         array = array.astype(np.float64)
-    return np.ascontiguousarray(array)
+    array = np.ascontiguousarray(array)
+    return array if array.flags.aligned else array.copy()
+
+
+def as_points(values, role, shape):
+    """(count, 3); of nothing, any shape will do."""
+    array = contiguous(values, f"array of {role}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        if len(array):
+            raise InvalidArgument(f"{role.capitalize()} have the shape {shape}, not {array.shape}.")
+        array = array.reshape(0, 3)
+    return array
+
+
+def as_named(attributes):
+    """{name: array} with text as names."""
+    if attributes is None:
+        return {}
+    if not isinstance(attributes, Mapping):
+        raise InvalidArgument(f"attributes are {{name: array}}, not a {type(attributes).__name__}.")
+    return {str(name): as_array(array, f"attribute '{name}'") for name, array in attributes.items()}
+
+
+def as_bytes(text):
+    """For the core's messages; what has no place in UTF-8 (names of files, say) becomes "?"."""
+    return text.encode(errors="replace")
 
 
 class Arguments:
@@ -35,19 +72,15 @@ class Arguments:
         self.input, self.options = c.mcor_input(), c.mcor_options()
         lib.mcor_set_default_options(ctypes.byref(self.options))
         self.input.scalar_component = -1  # the magnitude
-        array = contiguous(positions, "array of positions")
-        self.count = self.input.count = len(array) if array.ndim else 0
-        if array.ndim != 2 or array.shape[1] != 3:
-            if array.size:
-                raise InvalidArgument(f"Positions have the shape (particles, 3), not {array.shape}.")
-            array = array.reshape(0, 3)
+        array = as_points(positions, "positions", "(particles, 3)")
+        self.count = self.input.count = len(array)
         self.input.positions = self.view(array, None)
 
     def view(self, array, name):
         view = c.mcor_array()
         view.type, view.components = FLOATS[array.dtype], 1 if array.ndim < 2 else array.shape[1]
         view.data = array.ctypes.data if array.size else ctypes.addressof(self.something())
-        view.name = name.encode() if name else None
+        view.name = as_bytes(name) if name else None
         self.kept.append(array)
         return view
 
@@ -58,12 +91,13 @@ class Arguments:
 
     def per_particle(self, values, role, name=None, constant=False):
         """An array of (particles,) or (particles, components), or one value for all of them."""
-        if constant and np.ndim(values) == 0:
+        values = as_array(values, role)
+        if constant and values.ndim == 0:
             view = c.mcor_array()
-            view.constant, view.name = float(values), (name or role).encode()
+            view.constant, view.name = convert(float, role, values.item()), as_bytes(name or role)
             return view
         array = contiguous(values, role)
-        if array.ndim not in (1, 2) or len(array) != self.count:
+        if array.ndim not in (1, 2) or len(array) != self.count or 0 in array.shape[1:]:
             raise InvalidArgument(f"The {role} has the shape {array.shape}; for {self.count} particles it is "
                                   f"({self.count},) or ({self.count}, components).")
         return self.view(array, name or role)
@@ -79,7 +113,9 @@ class Arguments:
     def set_solid(self, solid):
         if solid is None:
             return
-        marks = np.asarray(solid)
+        marks = as_array(solid, "array of solid particles' marks")
+        if marks.dtype.kind not in "fiub":
+            raise InvalidArgument(f"The marks of solid particles are no numbers, but {marks.dtype}.")
         if marks.shape != (self.count,):
             raise InvalidArgument(f"The marks of solid particles have the shape {marks.shape}; for "
                                   f"{self.count} particles it is ({self.count},).")
@@ -101,7 +137,9 @@ class Arguments:
         return list(attributes)
 
     def set_iso_values(self, values):
-        values = np.ascontiguousarray(np.atleast_1d(np.asarray(values, dtype=np.float64)))
+        values = contiguous(values, "list of iso values").astype(np.float64)
+        if values.ndim != 1:
+            raise InvalidArgument(f"Iso values are one number or a list of them, not of the shape {values.shape}.")
         self.kept.append(values)
         self.options.iso_values = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         self.options.iso_count = len(values)
@@ -120,10 +158,13 @@ class Arguments:
 def set_option(target, name, kind, value):
     """An array (box) counts where it is given."""
     if "[" not in kind:
-        setattr(target, name, number(name, kind, value))
+        converted = number(name, kind, value)
+        setattr(target, name, converted)
+        if kind != "double" and getattr(target, name) != converted:  # ctypes drops the bits beyond
+            raise InvalidArgument(f"{name} is {value}, which is out of its range.")
         return
     if value is not None:
-        values = np.ravel(np.asarray(value, dtype=np.float64))
+        values = np.ravel(contiguous(value, f"list of numbers of {name}"))
         if len(values) != len(getattr(target, name)):
             raise InvalidArgument(f"{name} has {len(getattr(target, name))} numbers, not {len(values)}.")
         getattr(target, name)[:] = values.tolist()
@@ -131,25 +172,38 @@ def set_option(target, name, kind, value):
         setattr(target, "has_" + name, int(value is not None))
 
 
+def convert(to, name, value):
+    try:
+        result = to(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidArgument(f"The {name} is {value!r}, which is no {WORDS[to]}.") from None
+    if to is int and result != value:
+        raise InvalidArgument(f"The {name} is {value!r}, which is no {WORDS[to]}.")
+    return result
+
+
 def number(name, kind, value):
     """An enumerator's word as its number: "wendland", "wendland_c2" and WENDLAND_C2 are the same."""
     if name == "scalar_component" and value == "magnitude":
         return -1
     if kind not in c.ENUMS:
-        return float(value) if kind == "double" else int(value)
+        return convert(float if kind == "double" else int, name, value)
     values = {k: v for k, v in c.ENUMS[kind].items() if not k.endswith("_COUNT")}
     words = dict(zip(_words(list(values)), values.values()))
     if isinstance(value, str):
         word = value.lower().replace(" ", "_").replace("-", "_")
         word = OTHER_WORDS.get(kind, {}).get(word, word)
-        if kind == "mcor_sph_kernel" and lib.mcor_find_sph_kernel(word.encode()) >= 0:
-            return lib.mcor_find_sph_kernel(word.encode())
+        if kind == "mcor_sph_kernel" and lib.mcor_find_sph_kernel(as_bytes(word)) >= 0:
+            return lib.mcor_find_sph_kernel(as_bytes(word))
         if word not in words:
             raise InvalidArgument(f"{name} is one of {', '.join(words)}, not '{value}'.")
         return words[word]
     if kind == "mcor_type" and not isinstance(value, (int, np.integer)):
-        return FLOATS.get(np.dtype(value), -1)
-    return int(value)
+        try:
+            return FLOATS.get(np.dtype(value), -1)
+        except TypeError:
+            pass
+    return convert(int, name, value)
 
 
 def _words(names):

@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Contexts: a device with its compiled programs, and what it keeps between calls."""
+import contextlib
 import ctypes
 import os
 import signal
 import threading
 
 from . import _structs as c
-from ._library import ERRORS, NO_DEVICE, DeviceError, Error, _list, lib, start
+from ._library import ERRORS, NO_DEVICE, DeviceError, Error, InvalidArgument, _list, lib, start
 
 
 class Context:
@@ -23,17 +24,32 @@ class Context:
     def __init__(self, device=None):
         self._pid = os.getpid()
         self._lock = threading.Lock()
+        self._used_by = None  # the thread that has the lock
         self._handle = ctypes.c_void_p()
         wanted = "" if device is None else str(device)
         start(wanted)
         if not _list():
             raise DeviceError(NO_DEVICE)
         # What the core prefers by itself need not be what the loader lists first.
-        status = lib.mcor_create_context((_pocl_number(wanted) or "0").encode(), ctypes.byref(self._handle))
+        name = (_pocl_number(wanted) or "0").encode(errors="replace")
+        status = lib.mcor_create_context(name, ctypes.byref(self._handle))
         if status:
             sentence = self._sentence()
             self.close()
             raise ERRORS.get(status, Error)(sentence)
+
+    @contextlib.contextmanager
+    def _alone(self):
+        """Waits for other threads. A callback of the very call that is under way would wait for ever."""
+        if self._used_by == threading.get_ident():
+            raise InvalidArgument("A progress callback cannot use the context whose call it belongs to. Use "
+                                  "another Context there, or do it when the call has returned.")
+        with self._lock:
+            self._used_by = threading.get_ident()
+            try:
+                yield
+            finally:
+                self._used_by = None
 
     def _sentence(self):
         return (lib.mcor_last_error(self._handle) if self._handle else b"").decode(errors="replace") \
@@ -41,7 +57,7 @@ class Context:
 
     def release_memory(self):
         """Drops what is kept on the device between calls; compiled programs stay."""
-        with self._lock:
+        with self._alone():
             if self._handle:
                 lib.mcor_release_memory(self._handle)
 
@@ -49,7 +65,7 @@ class Context:
         """Gives the device back. Using the context afterwards is an error."""
         # A forked child has the handle, but not the driver's threads.
         if self._handle and self._pid == os.getpid():
-            with self._lock:
+            with self._alone():
                 lib.mcor_free_context(self._handle)
         self._handle = ctypes.c_void_p()
 
@@ -67,7 +83,7 @@ class Context:
         """call(handle) with the context to itself; raises what went wrong, the callback's exceptions
         and KeyboardInterrupt included."""
         start()
-        with self._lock, Watch(progress) as watch:
+        with self._alone(), Watch(progress) as watch:
             if not self._handle:
                 raise DeviceError("This context was closed; make another one.")
             options.progress = watch.callback

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequen
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (Arguments, contiguous, is_real, left_out, statistics, take, take_all, take_each)
+from ._arrays import (Arguments, as_named, as_points, contiguous, is_real, left_out, statistics, take, take_all, take_each)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, lib
 
@@ -106,6 +106,8 @@ def _warn(missing):
 
 def _run(arguments, context, device, progress, call, free):
     own = context is None
+    if not own and not isinstance(context, Context):
+        raise InvalidArgument(f"The context is a {type(context).__name__}; it must be a Context.")
     context = default_context(device) if own else context
     try:
         context.run(call, arguments.options, progress, free)
@@ -154,7 +156,7 @@ def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike] = None, *,
     """
     words = dict(options)
     iso = words.pop("iso_values", iso)
-    attributes = {str(name): np.asarray(array) for name, array in (attributes or {}).items()}
+    attributes = as_named(attributes)
     real = {name: array for name, array in attributes.items() if is_real(array)}
     arguments, names = _prepare(positions, real, solid, {
         "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, words)
@@ -265,14 +267,10 @@ def probe(positions: ArrayLike, points: ArrayLike, *,
     (particles, components)}. field="sum" gives the plain sum in place of Shepard's mean. The other
     arguments are those of isosurface().
     """
-    attributes = {str(name): np.asarray(array) for name, array in (attributes or {}).items()}
+    attributes = as_named(attributes)
     arguments, names = _prepare(positions, attributes, solid, {
         "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
-    where = contiguous(points, "array of points")
-    if where.ndim != 2 or where.shape[1] != 3:
-        if where.size:
-            raise InvalidArgument(f"Points have the shape (points, 3), not {where.shape}.")
-        where = where.reshape(0, 3)
+    where = as_points(points, "points", "(points, 3)")
     view, samples = arguments.view(where, "points"), c.mcor_samples()
 
     def free():
@@ -316,7 +314,7 @@ def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Union[str
     attributes) or "standard". The other arguments are those of isosurface(). For divergence,
     vorticity and the like give the gradients of a velocity to flow().
     """
-    attributes = {str(name): np.asarray(array) for name, array in attributes.items()}
+    attributes = as_named(attributes)
     arguments, names = _prepare(positions, attributes, solid, {
         "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
     from ._arrays import number
@@ -348,7 +346,7 @@ def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:
     J), "vorticity" (the curl, (particles, 3)), "q_criterion", "lambda2" and "strain_rate"
     ((particles, 3, 3)), in the unit of J or its square.
     """
-    matrices = np.ascontiguousarray(gradients, dtype=np.float64)
+    matrices = contiguous(gradients, "array of velocity gradients").astype(np.float64)
     if matrices.ndim != 3 or matrices.shape[1:] != (3, 3):
         raise InvalidArgument(f"Velocity gradients have the shape (particles, 3, 3), not {matrices.shape}.")
     wanted, arrays = c.mcor_flow(), {}

@@ -206,7 +206,54 @@ class Inputs(unittest.TestCase):
             sphere(volume=np.array(["a"] * N ** 3))
         with self.assertRaisesRegex(mc.DeviceError, "no OpenCL device \"nonsuch\""):
             sphere(device="nonsuch")
+        with self.assertRaises(mc.DeviceError):
+            sphere(device="\udc80")
         self.assertGreater(len(sphere().triangles), 500)  # as if nothing had happened
+
+
+    def test_arrays_without_columns(self):
+        """The core reads 0 components as 1."""
+        nothing = np.zeros((N ** 3, 0))
+        for words in ({"smoothing_length": nothing}, {"volume": nothing}, {"attributes": {"a": nothing}},
+                      {"scalar_dot": nothing}):
+            with self.assertRaisesRegex(mc.InvalidArgument, "has the shape"):
+                sphere(**words)
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar has the shape"):
+            mc.isosurface(POSITIONS, nothing, iso=0.4, smoothing_length=H)
+        with self.assertRaisesRegex(mc.InvalidArgument, r"\(particles, 3\)"):
+            mc.free_surface(nothing, smoothing_length=H)
+        with self.assertRaisesRegex(mc.InvalidArgument, r"\(points, 3\)"):
+            mc.probe(POSITIONS, nothing, smoothing_length=H)
+
+    def test_what_is_no_array_of_numbers(self):
+        masked = np.ma.masked_greater(DISTANCE, 0.9)
+        for words in ({"smoothing_length": "abc"}, {"iso": "x"}, {"iso": 1j}, {"iso": [[0.3, 0.4], [0.5, 0.6]]},
+                      {"volume": [[1, 2], [3]]}, {"volume": masked}, {"attributes": {"a": masked}},
+                      {"solid": np.array(["a"] * N ** 3)}, {"attributes": [DISTANCE]}, {"box": "abcdef"},
+                      {"box": [None] * 6}, {"context": 3}):
+            with self.assertRaises(mc.InvalidArgument, msg=str(words.keys())):
+                sphere(**words)
+        for function in (mc.flow, lambda x: mc.probe(POSITIONS, x, smoothing_length=H)):
+            with self.assertRaises(mc.InvalidArgument):
+                function("x")
+
+    def test_numbers_out_of_range(self):
+        for words in ({"iteration_limit": 2 ** 32 + 5}, {"memory_limit": 2 ** 70}, {"particles_version": 2 ** 64},
+                      {"particles_version": -1}, {"iteration_limit": 3.7}, {"iteration_limit": float("inf")},
+                      {"iteration_limit": None}, {"sph_kernel": None}, {"sph_kernel": [1]},
+                      {"field": 2 ** 32}, {"tolerance": "x"}, {"h_scale": None}, {"precision": object()}):
+            with self.assertRaises(mc.InvalidArgument, msg=str(words)):
+                sphere(**words)
+        self.assertGreater(len(sphere(iteration_limit=np.float64(30), memory_limit=2 ** 40).triangles), 500)
+
+    def test_odd_bytes(self):
+        def unaligned(array):
+            return np.frombuffer(b"0" + array.tobytes(), np.uint8)[1:].view(array.dtype).reshape(array.shape)
+
+        found = mc.isosurface(unaligned(POSITIONS), unaligned(DISTANCE), iso=0.4, smoothing_length=H, volume=V,
+                              attributes={"name\udc80": unaligned(POSITIONS), "nul\0": DISTANCE})
+        self.assertEqual(found.points.tobytes(), sphere().points.tobytes())
+        self.assertEqual(list(found.attributes), ["name\udc80", "nul\0"])
 
 
 class Runs(unittest.TestCase):
@@ -232,6 +279,20 @@ class Runs(unittest.TestCase):
 
         with self.assertRaisesRegex(LookupError, "mine"):
             sphere(progress=fail)
+
+    def test_callback_that_uses_its_own_context(self):
+        """It would wait for itself."""
+        with mc.Context() as context:
+            for use in (context.close, context.release_memory, lambda: sphere(context=context)):
+                with self.assertRaisesRegex(mc.InvalidArgument, "callback"):
+                    sphere(context=context, progress=lambda fraction, phase: use())
+            with mc.Context() as other:
+                inner = []
+                sphere(context=context, progress=lambda fraction, phase: None if inner else inner.append(
+                    sphere(context=other)))
+            self.assertEqual(inner[0].points.tobytes(), sphere(context=context).points.tobytes())
+        with self.assertRaisesRegex(mc.InvalidArgument, "callback"):
+            sphere(progress=lambda fraction, phase: sphere())
 
     def test_interrupt(self):
         handler = signal.getsignal(signal.SIGINT)

@@ -323,23 +323,43 @@ static void test_extend(void** state)
   assert_int_equal(n, 4); /* create, map, unmap, copy */
 }
 
+/* A program that declares what is built in, and does not build, is built without that. */
+static void test_build_again(void** state)
+{
+  mcor_context* context = *state;
+  const mcor_build build = { .sph_kernel = MCOR_QUADRATIC };
+  const bool declares = context->cl.declares_builtins;
+  long_log = "";
+  CORE_OK(context, mcor_choose_build(context, &build));
+  set_fault(0, CL_BUILD_PROGRAM_FAILURE);
+  const mcor_status status = MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, 1, MCOR_INT(0));
+  fail_at = -1;
+  assert_int_equal(status, MCOR_DEVICE_ERROR);
+  assert_string_equal(failed_call, "clBuildProgram");
+  assert_false(context->cl.declares_builtins);
+  CORE_CHECK(declares == !strstr(mcor_last_error(context), "CL_BUILD_PROGRAM_FAILURE") &&
+      declares == !!strstr(mcor_last_error(context), "arguments; 1 were given"),
+    "%s", mcor_last_error(context));
+}
+
 /* A program that does not build says so, with the beginning of its log, however long that is. */
 static void test_build_fails(void** state)
 {
   mcor_context* context = *state;
-  const mcor_build build = { .sph_kernel = MCOR_QUADRATIC };
+  const mcor_build build = { .sph_kernel = MCOR_WENDLAND_C2 };
   char log[20000];
   memset(log, '.', sizeof log - 1);
   memcpy(log, "line 7: no such thing", 21);
   log[sizeof log - 1] = '\0';
   long_log = log;
+  context->cl.declares_builtins = false;
   set_fault(0, CL_BUILD_PROGRAM_FAILURE);
   CORE_OK(context, mcor_choose_build(context, &build));
   const mcor_status status = MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, 1, MCOR_INT(0));
   fail_at = -1;
   assert_int_equal(status, MCOR_DEVICE_ERROR);
   assert_non_null(strstr(mcor_last_error(context), "CL_BUILD_PROGRAM_FAILURE"));
-  assert_non_null(strstr(mcor_last_error(context), "mcor_w_quadratic"));
+  assert_non_null(strstr(mcor_last_error(context), "mcor_w_wendland"));
   assert_non_null(strstr(mcor_last_error(context), "line 7: no such thing"));
 }
 
@@ -409,6 +429,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_context),
     cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_extend),
-    cmocka_unit_test(test_build_fails), cmocka_unit_test(test_error_names) };
+    cmocka_unit_test(test_build_again), cmocka_unit_test(test_build_fails),
+    cmocka_unit_test(test_error_names) };
   return cmocka_run_group_tests_name("fault", tests, core_set_up, core_tear_down);
 }

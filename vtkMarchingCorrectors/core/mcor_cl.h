@@ -64,6 +64,7 @@ typedef struct mcor_cl
   int device_number, units;       /* in the list of devices; that compute side by side */
   bool is_cpu;                    /* the kernels' form for CPUs is used */
   bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
+  bool declares_builtins;         /* programs do so themselves, see mcor_builtin.cl */
   int lanes;                      /* of the programs */
   int segments;                   /* runs into which scans and sorts cut their arrays */
   int register_lanes;  /* that the device's compiler has registers for; 0: not asked yet */

@@ -244,6 +244,7 @@ static void mcor_query_device(mcor_cl* cl)
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries. */
   cl->keeps_binaries = !mcor_is_pocl(cl);
+  cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
   cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
 }

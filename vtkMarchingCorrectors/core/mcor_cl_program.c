@@ -146,15 +146,12 @@ static void mcor_store_program(const mcor_cl* cl, const mcor_cache_key* key, cl_
   free(binary);
 }
 
-static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
+static mcor_status mcor_build_with_options(
+  mcor_context* context, mcor_program number, const char* options)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT];
   const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
-  char options[512], fault[1200];
-  mcor_program_options(cl, number, options, sizeof options);
-  MCOR_RETURN_IF(mcor_is_pocl(cl) && mcor_pocl_folder_fault(fault, sizeof fault), context,
-    MCOR_DEVICE_ERROR, "%s", fault);
   const mcor_cache_key key = mcor_program_key(cl, sources, count, options);
   cl->programs[number] = mcor_load_program(cl, &key, options);
   if (cl->programs[number])
@@ -174,6 +171,24 @@ static mcor_status mcor_build_program(mcor_context* context, mcor_program number
   mcor_store_program(cl, &key, program);
   cl->programs[number] = program;
   return MCOR_OK;
+}
+
+static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
+{
+  mcor_cl* cl = &context->cl;
+  char options[512], fault[1200];
+  MCOR_RETURN_IF(mcor_is_pocl(cl) && mcor_pocl_folder_fault(fault, sizeof fault), context,
+    MCOR_DEVICE_ERROR, "%s", fault);
+  mcor_program_options(cl, number, options, sizeof options);
+  mcor_status status = mcor_build_with_options(context, number, options);
+  if (status != MCOR_OK && cl->declares_builtins)
+  {
+    cl->declares_builtins = false; /* as this compiler does not like that */
+    context->error[0] = '\0';
+    mcor_program_options(cl, number, options, sizeof options);
+    status = mcor_build_with_options(context, number, options);
+  }
+  return status;
 }
 
 mcor_status mcor_need_program(mcor_context* context, mcor_program number)

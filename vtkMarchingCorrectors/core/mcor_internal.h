@@ -469,6 +469,7 @@ typedef struct mcor_topology_table
 void mcor_make_topology_table(mcor_topology_table* table);
 
 extern const char mcor_source_mcor_shared_h[];
+extern const char mcor_source_mcor_builtin_cl[];
 extern const char mcor_source_mcor_prelude_cl[];
 extern const char mcor_source_mcor_intrinsic_cl[];
 extern const char mcor_source_mcor_points_cl[];

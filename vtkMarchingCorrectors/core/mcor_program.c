@@ -33,6 +33,7 @@ int mcor_program_sources(
     const char* text;
     int programs;
   } all[] = { { mcor_source_mcor_shared_h, LATTICE | FIELD | OPTIONS | PROBE | GRADED },
+    { mcor_source_mcor_builtin_cl, LATTICE | FIELD | OPTIONS | PROBE | GRADED },
     { mcor_source_mcor_prelude_cl, LATTICE | FIELD | OPTIONS | PROBE | GRADED },
     { mcor_source_mcor_intrinsic_cl, LATTICE | FIELD | OPTIONS | PROBE | GRADED },
     { mcor_source_mcor_sph_kernel_h, FIELD | OPTIONS | PROBE | GRADED },
@@ -92,8 +93,9 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
   const char* f = is_double ? "" : "f";
-  int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s -DMCOR_PROGRAM=%d",
-    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", (int)program);
+  int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s%s -DMCOR_PROGRAM=%d",
+    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
+    cl->declares_builtins ? " -D_OPENCL_H_ -DMCOR_DECLARES_BUILTINS=1" : "", (int)program);
   if (program == MCOR_PROGRAM_LATTICE)
   {
     /* It knows no vectors, only whether to work for a CPU. */

@@ -1,218 +1,175 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* OpenCL calls that fail, one after the other: each gives a status and a sentence, an empty surface
- * and no buffer left over, and the next run on the same context is right. */
+/* OpenCL calls, allocations of the host and callbacks of ranks that fail, one after the other: each
+ * gives a status and a sentence, an empty result and no buffer left over, and the next call on the same
+ * context is right. */
 
-#include "core_fixture.h"
+#include "core_fault.h"
 
-#include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
 
-/* The call that fails, counted from 0; -1: none. */
-static int fail_at = -1, call_count;
-static cl_int fail_with;
-static char failed_call[64];
-
-/* Buffers that OpenCL still holds; its threads release them. */
-static atomic_int live_buffers;
-
-static int fails(const char* name)
-{
-  if (call_count++ != fail_at)
-  {
-    return 0;
-  }
-  snprintf(failed_call, sizeof failed_call, "%s", name);
-  return 1;
-}
-
-#define FAULT_CALL(name, parameters, arguments)                                                    \
-  cl_int __real_##name parameters;                                                                 \
-  cl_int __wrap_##name parameters;                                                                 \
-  cl_int __wrap_##name parameters                                                                  \
-  {                                                                                                \
-    return fails(#name) ? fail_with : __real_##name arguments;                                     \
-  }
-
-FAULT_CALL(clBuildProgram,
-  (cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
-    void(CL_CALLBACK* notify)(cl_program, void*), void* data),
-  (program, count, devices, options, notify, data))
-FAULT_CALL(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
-  (kernel, index, size, value))
-FAULT_CALL(clEnqueueNDRangeKernel,
-  (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
-    const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait,
-    cl_event* event),
-  (queue, kernel, dimensions, offset, global, local, waits, wait, event))
-FAULT_CALL(clEnqueueReadBuffer,
-  (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size, void* data,
-    cl_uint waits, const cl_event* wait, cl_event* event),
-  (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_CALL(clEnqueueWriteBuffer,
-  (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
-    const void* data, cl_uint waits, const cl_event* wait, cl_event* event),
-  (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_CALL(clEnqueueFillBuffer,
-  (cl_command_queue queue, cl_mem mem, const void* pattern, size_t pattern_size, size_t offset,
-    size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
-  (queue, mem, pattern, pattern_size, offset, size, waits, wait, event))
-FAULT_CALL(clEnqueueCopyBuffer,
-  (cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset, size_t to_offset,
-    size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
-  (queue, from, to, from_offset, to_offset, size, waits, wait, event))
-FAULT_CALL(clFinish, (cl_command_queue queue), (queue))
-
-/* Reports a failure but unmaps, as else the buffer would stay mapped by this test's fault. */
-cl_int __real_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
-  cl_uint waits, const cl_event* wait, cl_event* event);
-cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
-  cl_uint waits, const cl_event* wait, cl_event* event);
-cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
-  cl_uint waits, const cl_event* wait, cl_event* event)
-{
-  const cl_int error = __real_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
-  return fails("clEnqueueUnmapMemObject") ? fail_with : error;
-}
-
-/* Of a build that failed. Like real ones, it is not handed over in part. */
-static const char* long_log;
-
-cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
-  cl_program_build_info info, size_t size, void* value, size_t* needed);
-cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
-  cl_program_build_info info, size_t size, void* value, size_t* needed)
-{
-  (void)program;
-  (void)device;
-  assert_int_equal(info, CL_PROGRAM_BUILD_LOG);
-  if (needed)
-  {
-    *needed = strlen(long_log) + 1;
-  }
-  if (value && size < strlen(long_log) + 1)
-  {
-    return CL_INVALID_VALUE;
-  }
-  if (value)
-  {
-    strcpy(value, long_log);
-  }
-  return CL_SUCCESS;
-}
-
-static void CL_CALLBACK on_destroyed(cl_mem mem, void* data)
-{
-  (void)mem;
-  (void)data;
-  atomic_fetch_sub(&live_buffers, 1);
-}
-
-cl_mem __real_clCreateBuffer(
-  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
-cl_mem __wrap_clCreateBuffer(
-  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
-cl_mem __wrap_clCreateBuffer(
-  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
-{
-  if (fails("clCreateBuffer"))
-  {
-    *error = fail_with;
-    return NULL;
-  }
-  cl_mem mem = __real_clCreateBuffer(context, flags, size, host, error);
-  if (mem && clSetMemObjectDestructorCallback(mem, on_destroyed, NULL) == CL_SUCCESS)
-  {
-    atomic_fetch_add(&live_buffers, 1);
-  }
-  return mem;
-}
-
-void* __real_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
-  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
-  cl_event* event, cl_int* error);
-void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
-  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
-  cl_event* event, cl_int* error);
-void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
-  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
-  cl_event* event, cl_int* error)
-{
-  if (fails("clEnqueueMapBuffer"))
-  {
-    *error = fail_with;
-    return NULL;
-  }
-  return __real_clEnqueueMapBuffer(
-    queue, mem, blocking, flags, offset, size, waits, wait, event, error);
-}
-
-cl_kernel __real_clCreateKernel(cl_program program, const char* name, cl_int* error);
-cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error);
-cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error)
-{
-  if (fails("clCreateKernel"))
-  {
-    *error = fail_with;
-    return NULL;
-  }
-  return __real_clCreateKernel(program, name, error);
-}
-
-/* OpenCL's threads may release a buffer a little after the last command that uses it. */
-static void wait_for_release(mcor_context* context, int buffers)
-{
-  const double begin = mcor_seconds();
-  assert_int_equal(clFinish(context->cl.queue), CL_SUCCESS);
-  while (live_buffers != buffers && mcor_seconds() - begin < 10)
-  {
-    thrd_yield();
-  }
-}
-
-static void set_fault(int at, cl_int error)
-{
-  fail_at = at;
-  fail_with = error;
-  call_count = 0;
-  failed_call[0] = '\0';
-}
-
-/* What a context holds on the device when it holds nothing of a run. */
-static void expect_nothing_held(mcor_context* context, int64_t bytes, int buffers)
-{
-  mcor_release_memory(context);
-  CORE_CHECK(context->cl.bytes == bytes, "after a fault in %s: %lld bytes are held, not %lld",
-    failed_call, (long long)context->cl.bytes, (long long)bytes);
-  wait_for_release(context, buffers);
-  CORE_CHECK(live_buffers == buffers, "after a fault in %s: %d buffers are held, not %d",
-    failed_call, (int)live_buffers, buffers);
-}
-
+/* A call of the library whose faults are swept. */
 typedef struct sweep
 {
+  /* Makes the call; if it succeeds, *hash becomes that of its result. Fails the test if a result that is
+   * not there is not empty. */
+  mcor_status (*call)(
+    mcor_context* context, const struct sweep* s, const mcor_input* input, uint64_t* hash);
   mcor_input input;
   mcor_options options;
+  mcor_array points;
+  int point_count;
   uint64_t expected;
   int64_t bytes;
-  int buffers, step;
+  int step;
 } sweep;
+
+#define BUFFERS_KEPT 3 /* by a context: tables */
+
+static mcor_status extract(
+  mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
+{
+  mcor_surface surface;
+  const mcor_status status = mcor_extract(context, input, &s->options, &surface);
+  *hash = core_hash(&surface);
+  CORE_CHECK(status == MCOR_OK ? surface.triangle_count > 20
+                               : !surface.points && !surface.triangles && !surface.attributes &&
+        !surface.point_keys && surface.point_count == 0,
+    "%s: %d triangles", mcor_status_name(status), (int)surface.triangle_count);
+  mcor_free_surface(&surface);
+  return status;
+}
+
+static uint64_t hash_numbers(const double* values, int64_t count)
+{
+  uint64_t hash = (uint64_t)count;
+  for (int64_t i = 0; values && i < count; ++i)
+  {
+    uint64_t bits;
+    memcpy(&bits, values + i, sizeof bits);
+    hash = hash * 31 + bits;
+  }
+  return hash;
+}
+
+static mcor_status probe(
+  mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
+{
+  mcor_samples samples;
+  const mcor_status status =
+    mcor_probe(context, input, &s->options, &s->points, s->point_count, &samples);
+  const int64_t n = samples.count;
+  CORE_CHECK(status == MCOR_OK
+      ? n == s->point_count && samples.weight_sum && samples.values && samples.gradients
+      : !samples.weight_sum && !samples.valid && !samples.values && !samples.gradients && n == 0,
+    "%s: %d points", mcor_status_name(status), (int)n);
+  *hash = status != MCOR_OK ? 0
+                            : hash_numbers(samples.weight_sum, n) +
+      3 * hash_numbers(samples.values[0], n) + 5 * hash_numbers(samples.gradients[0], 3 * n);
+  mcor_free_samples(&samples);
+  return status;
+}
+
+static mcor_status derive(
+  mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
+{
+  mcor_derivatives found;
+  const mcor_status status =
+    mcor_derive(context, input, &s->options, MCOR_GRADIENT_CORRECTED, &found);
+  const int64_t n = found.count;
+  CORE_CHECK(status == MCOR_OK ? n == input->count && found.gradients && found.corrected
+                               : !found.gradients && !found.corrected && n == 0,
+    "%s: %d particles", mcor_status_name(status), (int)n);
+  *hash = status == MCOR_OK ? hash_numbers(found.gradients[0], 3 * n) : 0;
+  mcor_free_derivatives(&found);
+  return status;
+}
+
+/* Of one rank alone. */
+static int callbacks, fail_callback = -1;
+
+static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
+{
+  (void)user;
+  (void)reduction;
+  (void)values;
+  (void)count;
+  return callbacks++ == fail_callback;
+}
+
+static int reduce_counts(void* user, mcor_reduction reduction, int64_t* values, int count)
+{
+  (void)user;
+  (void)reduction;
+  (void)values;
+  (void)count;
+  return callbacks++ == fail_callback;
+}
+
+static int gather(void* user, const void* records, int64_t count, size_t width, const void** all,
+  int64_t* all_count)
+{
+  (void)user;
+  (void)width;
+  *all = records;
+  *all_count = count;
+  return callbacks++ == fail_callback;
+}
+
+static const mcor_ranks alone = { reduce_doubles, reduce_counts, gather, NULL };
+
+/* What a rank does: measures with all others, then extracts its box, and cells grow from box to box. */
+static mcor_status extract_as_rank(
+  mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
+{
+  mcor_globals globals;
+  sweep box = *s;
+  mcor_status status = mcor_measure_globals(context, input, &s->options, &globals);
+  box.options.globals = &globals;
+  *hash = 0;
+  if (status == MCOR_OK)
+  {
+    status = extract(context, &box, input, hash);
+  }
+  else
+  {
+    CORE_CHECK(!globals.components && globals.component_count == 0, "globals are not empty");
+  }
+  mcor_free_globals(&globals);
+  return status;
+}
 
 static void expect_right(mcor_context* context, const sweep* s)
 {
-  mcor_surface surface = core_extract(context, &s->input, &s->options);
-  CORE_CHECK(
-    core_hash(&surface) == s->expected, "after a fault in %s: another surface", failed_call);
-  mcor_free_surface(&surface);
+  uint64_t hash;
+  CORE_OK(context, s->call(context, s, &s->input, &hash));
+  CORE_CHECK(hash == s->expected, "after a fault in %s: another result", core_failed_call());
 }
 
-/* Lets every step-th call of a run fail. kept: something is on the device that can be given back,
- * so that a run without memory succeeds at the second attempt. */
-static int run_sweep(mcor_context* context, const sweep* s, cl_int error, int kept)
+/* After a fault that made the call fail: a sentence, nothing left over, and the next one is right. */
+static void expect_sound(mcor_context* context, const sweep* s, const char* words)
+{
+  const char* sentence = mcor_last_error(context);
+  CORE_CHECK(strstr(sentence, words) || strstr(sentence, "could not allocate"),
+    "fault in %s: \"%s\"", core_failed_call(), sentence);
+  core_expect_nothing_held(context, s->bytes, BUFFERS_KEPT);
+  expect_right(context, s);
+}
+
+/* Other numbers: nothing is reused, only given back. */
+static mcor_input with_other_versions(const sweep* s, int n)
+{
+  mcor_input input = s->input;
+  input.particles_version += 1 + (uint64_t)n;
+  input.scalar_version += 1 + (uint64_t)n;
+  return input;
+}
+
+/* Lets every step-th OpenCL call fail. kept: something is on the device that can be given back, so that a
+ * call without memory succeeds at the second attempt. */
+static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int kept)
 {
   const mcor_status expected = error == CL_INVALID_COMMAND_QUEUE ? MCOR_DEVICE_ERROR
     : kept                                                       ? MCOR_OK
@@ -220,39 +177,88 @@ static int run_sweep(mcor_context* context, const sweep* s, cl_int error, int ke
   int n = 0;
   for (;; n += s->step)
   {
-    mcor_surface surface;
-    kept ? expect_right(context, s) : expect_nothing_held(context, s->bytes, s->buffers);
-    mcor_input input = s->input; /* other numbers: nothing is reused, only given back */
-    input.particles_version += 1 + (uint64_t)n;
-    input.scalar_version += 1 + (uint64_t)n;
-    set_fault(n, error);
-    const mcor_status status = mcor_extract(context, &input, &s->options, &surface);
-    fail_at = -1;
-    if (!failed_call[0])
+    uint64_t hash;
+    kept ? expect_right(context, s) : core_expect_nothing_held(context, s->bytes, BUFFERS_KEPT);
+    const mcor_input input = with_other_versions(s, n);
+    core_fail_call(n, error);
+    const mcor_status status = s->call(context, s, &input, &hash);
+    core_fail_nothing();
+    if (!core_failed_call()[0])
     {
       CORE_OK(context, status);
-      mcor_free_surface(&surface);
       break;
     }
     CORE_CHECK(status == expected, "call %d, %s fails with %d: status %s, not %s: %s", n,
-      failed_call, (int)error, mcor_status_name(status), mcor_status_name(expected),
+      core_failed_call(), (int)error, mcor_status_name(status), mcor_status_name(expected),
       mcor_last_error(context));
     if (status == MCOR_OK)
     {
-      CORE_CHECK(core_hash(&surface) == s->expected, "fault in %s: another surface", failed_call);
+      CORE_CHECK(hash == s->expected, "fault in %s: another result", core_failed_call());
     }
     else
     {
-      CORE_CHECK(strstr(mcor_last_error(context), "failed with CL_") ||
-          strstr(mcor_last_error(context), "could not allocate"),
-        "fault in %s: %s", failed_call, mcor_last_error(context));
-      CORE_CHECK(!surface.points && !surface.triangles && !surface.attributes, "not empty");
-      expect_nothing_held(context, s->bytes, s->buffers);
-      expect_right(context, s);
+      expect_sound(context, s, "failed with CL_");
     }
-    mcor_free_surface(&surface);
   }
   return n;
+}
+
+/* Lets every allocation of the host fail. Some can be done without. */
+static int sweep_allocations(mcor_context* context, const sweep* s)
+{
+  int n = 0;
+  for (;; ++n)
+  {
+    uint64_t hash;
+    const mcor_input input = with_other_versions(s, n);
+    mcor_release_memory(context);
+    core_fail_allocation(n);
+    const mcor_status status = s->call(context, s, &input, &hash);
+    core_fail_nothing();
+    CORE_CHECK(status == MCOR_OK || (core_failed_call()[0] && status == MCOR_OUT_OF_CAPACITY),
+      "allocation %d, of %s: status %s: %s", n, core_failed_call(), mcor_status_name(status),
+      mcor_last_error(context));
+    if (status == MCOR_OK)
+    {
+      CORE_CHECK(hash == s->expected, "allocation %d fails: another result", n);
+    }
+    else
+    {
+      expect_sound(context, s, "emory");
+    }
+    if (!core_failed_call()[0])
+    {
+      break;
+    }
+  }
+  return n;
+}
+
+/* What is right, and what a context holds when it holds nothing of it. */
+static void begin_sweep(mcor_context* context, sweep* s)
+{
+  s->input.particles_version = s->input.scalar_version = 1000000;
+  CORE_OK(context, s->call(context, s, &s->input, &s->expected));
+  mcor_release_memory(context);
+  s->bytes = context->cl.bytes;
+}
+
+/* Fewer faults for what is a variation of that which test_every_call_fails_once does one by one. */
+static void sweep_room(mcor_context* context, sweep* s, int step, int least_calls)
+{
+  begin_sweep(context, s);
+  s->step = step;
+  const int calls = sweep_calls(context, s, CL_INVALID_COMMAND_QUEUE, 0);
+  CORE_CHECK(calls > least_calls, "only %d calls", calls);
+  s->step = 3 * step + 1;
+  sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
+  if (!s->options.ranks) /* those do not try again */
+  {
+    sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 1);
+  }
+  const int allocations = sweep_allocations(context, s);
+  CORE_CHECK(allocations > 1, "only %d allocations", allocations);
+  print_message("%d calls, %d allocations\n", calls, allocations);
 }
 
 static double flat(const double x[3])
@@ -269,28 +275,122 @@ static void test_every_call_fails_once(void** state)
   core_set set = core_make_block(6, 0.3, 3, flat);
   const mcor_array attribute = core_array(set.smoothing_length, 1);
   set.smoothing_length[7] *= 1.5;
-  sweep s = { .input = core_input(&set), .options = core_options(&iso), .step = 1 };
+  sweep s = {
+    .call = extract, .input = core_input(&set), .options = core_options(&iso), .step = 1
+  };
   s.input.attributes = &attribute;
   s.input.attribute_count = 1;
-  s.input.particles_version = s.input.scalar_version = 1000000;
   s.options.topology = MCOR_TOPOLOGY_FIELD;
   s.options.seeds = MCOR_PAIRS;
   s.options.boundary_eigenvalue = s.options.nearest_particle = 1;
-  mcor_surface surface = core_extract(context, &s.input, &s.options);
-  s.expected = core_hash(&surface);
-  CORE_CHECK(surface.triangle_count > 20, "%d triangles", (int)surface.triangle_count);
-  mcor_free_surface(&surface);
-  mcor_release_memory(context);
-  s.bytes = context->cl.bytes;
-  s.buffers = 3; /* tables that a context keeps */
-  const int calls = run_sweep(context, &s, CL_INVALID_COMMAND_QUEUE, 0);
+  begin_sweep(context, &s);
+  const int calls = sweep_calls(context, &s, CL_INVALID_COMMAND_QUEUE, 0);
   CORE_CHECK(calls > 500, "only %d calls", calls);
-  run_sweep(context, &s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
+  s.step = 3;
+  sweep_calls(context, &s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
   s.step = 7;
-  run_sweep(context, &s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 1);
+  sweep_calls(context, &s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 1);
   s.step = 37;
-  run_sweep(context, &s, CL_OUT_OF_RESOURCES, 1);
-  run_sweep(context, &s, CL_OUT_OF_HOST_MEMORY, 1);
+  sweep_calls(context, &s, CL_OUT_OF_RESOURCES, 1);
+  sweep_calls(context, &s, CL_OUT_OF_HOST_MEMORY, 1);
+  sweep_allocations(context, &s);
+  core_free_set(&set);
+}
+
+static void test_probe_and_derive(void** state)
+{
+  static const double at[12] = { 0, 0, 0, 1, 0.3, 0.2, 99, 0, 0, -1, -1.2, 0.1 };
+  core_set set = core_make_block(5, 0.3, 3, flat);
+  double* points = core_copy(at, sizeof at);
+  const mcor_array attribute = core_array(set.scalar, 1);
+  sweep s = { .call = probe,
+    .input = core_input(&set),
+    .options = core_options(NULL),
+    .points = core_array(points, 3),
+    .point_count = 4 };
+  s.options.iso_count = 0;
+  s.options.gradients = 1;
+  s.input.attributes = &attribute;
+  s.input.attribute_count = 1;
+  sweep_room(*state, &s, 3, 40);
+  s.call = derive;
+  sweep_room(*state, &s, 3, 40);
+  core_free_set(&set);
+  free(points);
+}
+
+/* A box, a period, walls; each with what it alone does. */
+static void test_regions(void** state)
+{
+  static const double iso = 0.3, half = 0.5;
+  core_set set = core_make_block(8, 0.1, 3, flat);
+  sweep box = { .call = extract, .input = core_input(&set), .options = core_options(&iso) };
+  sweep period = box, wall = box;
+  const double sides[6] = { -9, 0.4, -9, 9, -9, 9 };
+  box.options.has_box = box.options.point_keys = 1;
+  memcpy(box.options.box, sides, sizeof sides);
+  sweep_room(*state, &box, 23, 100);
+  period.options.periodic[0] = -4;
+  period.options.periodic[1] = 4;
+  period.options.seeds = MCOR_PAIRS;
+  sweep_room(*state, &period, 23, 100);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.solid[i] = set.position[3 * i] > 1;
+  }
+  set.has_solids = 1;
+  wall.input.solid = set.solid;
+  wall.options.wall_share = 0.5;
+  wall.options.field = MCOR_WEIGHT_SUM;
+  wall.options.iso_values = &half;
+  sweep_room(*state, &wall, 23, 100);
+  core_free_set(&set);
+}
+
+static void test_adaptive_cubes(void** state)
+{
+  static const double half = 0.5;
+  core_set set = core_make_block(5, 0.1, 3, flat);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] = set.position[3 * i] > 0 ? 2.7 : 1.3;
+    set.volume[i] = set.position[3 * i] > 0 ? 4 : 1;
+  }
+  sweep s = { .call = extract, .input = core_input(&set), .options = core_options(&half) };
+  s.options.field = MCOR_WEIGHT_SUM;
+  s.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  sweep_room(*state, &s, 7, 150);
+  core_free_set(&set);
+}
+
+static void test_ranks(void** state)
+{
+  mcor_context* context = *state;
+  static const double iso = 0.3;
+  core_set set = core_make_block(6, 0.3, 3, flat);
+  sweep s = { .call = extract_as_rank, .input = core_input(&set), .options = core_options(&iso) };
+  s.options.ranks = &alone;
+  s.options.seeds = MCOR_PAIRS;
+  s.options.has_box = 1;
+  const double sides[6] = { -9, 9, -9, 9, -9, 9 };
+  memcpy(s.options.box, sides, sizeof sides);
+  sweep_room(context, &s, 23, 100);
+  callbacks = 0;
+  expect_right(context, &s);
+  const int count = callbacks;
+  CORE_CHECK(count > 5, "only %d callbacks", count);
+  for (int n = 0; n < count; ++n)
+  {
+    uint64_t hash;
+    const mcor_input input = with_other_versions(&s, n);
+    callbacks = 0;
+    fail_callback = n;
+    const mcor_status status = s.call(context, &s, &input, &hash);
+    fail_callback = -1;
+    CORE_CHECK(status == MCOR_CANCELLED && callbacks == n + 1,
+      "callback %d of %d, %d were made: %s", n, count, callbacks, mcor_status_name(status));
+    expect_sound(context, &s, "Another rank failed");
+  }
   core_free_set(&set);
 }
 
@@ -300,21 +400,20 @@ static void test_extend(void** state)
   mcor_context* context = *state;
   mcor_release_memory(context);
   const int64_t bytes = context->cl.bytes;
-  const int buffers = 3; /* as above */
   int n = 0;
   for (;; ++n)
   {
     mcor_buffer buffer = { 0 };
     CORE_OK(context, mcor_fill(context, &buffer, 1, 1000));
-    set_fault(n, CL_MEM_OBJECT_ALLOCATION_FAILURE);
+    core_fail_call(n, CL_MEM_OBJECT_ALLOCATION_FAILURE);
     const mcor_status status = mcor_extend(context, &buffer, 1000, 2 * MCOR_LARGE_ARRAY);
-    fail_at = -1;
-    assert_int_equal(status, failed_call[0] ? MCOR_OUT_OF_CAPACITY : MCOR_OK);
+    core_fail_nothing();
+    assert_int_equal(status, core_failed_call()[0] ? MCOR_OUT_OF_CAPACITY : MCOR_OK);
     uint8_t last = 0;
     CORE_OK(context, mcor_read(context, &buffer, 999, &last, 1));
     assert_int_equal(last, 1);
     mcor_release(context, &buffer);
-    expect_nothing_held(context, bytes, buffers);
+    core_expect_nothing_held(context, bytes, BUFFERS_KEPT);
     if (status == MCOR_OK)
     {
       break;
@@ -329,13 +428,13 @@ static void test_build_again(void** state)
   mcor_context* context = *state;
   const mcor_build build = { .sph_kernel = MCOR_QUADRATIC };
   const bool declares = context->cl.declares_builtins;
-  long_log = "";
+  core_set_build_log("");
   CORE_OK(context, mcor_choose_build(context, &build));
-  set_fault(0, CL_BUILD_PROGRAM_FAILURE);
+  core_fail_call(0, CL_BUILD_PROGRAM_FAILURE);
   const mcor_status status = MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, 1, MCOR_INT(0));
-  fail_at = -1;
+  core_fail_nothing();
   assert_int_equal(status, MCOR_DEVICE_ERROR);
-  assert_string_equal(failed_call, "clBuildProgram");
+  assert_string_equal(core_failed_call(), "clBuildProgram");
   assert_false(context->cl.declares_builtins);
   CORE_CHECK(declares == !strstr(mcor_last_error(context), "CL_BUILD_PROGRAM_FAILURE") &&
       declares == !!strstr(mcor_last_error(context), "arguments; 1 were given"),
@@ -351,12 +450,12 @@ static void test_build_fails(void** state)
   memset(log, '.', sizeof log - 1);
   memcpy(log, "line 7: no such thing", 21);
   log[sizeof log - 1] = '\0';
-  long_log = log;
+  core_set_build_log(log);
   context->cl.declares_builtins = false;
-  set_fault(0, CL_BUILD_PROGRAM_FAILURE);
+  core_fail_call(0, CL_BUILD_PROGRAM_FAILURE);
   CORE_OK(context, mcor_choose_build(context, &build));
   const mcor_status status = MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, 1, MCOR_INT(0));
-  fail_at = -1;
+  core_fail_nothing();
   assert_int_equal(status, MCOR_DEVICE_ERROR);
   assert_non_null(strstr(mcor_last_error(context), "CL_BUILD_PROGRAM_FAILURE"));
   assert_non_null(strstr(mcor_last_error(context), "mcor_w_wendland"));
@@ -377,17 +476,17 @@ static void test_error_names(void** state)
   for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
   {
     CORE_OK(context, mcor_reserve(context, &buffer, 1));
-    set_fault(0, names[i].code);
+    core_fail_call(0, names[i].code);
     assert_int_equal(mcor_fill(context, &buffer, 0, 1), MCOR_DEVICE_ERROR);
-    fail_at = -1;
+    core_fail_nothing();
     CORE_CHECK(strstr(mcor_last_error(context), names[i].name), "%s", mcor_last_error(context));
   }
   /* Every code of OpenCL 1.2: -1 to -19, and -30 to -68. */
   for (cl_int code = -68; code < 0; ++code)
   {
-    set_fault(0, code);
+    core_fail_call(0, code);
     mcor_fill(context, &buffer, 0, 1);
-    fail_at = -1;
+    core_fail_nothing();
     CORE_CHECK((code < -19 && code > -30) || strstr(mcor_last_error(context), "with CL_"), "%d: %s",
       (int)code, mcor_last_error(context));
   }
@@ -405,10 +504,10 @@ static void test_no_context(void** state)
   for (int n = 0, done = 0; !done; ++n)
   {
     mcor_context* context = NULL;
-    set_fault(n, CL_OUT_OF_RESOURCES);
+    core_fail_call(n, CL_OUT_OF_RESOURCES);
     const mcor_status status = mcor_create_context(NULL, &context);
-    fail_at = -1;
-    done = !failed_call[0];
+    core_fail_nothing();
+    done = !core_failed_call()[0];
     CORE_CHECK(done == (status == MCOR_OK), "call %d: %s", n, mcor_status_name(status));
     CORE_CHECK(!done || n >= 2, "only %d calls", n);
     if (!done)
@@ -416,8 +515,8 @@ static void test_no_context(void** state)
       mcor_surface surface = { .point_count = 7 };
       mcor_release_memory(context);
       assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
-      CORE_CHECK(strstr(mcor_last_error(context), "CL_OUT_OF_RESOURCES"), "%s: %s", failed_call,
-        mcor_last_error(context));
+      CORE_CHECK(strstr(mcor_last_error(context), "CL_OUT_OF_RESOURCES"), "%s: %s",
+        core_failed_call(), mcor_last_error(context));
       assert_int_equal(surface.point_count, 0);
     }
     mcor_free_context(context);
@@ -428,8 +527,9 @@ static void test_no_context(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_context),
-    cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_extend),
-    cmocka_unit_test(test_build_again), cmocka_unit_test(test_build_fails),
-    cmocka_unit_test(test_error_names) };
+    cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_probe_and_derive),
+    cmocka_unit_test(test_regions), cmocka_unit_test(test_adaptive_cubes),
+    cmocka_unit_test(test_ranks), cmocka_unit_test(test_extend), cmocka_unit_test(test_build_again),
+    cmocka_unit_test(test_build_fails), cmocka_unit_test(test_error_names) };
   return cmocka_run_group_tests_name("fault", tests, core_set_up, core_tear_down);
 }

@@ -1,0 +1,227 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+#include "core_fault.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <threads.h>
+
+/* The call that fails, counted from 0; -1: none. */
+static int fail_at = -1, call_count;
+static bool of_host; /* an allocation, not a call of OpenCL */
+static cl_int fail_with;
+static char failed_call[64];
+
+/* Buffers that OpenCL still holds; its threads release them. */
+static atomic_int live_buffers;
+
+static int fails(const char* name, bool host)
+{
+  if (fail_at < 0 || host != of_host || call_count++ != fail_at)
+  {
+    return 0;
+  }
+  snprintf(failed_call, sizeof failed_call, "%s", name);
+  return 1;
+}
+
+#define FAULT_CALL(name, parameters, arguments)                                                    \
+  cl_int __real_##name parameters;                                                                 \
+  cl_int __wrap_##name parameters;                                                                 \
+  cl_int __wrap_##name parameters                                                                  \
+  {                                                                                                \
+    return fails(#name, false) ? fail_with : __real_##name arguments;                              \
+  }
+
+FAULT_CALL(clBuildProgram,
+  (cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
+    void(CL_CALLBACK* notify)(cl_program, void*), void* data),
+  (program, count, devices, options, notify, data))
+FAULT_CALL(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
+  (kernel, index, size, value))
+FAULT_CALL(clEnqueueNDRangeKernel,
+  (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
+    const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait,
+    cl_event* event),
+  (queue, kernel, dimensions, offset, global, local, waits, wait, event))
+FAULT_CALL(clEnqueueReadBuffer,
+  (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size, void* data,
+    cl_uint waits, const cl_event* wait, cl_event* event),
+  (queue, mem, blocking, offset, size, data, waits, wait, event))
+FAULT_CALL(clEnqueueWriteBuffer,
+  (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
+    const void* data, cl_uint waits, const cl_event* wait, cl_event* event),
+  (queue, mem, blocking, offset, size, data, waits, wait, event))
+FAULT_CALL(clEnqueueFillBuffer,
+  (cl_command_queue queue, cl_mem mem, const void* pattern, size_t pattern_size, size_t offset,
+    size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
+  (queue, mem, pattern, pattern_size, offset, size, waits, wait, event))
+FAULT_CALL(clEnqueueCopyBuffer,
+  (cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset, size_t to_offset,
+    size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
+  (queue, from, to, from_offset, to_offset, size, waits, wait, event))
+FAULT_CALL(clFinish, (cl_command_queue queue), (queue))
+
+/* Reports a failure but unmaps, as else the buffer would stay mapped by this test's fault. */
+cl_int __real_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+  cl_uint waits, const cl_event* wait, cl_event* event);
+cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+  cl_uint waits, const cl_event* wait, cl_event* event);
+cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+  cl_uint waits, const cl_event* wait, cl_event* event)
+{
+  const cl_int error = __real_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
+  return fails("clEnqueueUnmapMemObject", false) ? fail_with : error;
+}
+
+static const char* build_log;
+
+void core_set_build_log(const char* log)
+{
+  build_log = log;
+}
+
+cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
+  cl_program_build_info info, size_t size, void* value, size_t* needed);
+cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
+  cl_program_build_info info, size_t size, void* value, size_t* needed)
+{
+  (void)program;
+  (void)device;
+  assert_int_equal(info, CL_PROGRAM_BUILD_LOG);
+  if (needed)
+  {
+    *needed = strlen(build_log) + 1;
+  }
+  if (value && size < strlen(build_log) + 1)
+  {
+    return CL_INVALID_VALUE;
+  }
+  if (value)
+  {
+    strcpy(value, build_log);
+  }
+  return CL_SUCCESS;
+}
+
+static void CL_CALLBACK on_destroyed(cl_mem mem, void* data)
+{
+  (void)mem;
+  (void)data;
+  atomic_fetch_sub(&live_buffers, 1);
+}
+
+cl_mem __real_clCreateBuffer(
+  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
+cl_mem __wrap_clCreateBuffer(
+  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
+cl_mem __wrap_clCreateBuffer(
+  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
+{
+  if (fails("clCreateBuffer", false))
+  {
+    *error = fail_with;
+    return NULL;
+  }
+  cl_mem mem = __real_clCreateBuffer(context, flags, size, host, error);
+  if (mem && clSetMemObjectDestructorCallback(mem, on_destroyed, NULL) == CL_SUCCESS)
+  {
+    atomic_fetch_add(&live_buffers, 1);
+  }
+  return mem;
+}
+
+void* __real_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
+  cl_event* event, cl_int* error);
+void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
+  cl_event* event, cl_int* error);
+void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
+  cl_event* event, cl_int* error)
+{
+  if (fails("clEnqueueMapBuffer", false))
+  {
+    *error = fail_with;
+    return NULL;
+  }
+  return __real_clEnqueueMapBuffer(
+    queue, mem, blocking, flags, offset, size, waits, wait, event, error);
+}
+
+cl_kernel __real_clCreateKernel(cl_program program, const char* name, cl_int* error);
+cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error);
+cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error)
+{
+  if (fails("clCreateKernel", false))
+  {
+    *error = fail_with;
+    return NULL;
+  }
+  return __real_clCreateKernel(program, name, error);
+}
+
+#define FAULT_ALLOCATION(name, parameters, arguments)                                              \
+  void* __real_##name parameters;                                                                  \
+  void* __wrap_##name parameters;                                                                  \
+  void* __wrap_##name parameters                                                                   \
+  {                                                                                                \
+    return fails(#name, true) ? NULL : __real_##name arguments;                                    \
+  }
+
+FAULT_ALLOCATION(malloc, (size_t size), (size))
+FAULT_ALLOCATION(calloc, (size_t count, size_t size), (count, size))
+FAULT_ALLOCATION(realloc, (void* memory, size_t size), (memory, size))
+
+/* OpenCL's threads may release a buffer a little after the last command that uses it. */
+static void wait_for_release(mcor_context* context, int buffers)
+{
+  const double begin = mcor_seconds();
+  assert_int_equal(clFinish(context->cl.queue), CL_SUCCESS);
+  while (live_buffers != buffers && mcor_seconds() - begin < 10)
+  {
+    thrd_yield();
+  }
+}
+
+static void set_fault(int n, cl_int error, bool host)
+{
+  fail_at = n;
+  fail_with = error;
+  of_host = host;
+  call_count = 0;
+  failed_call[0] = '\0';
+}
+
+void core_fail_call(int n, cl_int error)
+{
+  set_fault(n, error, false);
+}
+
+void core_fail_allocation(int n)
+{
+  set_fault(n, 0, true);
+}
+
+void core_fail_nothing(void)
+{
+  fail_at = -1;
+}
+
+const char* core_failed_call(void)
+{
+  return failed_call;
+}
+
+void core_expect_nothing_held(mcor_context* context, int64_t bytes, int buffers)
+{
+  mcor_release_memory(context);
+  CORE_CHECK(context->cl.bytes == bytes, "after a fault in %s: %lld bytes are held, not %lld",
+    failed_call, (long long)context->cl.bytes, (long long)bytes);
+  wait_for_release(context, buffers);
+  CORE_CHECK(live_buffers == buffers, "after a fault in %s: %d buffers are held, not %d",
+    failed_call, (int)live_buffers, buffers);
+}

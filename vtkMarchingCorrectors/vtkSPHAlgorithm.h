@@ -51,6 +51,7 @@ class vtkPointSet;
 class vtkSPHParticles;
 class vtkSPHRanks;
 struct mcor_context;
+struct mcor_input;
 struct mcor_options;
 struct vtkSPHParticlesChoice;
 struct vtkSPHRequest;
@@ -234,9 +235,10 @@ public:
 
   ///@{
   /**
-   * The processes that share a surface; VTK's global controller by default. With MPI and more than
+   * The processes that share a run; VTK's global controller by default. With MPI and more than
    * one process, all update together, each with some of the particles or none, see
-   * vtkMarchingCorrectors. Probe and derivatives are each process's own.
+   * vtkMarchingCorrectors; so do probe and derivatives, whose results stay with the process that has
+   * the points or particles.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);

@@ -8,72 +8,60 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHDerivativesWanted.h"
 #include "vtkSPHParticles.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <cstdlib>
-#include <vector>
 
-namespace
-{
-/** One of the arrays made of the gradient of a vector. */
-struct Quantity
-{
-  const char* Name;
-  int Components;
-  double* mcor_flow::*Values;
-  bool Wanted;
-};
-
-/** Adds one to the point data. False if memory ran out. */
-bool AddQuantity(
-  const Quantity& quantity, const mcor_derivatives& derivatives, bool asFloat, vtkPointData* data)
+//------------------------------------------------------------------------------
+bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
+  vtkPointData* data, const mcor_derivatives& derivatives, bool asFloat) const
 {
   const auto values =
-    static_cast<size_t>(derivatives.count) * static_cast<size_t>(quantity.Components);
-  auto* made = static_cast<double*>(std::malloc(values * sizeof(double)));
+    static_cast<size_t>(derivatives.count) * static_cast<size_t>(this->Components);
+  auto* made = static_cast<double*>(std::malloc((values + 1) * sizeof(double)));
   if (!made)
   {
     return false;
   }
   mcor_flow flow = {};
-  flow.*quantity.Values = made;
+  flow.*this->Values = made;
   mcor_decompose_gradients(derivatives.gradients[0], derivatives.count, &flow);
   vtkSPHAddArray(
-    data, quantity.Name, vtkSPHAdoptReal(made, quantity.Components, derivatives.count, asFloat));
+    data, this->Name, vtkSPHAdoptReal(made, this->Components, derivatives.count, asFloat));
+  std::free(made); // where there are no particles
   return true;
 }
+
+//------------------------------------------------------------------------------
+bool vtkSPHDerivatives::vtkWanted::AddTo(
+  vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
+{
+  const bool asFloat = from.Array->GetDataType() == VTK_FLOAT;
+  for (const Quantity& quantity : this->Quantities)
+  {
+    if (quantity.IsWanted && from.Components == 3 && !quantity.AddTo(data, derivatives, asFloat))
+    {
+      return false;
+    }
+  }
+  if (this->Gradient)
+  {
+    vtkSPHAddArray(data, this->GradientName.c_str(),
+      vtkSPHAdoptReal(derivatives.gradients[0], 3 * from.Components, derivatives.count, asFloat));
+  }
+  vtkSPHAddArray(data, (this->GradientName + "Corrected").c_str(),
+    vtkSPHAdopt<vtkUnsignedCharArray>(derivatives.corrected, 1, derivatives.count));
+  return true;
 }
 
-// What a run adds to the particles, as it was asked for when the run began.
-struct vtkSPHDerivatives::vtkWanted
+//------------------------------------------------------------------------------
+std::string vtkSPHDerivatives::vtkWanted::DescribeNoMemory(vtkIdType particles)
 {
-  std::vector<Quantity> Quantities;
-  bool Gradient;
-  std::string GradientName;
-
-  /** False if memory ran out. */
-  bool AddTo(vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
-  {
-    const bool asFloat = from.Array->GetDataType() == VTK_FLOAT;
-    for (const Quantity& quantity : this->Quantities)
-    {
-      if (quantity.Wanted && from.Components == 3 &&
-        !AddQuantity(quantity, derivatives, asFloat, data))
-      {
-        return false;
-      }
-    }
-    if (this->Gradient)
-    {
-      vtkSPHAddArray(data, this->GradientName.c_str(),
-        vtkSPHAdoptReal(derivatives.gradients[0], 3 * from.Components, derivatives.count, asFloat));
-    }
-    vtkSPHAddArray(data, (this->GradientName + "Corrected").c_str(),
-      vtkSPHAdopt<vtkUnsignedCharArray>(derivatives.corrected, 1, derivatives.count));
-    return true;
-  }
-};
+  return "Host memory for the derivatives of " + std::to_string(particles) +
+    " particles could not be allocated.";
+}
 
 //------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHDerivatives);
@@ -83,6 +71,7 @@ vtkSPHDerivatives::vtkSPHDerivatives()
 {
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  this->SharesRuns = true;
 }
 
 vtkSPHDerivatives::~vtkSPHDerivatives() = default;
@@ -109,6 +98,13 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* particles = vtkPointSet::SafeDownCast(data);
   this->SetUsedNames(nullptr);
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    this->ProcessTogether(particles, vtkPointSet::SafeDownCast(output));
+    return;
+  }
+#endif
   if (data && !particles)
   {
     this->Warn(std::string("A ") + data->GetClassName() +
@@ -165,9 +161,7 @@ void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, v
   const vtkSPHAttribute& array = input.Interpolated[0];
   if (derivatives.attribute_not_finite[0] >= 0)
   {
-    this->Fail("The point array '" + array.Name + "' is NaN or infinite at particle " +
-      std::to_string(derivatives.attribute_not_finite[0]) +
-      ", so that its gradients are not defined around. Correct its values.");
+    this->FailNotFinite(array.Name, derivatives.attribute_not_finite[0]);
   }
   else
   {
@@ -175,11 +169,18 @@ void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, v
     if (!wanted.AddTo(output->GetPointData(), derivatives, array))
     {
       output->Initialize();
-      this->Fail("Host memory for the derivatives of " + std::to_string(derivatives.count) +
-        " particles could not be allocated.");
+      this->Fail(vtkWanted::DescribeNoMemory(derivatives.count));
     }
   }
   mcor_free_derivatives(&derivatives);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHDerivatives::FailNotFinite(const std::string& array, vtkIdType particle)
+{
+  this->Fail("The point array '" + array + "' is NaN or infinite at particle " +
+    std::to_string(particle) +
+    ", so that its gradients are not defined around. Correct its values.");
 }
 
 //------------------------------------------------------------------------------

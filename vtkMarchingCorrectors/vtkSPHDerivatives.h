@@ -33,8 +33,10 @@
  * Composite data give composite data: each block that is a point set is worked on by itself.
  *
  * @warning
- * Every piece or block is worked on by itself, so that gradients at a cut are those at an end of the
- * fluid.
+ * Every block is worked on by itself, so that gradients at a cut are those at an end of the fluid. So
+ * is every piece, but where the controller has many processes: these share the work, each gets the
+ * derivatives of its particles, the same to the last bit as where one process has them all. Particles
+ * that vtkGhostType marks as duplicates get zeros.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe vtkGradientFilter
@@ -45,6 +47,10 @@
 
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
+
+class vtkIdList;
+class vtkPointData;
+class vtkPolyData;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHDerivatives : public vtkSPHAlgorithm
 {
@@ -130,6 +136,10 @@ private:
   struct vtkWanted;
   vtkWanted ListWanted() const;
   void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
+  void FailNotFinite(const std::string& array, vtkIdType particle);
+  void ProcessTogether(vtkPointSet* particles, vtkPointSet* output);
+  bool DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+    vtkIdList* numbers, vtkIdType count, vtkPointData* results);
 };
 
 #endif

@@ -98,9 +98,14 @@ struct ChunkProgress
 /** A version that no kept run has: without it, each of several chunks would make the search grid
  * anew. One chunk alone gets none, so that only particles near its points are taken to the device. */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
+}
 
-mcor_status ProbeChunks(mcor_context* context, const mcor_input& particles, mcor_options options,
-  vtkDataSet* points, vtkSPHSamples& results, vtkFieldData* statistics)
+//------------------------------------------------------------------------------
+vtkStandardNewMacro(vtkSPHProbe);
+
+//------------------------------------------------------------------------------
+int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
+  mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics)
 {
   const vtkIdType total = points->GetNumberOfPoints();
   mcor_input input = particles;
@@ -130,15 +135,12 @@ mcor_status ProbeChunks(mcor_context* context, const mcor_input& particles, mcor
   }
   return MCOR_OK;
 }
-}
-
-//------------------------------------------------------------------------------
-vtkStandardNewMacro(vtkSPHProbe);
 
 //------------------------------------------------------------------------------
 vtkSPHProbe::vtkSPHProbe()
 {
   this->SetNumberOfInputPorts(2);
+  this->SharesRuns = true;
 }
 
 vtkSPHProbe::~vtkSPHProbe() = default;
@@ -168,13 +170,13 @@ const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
 }
 
 //------------------------------------------------------------------------------
-// Each piece of the points needs all particles.
+// Each piece of the points needs all particles; ranks find them by themselves.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* particles = inputVector[1]->GetInformationObject(0);
-  if (particles)
+  if (particles && !this->IsShared())
   {
     particles->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
     particles->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
@@ -206,6 +208,13 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* points = vtkDataSet::SafeDownCast(data);
   this->SetUsedNames(nullptr);
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    this->ProcessTogether(points, vtkDataSet::SafeDownCast(output));
+    return;
+  }
+#endif
   if (data && !points)
   {
     this->Warn(std::string("A ") + data->GetClassName() + " has no points to probe at.");
@@ -240,20 +249,26 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 }
 
 //------------------------------------------------------------------------------
-// What an observer of the progress may change is read before the run.
-void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output)
+void vtkSPHProbe::FillProbeOptions(mcor_options& options) const
 {
-  mcor_options options;
   this->FillOptions(options);
   options.field = this->ShepardNormalization ? MCOR_SHEPARD : MCOR_SUM;
   options.node_threshold = this->WeightThreshold;
   options.gradients = this->ComputeGradients;
+}
+
+//------------------------------------------------------------------------------
+// What an observer of the progress may change is read before the run.
+void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output)
+{
+  mcor_options options;
+  this->FillProbeOptions(options);
   vtkSPHSamples samples(input, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints());
   vtkFieldData* statistics = this->RunStatistics;
   if (input.FluidCount > 0 && points->GetNumberOfPoints() > 0 &&
     !this->CallCore(input, options,
       [&](mcor_context* context)
-      { return ProbeChunks(context, input.Core, options, points, samples, statistics); }))
+      { return EvaluateAt(points, context, input.Core, options, samples, statistics); }))
   {
     return;
   }

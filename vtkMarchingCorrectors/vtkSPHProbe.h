@@ -29,6 +29,11 @@
  * particles. Points are treated some at a time, so that little memory is needed beside that of the
  * output; points out of all particles' reach cost next to nothing.
  *
+ * Where the controller has many processes, they share the work: each has some of the points and some
+ * of the particles, or none, and gets the values at its points, the same to the last bit as where one
+ * process has all of both. Points marked by vtkGhostType are points like others, particles so marked do
+ * not count.
+ *
  * Composite data at port 0 give composite data. Particles in several blocks are taken together, with
  * the arrays that all blocks have.
  *
@@ -41,6 +46,9 @@
 
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
+
+class vtkPolyData;
+class vtkSPHSamples;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHProbe : public vtkSPHAlgorithm
 {
@@ -128,7 +136,14 @@ private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;
   void operator=(const vtkSPHProbe&) = delete;
 
+  void FillProbeOptions(mcor_options& options) const;
   void Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output);
+  void ProcessTogether(vtkDataSet* points, vtkDataSet* output);
+  bool ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+    vtkDataSet* points, vtkDataSet* output);
+  /** A mcor_status: of the core, some points at a time. */
+  static int EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
+    mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics);
 
   vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
 };

@@ -11,12 +11,14 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <string>
 
 namespace
@@ -96,12 +98,10 @@ struct Layout
   std::vector<Form> Forms;
 };
 
-Layout Describe(vtkPolyData* particles)
+Layout DescribeArrays(vtkPointData* arrays, vtkIdType count)
 {
   Layout layout;
-  vtkPointData* arrays = particles->GetPointData();
-  layout.Points = particles->GetNumberOfPoints();
-  layout.IsDouble = particles->GetPoints() && particles->GetPoints()->GetDataType() != VTK_FLOAT;
+  layout.Points = count;
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
@@ -121,6 +121,13 @@ Layout Describe(vtkPolyData* particles)
       layout.Forms.push_back(form);
     }
   }
+  return layout;
+}
+
+Layout Describe(vtkPolyData* particles)
+{
+  Layout layout = DescribeArrays(particles->GetPointData(), particles->GetNumberOfPoints());
+  layout.IsDouble = particles->GetPoints() && particles->GetPoints()->GetDataType() != VTK_FLOAT;
   return layout;
 }
 
@@ -210,6 +217,18 @@ vtkSmartPointer<vtkAbstractArray> MakeArray(const Form& form, vtkIdType count)
 }
 
 /** Without values yet. */
+void AddArrays(vtkPointData* data, const Layout& layout, vtkIdType count)
+{
+  for (const Form& form : layout.Forms)
+  {
+    const int at = data->AddArray(MakeArray(form, count));
+    if (form.Attribute >= 0)
+    {
+      data->SetActiveAttribute(at, form.Attribute);
+    }
+  }
+}
+
 vtkSmartPointer<vtkPolyData> MakeParticles(const Layout& layout, vtkIdType count)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
@@ -217,14 +236,7 @@ vtkSmartPointer<vtkPolyData> MakeParticles(const Layout& layout, vtkIdType count
   points->SetDataType(layout.IsDouble ? VTK_DOUBLE : VTK_FLOAT);
   points->SetNumberOfPoints(count);
   particles->SetPoints(points);
-  for (const Form& form : layout.Forms)
-  {
-    const int at = particles->GetPointData()->AddArray(MakeArray(form, count));
-    if (form.Attribute >= 0)
-    {
-      particles->GetPointData()->SetActiveAttribute(at, form.Attribute);
-    }
-  }
+  AddArrays(particles->GetPointData(), layout, count);
   return particles;
 }
 
@@ -295,20 +307,79 @@ void GetTuples(Reader& reader, vtkAbstractArray* array, vtkIdType first, vtkIdTy
   }
 }
 
-/** The positions, then the point arrays. */
-std::vector<vtkAbstractArray*> ListArrays(vtkPolyData* particles)
+using Arrays = std::vector<vtkAbstractArray*>;
+
+Arrays ListArrays(vtkPointData* data)
 {
-  std::vector<vtkAbstractArray*> arrays = { particles->GetPoints()->GetData() };
-  for (int i = 0; i < particles->GetPointData()->GetNumberOfArrays(); ++i)
+  Arrays arrays;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
-    arrays.push_back(particles->GetPointData()->GetAbstractArray(i));
+    arrays.push_back(data->GetAbstractArray(i));
   }
   return arrays;
+}
+
+/** The positions, then the point arrays. */
+Arrays ListArrays(vtkPolyData* particles)
+{
+  Arrays arrays = ListArrays(particles->GetPointData());
+  arrays.insert(arrays.begin(), particles->GetPoints()->GetData());
+  return arrays;
+}
+
+/** Number i of the result came from rank i. */
+std::vector<Bytes> SendTuples(
+  vtkSPHRanks& ranks, const Arrays& arrays, const std::vector<std::vector<vtkIdType>>& to)
+{
+  std::vector<Bytes> messages(to.size());
+  for (std::size_t rank = 0; rank < to.size(); ++rank)
+  {
+    if (!to[rank].empty())
+    {
+      PutNumber(messages[rank], static_cast<std::int64_t>(to[rank].size()));
+      for (vtkAbstractArray* array : arrays)
+      {
+        PutTuples(messages[rank], array, to[rank]);
+      }
+    }
+  }
+  return ranks.Exchange(std::move(messages));
+}
+
+/** How many tuples came from each rank. */
+std::vector<vtkIdType> CountTuples(const std::vector<Bytes>& received)
+{
+  std::vector<vtkIdType> counts;
+  for (const Bytes& message : received)
+  {
+    counts.push_back(message.empty() ? 0 : static_cast<vtkIdType>(Reader(message).GetNumber()));
+  }
+  return counts;
+}
+
+/** To arrays that are as long as all of them together. */
+void ReceiveTuples(const std::vector<Bytes>& received, const Arrays& arrays)
+{
+  vtkIdType first = 0;
+  for (const Bytes& message : received)
+  {
+    if (!message.empty())
+    {
+      Reader reader(message);
+      const auto count = static_cast<vtkIdType>(reader.GetNumber());
+      for (vtkAbstractArray* array : arrays)
+      {
+        GetTuples(reader, array, first, count);
+      }
+      first += count;
+    }
+  }
 }
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data)
+vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
+  vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken)
 {
   vtkNew<vtkPolyData> view;
   if (data && data->GetNumberOfPoints() > 0)
@@ -318,6 +389,10 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   }
   const Layout common = AgreeOnLayout(ranks, Describe(view));
   const vtkSmartPointer<vtkIdList> own = ListOwn(data);
+  if (taken)
+  {
+    taken->DeepCopy(own);
+  }
   auto particles = MakeParticles(common, own->GetNumberOfIds());
   if (own->GetNumberOfIds() > 0)
   {
@@ -333,43 +408,86 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(
-  vtkSPHRanks& ranks, vtkPolyData* particles, const std::vector<std::vector<vtkIdType>>& to)
+// In the order in which they are, and what was made of some of them last: so they are found again.
+vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHParticles& used)
 {
-  std::vector<Bytes> messages(to.size());
-  for (std::size_t rank = 0; rank < to.size(); ++rank)
+  Arrays arrays = { used.SmoothingLength, used.Volume, used.Mass, used.Density, used.Fluid };
+  for (const vtkSPHAttribute& attribute : used.Interpolated)
   {
-    if (!to[rank].empty())
+    arrays.push_back(attribute.Array);
+  }
+  auto kept = vtkSmartPointer<vtkPolyData>::New();
+  kept->SetPoints(own->GetPoints());
+  vtkPointData *from = own->GetPointData(), *to = kept->GetPointData();
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    if (std::find(arrays.begin(), arrays.end(), from->GetAbstractArray(i)) != arrays.end())
     {
-      PutNumber(messages[rank], static_cast<std::int64_t>(to[rank].size()));
-      for (vtkAbstractArray* array : ListArrays(particles))
+      const int at = to->AddArray(from->GetAbstractArray(i)),
+                attribute = from->IsArrayAnAttribute(i);
+      if (attribute >= 0)
       {
-        PutTuples(messages[rank], array, to[rank]);
+        to->SetActiveAttribute(at, attribute);
       }
     }
   }
-  const std::vector<Bytes> received = ranks.Exchange(std::move(messages));
-  vtkIdType total = 0;
-  for (const Bytes& message : received)
+  for (vtkAbstractArray* array : arrays)
   {
-    total += message.empty() ? 0 : static_cast<vtkIdType>(Reader(message).GetNumber());
-  }
-  auto near = MakeParticles(Describe(particles), total);
-  vtkIdType first = 0;
-  for (const Bytes& message : received)
-  {
-    if (!message.empty())
+    if (array && !to->HasArray(array->GetName()))
     {
-      Reader reader(message);
-      const auto count = static_cast<vtkIdType>(reader.GetNumber());
-      for (vtkAbstractArray* array : ListArrays(near))
-      {
-        GetTuples(reader, array, first, count);
-      }
-      first += count;
+      to->AddArray(array);
     }
+  }
+  return kept;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
+  const std::vector<std::vector<vtkIdType>>& to, std::vector<vtkIdType>* from)
+{
+  const std::vector<Bytes> received = SendTuples(ranks, ListArrays(particles), to);
+  const std::vector<vtkIdType> counts = CountTuples(received);
+  auto near =
+    MakeParticles(Describe(particles), std::accumulate(counts.begin(), counts.end(), vtkIdType(0)));
+  ReceiveTuples(received, ListArrays(near));
+  if (from)
+  {
+    *from = counts;
   }
   return near;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType count,
+  const std::vector<std::vector<vtkIdType>>& back, const std::vector<std::vector<vtkIdType>>& home,
+  vtkIdType homeCount, vtkPointData* to)
+{
+  const Layout layout = DescribeArrays(results, count);
+  const std::vector<Bytes> received = SendTuples(ranks, ListArrays(results), back);
+  vtkNew<vtkIdList> places;
+  for (const std::vector<vtkIdType>& ids : home)
+  {
+    for (const vtkIdType id : ids)
+    {
+      places->InsertNextId(id);
+    }
+  }
+  vtkNew<vtkPointData> came;
+  AddArrays(came, layout, places->GetNumberOfIds());
+  ReceiveTuples(received, ListArrays(came));
+  vtkNew<vtkIdList> order;
+  order->SetNumberOfIds(places->GetNumberOfIds());
+  std::iota(order->begin(), order->end(), vtkIdType(0));
+  for (const Form& form : layout.Forms)
+  {
+    vtkSmartPointer<vtkAbstractArray> array = MakeArray(form, homeCount);
+    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(array))
+    {
+      numbers->Fill(0.0);
+    }
+    array->InsertTuples(places, order, came->GetAbstractArray(form.Name.c_str()));
+    to->AddArray(array);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -11,23 +11,43 @@
 
 #include <vector>
 
+class vtkIdList;
+class vtkPointData;
 class vtkPointSet;
 class vtkPolyData;
+class vtkSPHParticles;
 class vtkSPHRanks;
 
 /**
  * This rank's particles (`data` may be null), without those that vtkGhostType marks as another
  * rank's. They have the same point arrays on all ranks, in one order: those that all ranks with
- * particles have, with one type and number of components. Collective.
+ * particles have, with one type and number of components. `taken`: their indices in `data`, if that
+ * is wanted. Collective.
  */
-vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data);
+vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
+  vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken = nullptr);
+
+/**
+ * The same with those arrays alone that describe the particles or are interpolated.
+ */
+vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHParticles& used);
 
 /**
  * Sends to each rank the particles whose indices are listed for it; returns what came, in the order
- * of ranks. The particles are of vtkSPHTakeParticles(). Collective.
+ * of ranks; `from`: how many from each of them. The particles are of vtkSPHTakeParticles().
+ * Collective.
  */
-vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(
-  vtkSPHRanks& ranks, vtkPolyData* particles, const std::vector<std::vector<vtkIdType>>& to);
+vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
+  const std::vector<std::vector<vtkIdType>>& to, std::vector<vtkIdType>* from = nullptr);
+
+/**
+ * Sends results back to where they are wanted: of `results`, which have `count` tuples, those listed
+ * for each rank. What comes from a rank goes to the places listed for it in `home`, in arrays of
+ * `homeCount` tuples that are 0 elsewhere and are added to `to`. Collective.
+ */
+void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType count,
+  const std::vector<std::vector<vtkIdType>>& back, const std::vector<std::vector<vtkIdType>>& home,
+  vtkIdType homeCount, vtkPointData* to);
 
 /**
  * Gives a result without points the arrays that it has on other ranks, as writers of pieces want.

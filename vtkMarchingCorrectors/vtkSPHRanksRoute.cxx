@@ -175,10 +175,11 @@ public:
 
 //------------------------------------------------------------------------------
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
-  const mcor_options& options, const mcor_globals& globals)
+  const mcor_options& options, const mcor_globals& globals,
+  const std::vector<vtkSPHRanksPlace>& others)
 {
   const Router router(input, options, globals);
-  std::vector<vtkSPHRanksPlace> places;
+  std::vector<vtkSPHRanksPlace> places = others;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, 1 };
@@ -188,12 +189,13 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
       places.push_back(place);
     }
   }
-  const vtkSPHRanksPartition partition(
+  vtkSPHRanksRoute route;
+  route.Partition = std::make_shared<vtkSPHRanksPartition>(
     ranks, router.Whole, std::move(places), BrickCubes * globals.cube_size);
+  const vtkSPHRanksPartition& partition = *route.Partition;
   const std::vector<double> radii = router.FindRadii(ranks, partition);
   const double widest = *std::max_element(radii.begin(), radii.end());
   const auto count = static_cast<std::size_t>(ranks.GetCount());
-  vtkSPHRanksRoute route;
   route.To.resize(count);
   std::vector<std::int64_t> totals(2 * count, 0);
   std::vector<int> found;

@@ -11,6 +11,7 @@
 #include "vtkType.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 class vtkSPHRanks;
@@ -22,13 +23,16 @@ struct vtkSPHRanksRoute
   double Box[6];                          ///< this rank's, as in mcor_options; may hold nothing
   std::int64_t OwnedParticles;            ///< those in its box
   std::int64_t Particles;                 ///< the same and copies
+  std::shared_ptr<const vtkSPHRanksPartition> Partition;
 };
 
 /**
  * Divides space by particles, and finds for each particle the ranks whose boxes it reaches, by its own
- * smoothing length. `input` are this rank's particles, `globals` those of all. Collective.
+ * smoothing length. `input` are this rank's particles, `globals` those of all. `others`: what else,
+ * of this rank's, is to be divided evenly. Collective.
  */
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
-  const mcor_options& options, const mcor_globals& globals);
+  const mcor_options& options, const mcor_globals& globals,
+  const std::vector<vtkSPHRanksPlace>& others = {});
 
 #endif

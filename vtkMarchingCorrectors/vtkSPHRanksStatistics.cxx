@@ -6,6 +6,7 @@
 #include "vtkFieldData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
+#include "vtkSPHRanksRoute.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
@@ -114,6 +115,23 @@ double SecondsOf(const vtkSPHRanksShare& share)
   }
   return seconds;
 }
+
+void AddExchange(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
+{
+  using Share = vtkSPHRanksShare;
+  AddCount(run, "RankParticles", shares, [](const Share& s) { return s.OwnedParticles; });
+  AddCount(run, "RankCopies", shares, [](const Share& s) { return s.CopiedParticles; });
+  AddCount(run, "RankBytesSent", shares, [](const Share& s) { return s.BytesSent; });
+}
+
+void AddSeconds(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
+{
+  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
+  seconds->SetNumberOfComponents(static_cast<int>(shares.size()));
+  seconds->SetNumberOfTuples(1);
+  std::transform(shares.begin(), shares.end(), seconds->GetPointer(0), SecondsOf);
+  vtkSPHAddArray(run, "RankSeconds", seconds);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -153,15 +171,27 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
 void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
 {
   using Share = vtkSPHRanksShare;
-  AddCount(run, "RankParticles", shares, [](const Share& s) { return s.OwnedParticles; });
-  AddCount(run, "RankCopies", shares, [](const Share& s) { return s.CopiedParticles; });
-  AddCount(run, "RankBytesSent", shares, [](const Share& s) { return s.BytesSent; });
+  AddExchange(run, shares);
   AddCount(
     run, "RankNodesEvaluated", shares, [](const Share& s) { return s.Statistics.nodes_evaluated; });
   AddCount(run, "RankTriangles", shares, [](const Share& s) { return s.Triangles; });
-  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
-  seconds->SetNumberOfComponents(static_cast<int>(shares.size()));
-  seconds->SetNumberOfTuples(1);
-  std::transform(shares.begin(), shares.end(), seconds->GetPointer(0), SecondsOf);
-  vtkSPHAddArray(run, "RankSeconds", seconds);
+  AddSeconds(run, shares);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHAddSampleShares(
+  vtkSPHRanks& ranks, vtkFieldData* run, const vtkSPHRanksRoute& route, std::int64_t points)
+{
+  vtkDataArray* seconds = run->GetArray("Seconds");
+  vtkSPHRanksShare mine = {};
+  mine.Points = points;
+  mine.OwnedParticles = route.OwnedParticles;
+  mine.CopiedParticles = route.Particles - route.OwnedParticles;
+  mine.BytesSent = ranks.GetBytesSent();
+  mine.Statistics.seconds[0] =
+    seconds ? seconds->GetComponent(0, seconds->GetNumberOfComponents() - 1) : 0.0;
+  const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks, mine);
+  AddExchange(run, shares);
+  AddCount(run, "RankPoints", shares, [](const vtkSPHRanksShare& s) { return s.Points; });
+  AddSeconds(run, shares);
 }

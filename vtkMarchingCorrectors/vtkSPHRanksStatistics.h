@@ -13,6 +13,7 @@
 
 class vtkFieldData;
 class vtkSPHRanks;
+struct vtkSPHRanksRoute;
 
 /** One rank's part of a run. */
 struct vtkSPHRanksShare
@@ -37,5 +38,13 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares);
  * "RankSeconds", one component for each rank.
  */
 void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares);
+
+/**
+ * Adds what each rank did of a run without a surface: "RankParticles", "RankCopies", "RankPoints"
+ * (where it evaluated), "RankBytesSent" and "RankSeconds", taken from the total of `run`'s "Seconds".
+ * Collective.
+ */
+void vtkSPHAddSampleShares(
+  vtkSPHRanks& ranks, vtkFieldData* run, const vtkSPHRanksRoute& route, std::int64_t points);
 
 #endif

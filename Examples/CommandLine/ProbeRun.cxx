@@ -30,7 +30,7 @@ void CheckFiles(const CommandLineOptions& options)
 {
   try
   {
-    CheckOutputs({ options.Inputs.front(), options.Probe }, { options.Output });
+    CheckProbeFiles(options);
   }
   catch (const std::invalid_argument& error)
   {
@@ -48,19 +48,26 @@ vtkIdType CountValid(vtkDataSet* data)
 }
 
 //------------------------------------------------------------------------------
-void ProbePoints(const CommandLineOptions& options, MessageCapture* messages)
+void CheckProbeFiles(const CommandLineOptions& options)
 {
-  CheckFiles(options);
-  vtkSmartPointer<vtkDataSet> points = ReadDataSet(options.Probe, messages);
-  CheckDataSetFile(options.Output, points);
-  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Inputs.front(), messages);
-  vtkNew<vtkSPHProbe> probe;
+  CheckOutputs({ options.Inputs.front(), options.Probe }, { options.Output });
+}
+
+//------------------------------------------------------------------------------
+void SetUpProbe(
+  vtkSPHProbe* probe, const CommandLineOptions& options, vtkDataSet* points, vtkPointSet* particles)
+{
   probe->SetInputData(points);
   probe->SetSourceData(SetUpParticles(probe, options, particles));
   probe->SetInterpolateAttributes(options.Attributes);
   probe->SetShepardNormalization(options.Field == "shepard");
   probe->SetWeightThreshold(options.NodeThreshold);
   probe->SetComputeGradients(options.Gradients);
+}
+
+//------------------------------------------------------------------------------
+double RunProbe(vtkSPHProbe* probe, const CommandLineOptions& options, MessageCapture* messages)
+{
   std::string nothing;
   ShowProgress(probe, options, &nothing);
   messages->Clear();
@@ -76,6 +83,13 @@ void ProbePoints(const CommandLineOptions& options, MessageCapture* messages)
   {
     throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
   }
+  return elapsed.count();
+}
+
+//------------------------------------------------------------------------------
+void ReportProbe(
+  vtkSPHProbe* probe, const CommandLineOptions& options, double seconds, MessageCapture* messages)
+{
   for (const std::string& warning : messages->GetWarnings())
   {
     Say("warning: " + warning);
@@ -84,7 +98,19 @@ void ProbePoints(const CommandLineOptions& options, MessageCapture* messages)
   if (!options.Quiet)
   {
     std::cout << "points      " << output->GetNumberOfPoints() << ", " << CountValid(output)
-              << " of them valid\nseconds     " << elapsed.count() << "\n";
+              << " of them valid\nseconds     " << seconds << "\n";
   }
-  WriteDataSet(options.Output, output, messages);
+}
+
+//------------------------------------------------------------------------------
+void ProbePoints(const CommandLineOptions& options, MessageCapture* messages)
+{
+  CheckFiles(options);
+  vtkSmartPointer<vtkDataSet> points = ReadDataSet(options.Probe, messages);
+  CheckDataSetFile(options.Output, points);
+  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Inputs.front(), messages);
+  vtkNew<vtkSPHProbe> probe;
+  SetUpProbe(probe, options, points, particles);
+  ReportProbe(probe, options, RunProbe(probe, options, messages), messages);
+  WriteDataSet(options.Output, vtkDataSet::SafeDownCast(probe->GetOutput()), messages);
 }

@@ -5,8 +5,10 @@
 #include "CommandLineOptions.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
-#include "ParticleFile.h"
+#include "ProbeRun.h"
 #include "RankOutput.h"
+#include "RankParticles.h"
+#include "RankProbe.h"
 #include "RankSession.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
@@ -31,13 +33,16 @@ namespace
 
 void CheckUse(const CommandLineOptions& options, const RankSession& session)
 {
-  if (IsFilm(options) || !options.Probe.empty() || !options.Derive.empty() ||
-    !options.PictureFile.empty() || options.Repeat > 1)
+  if (IsFilm(options) || !options.PictureFile.empty() || options.Repeat > 1)
   {
-    throw std::runtime_error("several processes share a surface, but no film, --probe, --derive, "
+    throw std::runtime_error("several processes share a surface or a probe, but no film, "
                              "--screenshot or --repeat; run these without mpirun");
   }
-  if (session.IsFirst())
+  if (session.IsFirst() && !options.Probe.empty())
+  {
+    CheckProbeFiles(options);
+  }
+  else if (session.IsFirst())
   {
     std::vector<std::string> outputs = { options.Output };
     if (!options.StatisticsFile.empty())
@@ -50,41 +55,6 @@ void CheckUse(const CommandLineOptions& options, const RankSession& session)
   {
     CheckOutputs(options.Inputs, { PieceName(options.Output, session.GetRank()) });
   }
-}
-
-/// Processes without particles get the arrays, without values, that the first one with some has: what a
-/// name in the options is must not depend on who asks.
-vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet* particles)
-{
-  vtkMPIController* controller = session.GetController();
-  const int own = particles->GetNumberOfPoints() > 0 ? session.GetRank() : session.GetCount();
-  int from = own;
-  controller->AllReduce(&own, &from, 1, vtkCommunicator::MIN_OP);
-  if (from == session.GetCount())
-  {
-    throw std::runtime_error("the input holds no points");
-  }
-  vtkNew<vtkPolyData> form;
-  if (from == session.GetRank())
-  {
-    // With one particle: of none, VTK does not send the arrays.
-    vtkNew<vtkPoints> points;
-    vtkPointData* arrays = form->GetPointData();
-    points->InsertNextPoint(particles->GetPoint(0));
-    form->SetPoints(points);
-    arrays->CopyAllOn();
-    arrays->CopyAllocate(particles->GetPointData(), 1);
-    arrays->CopyData(particles->GetPointData(), vtkIdType(0), vtkIdType(0));
-  }
-  controller->Broadcast(form, from);
-  if (particles->GetNumberOfPoints() > 0)
-  {
-    return particles;
-  }
-  vtkNew<vtkPoints> none;
-  form->SetPoints(none);
-  form->GetPointData()->SetNumberOfTuples(0);
-  return form.Get();
 }
 
 /// --periodic with lengths alone asks where all particles are.
@@ -150,19 +120,12 @@ void Report(
   }
 }
 
-void Share(CommandLineOptions options, RankSession& session, MessageCapture* messages)
+void ShareSurface(CommandLineOptions options, RankSession& session, MessageCapture* messages)
 {
-  vtkSmartPointer<vtkPointSet> particles;
   vtkNew<vtkMarchingCorrectors> filter;
   std::unique_ptr<Run> run;
-  session.Together([&] { CheckUse(options, session); });
-  session.Together(
-    [&]
-    {
-      particles =
-        ReadParticlesPart(options.Inputs.front(), session.GetRank(), session.GetCount(), messages);
-    });
-  particles = GiveArrays(session, particles);
+  const vtkSmartPointer<vtkPointSet> particles =
+    ReadParticlesTogether(session, options.Inputs.front(), messages);
   ResolvePeriod(options, session, particles);
   session.Together([&] { SetUpFilter(filter, options, particles); });
   session.Together([&] { run.reset(new Run(Extract(filter, options, messages))); });
@@ -188,16 +151,17 @@ void Share(CommandLineOptions options, RankSession& session, MessageCapture* mes
       }
     });
 }
-
 }
 
 //------------------------------------------------------------------------------
-bool MakeSurfaceTogether(const CommandLineOptions& options, MessageCapture* messages)
+bool RunTogether(const CommandLineOptions& options, MessageCapture* messages)
 {
   RankSession session;
   try
   {
-    Share(options, session, messages);
+    session.Together([&] { CheckUse(options, session); });
+    options.Probe.empty() ? ShareSurface(options, session, messages)
+                          : ShareProbe(options, session, messages);
   }
   catch (const std::exception& error)
   {

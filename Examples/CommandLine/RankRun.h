@@ -6,9 +6,9 @@
 struct CommandLineOptions;
 class MessageCapture;
 
-/// The surface of particles that processes of mpirun share: pieces of a file are read by all of them, a
-/// single one by the first. Writes one piece each for a .pvtp file, else the first one writes the whole.
-/// False if it failed; the first process has said why.
-bool MakeSurfaceTogether(const CommandLineOptions& options, MessageCapture* messages);
+/// The surface or the probe of particles that processes of mpirun share: pieces of a file are read by all
+/// of them, a single one by the first. A surface is written as one piece each for a .pvtp file, else the
+/// first one writes the whole. False if it failed; the first process has said why.
+bool RunTogether(const CommandLineOptions& options, MessageCapture* messages);
 
 #endif

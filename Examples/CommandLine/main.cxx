@@ -133,7 +133,7 @@ bool Execute(const CommandLineOptions& options, int first, FilmRecord* record)
 #if MCOR_HAS_RANKS
   if (LaunchedCount() > 1)
   {
-    return MakeSurfaceTogether(options, messages);
+    return RunTogether(options, messages);
   }
 #endif
   if (record)

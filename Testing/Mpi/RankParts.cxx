@@ -37,9 +37,10 @@ std::uint32_t Shuffle(vtkIdType index)
   return bits * 2246822519u >> 8;
 }
 
+/// Points that are nowhere are in the first one.
 int Slab(double at, int count)
 {
-  return std::min(static_cast<int>(at * count), count - 1);
+  return std::isfinite(at) ? std::min(static_cast<int>(at * count), count - 1) : 0;
 }
 
 const Part Parts[PartCount] = {

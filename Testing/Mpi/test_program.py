@@ -17,8 +17,9 @@ import unittest
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList
-from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLPPolyDataReader
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkIOXML import (vtkXMLImageDataReader, vtkXMLImageDataWriter, vtkXMLPolyDataReader,
+                                 vtkXMLPolyDataWriter, vtkXMLPPolyDataReader)
 
 PROGRAM, MPIRUN, DATA, RANKS = sys.argv[1:5]
 PARTICLES = os.path.join(DATA, "double_dam_break_small.vtp")
@@ -128,6 +129,53 @@ class Program(unittest.TestCase):
         self.assertEqual(len(np.unique(ids)), alone.GetNumberOfPoints())
         np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData())[ids],
                                       vtk_to_numpy(ranks.GetPoints().GetData()))
+
+    def test_probe(self):
+        """Points of one file, particles in pieces: the arrays are, to the last byte, those of one process."""
+        image = vtkImageData()
+        low, high = np.reshape(read(PARTICLES).GetBounds(), (3, 2)).T
+        image.SetOrigin(*low)
+        image.SetDimensions(33, 17, 19)
+        image.SetSpacing(*((high - low) / (32, 16, 18)))
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(self.path("points.vti"))
+        writer.SetInputData(image)
+        writer.Write()
+        how = ["--probe", self.path("points.vti"), "--derive", "Velocity", "--gradients"]
+        alone = self.run_alone(PARTICLES, self.path("alone.vti"), *how)
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        done = self.run_ranks(write_pieces(self.folder.name, 5), self.path("ranks.vti"), *how)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.count("points "), 1, done.stdout)
+        self.assertEqual(done.stdout.splitlines()[0], alone.stdout.splitlines()[0])
+        alone, ranks = (self.image_arrays(self.path(name)) for name in ("alone.vti", "ranks.vti"))
+        self.assertEqual(set(alone), set(ranks))
+        self.assertIn("Lambda2_Gradient", alone)
+        for name, values in alone.items():
+            self.assertEqual(values.tobytes(), ranks[name].tobytes(), name)
+        self.check_fails(self.run_ranks(PARTICLES, self.path("o.vti"), "--probe", self.path("points.vti"),
+                                        "--smoothing-length", "Nope"), "Nope")
+        self.assertFalse(os.path.exists(self.path("o.vti")))
+
+    def image_arrays(self, file):
+        reader = vtkXMLImageDataReader()
+        reader.SetFileName(file)
+        reader.Update()
+        data = reader.GetOutput().GetPointData()
+        return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+
+    def test_derive(self):
+        """A surface of what is derived from another array."""
+        how = ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "20", "--no-attributes"]
+        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), *how).returncode, 0)
+        done = self.run_ranks(write_pieces(self.folder.name, 2), self.path("ranks.vtp"), *how)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
+        self.assertGreater(alone.GetNumberOfPolys(), 1000)
+        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()),
+                                      vtk_to_numpy(ranks.GetPoints().GetData()))
+        np.testing.assert_array_equal(corners(alone), corners(ranks))
+        self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--derive", "Nope", "--free-surface"), "Nope")
 
     def test_damaged_piece(self):
         pieces = write_pieces(self.folder.name, 3)

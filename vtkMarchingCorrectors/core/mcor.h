@@ -183,6 +183,7 @@ extern "C"
   typedef struct mcor_global_component
   {
     double largest;     /* absolute value */
+    double low, high;   /* least and greatest value; of no fluid low > high */
     int varies;         /* 0: all values are the same, those of solids too */
     int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
   } mcor_global_component;
@@ -263,7 +264,7 @@ extern "C"
      * may be infinite. What is global (lattice, ranges, smallest h) is measured over all particles;
      * those alone that reach the box are evaluated. Not with MCOR_PAIRS, unless there are ranks: their
      * cells are found from cell to cell, wherever they begin, so that evaluation is that of the whole
-     * surface up to the correction. mcor_probe and mcor_derive do not read it. */
+     * surface up to the correction. mcor_probe and mcor_derive read it with globals alone, see there. */
     int has_box;
     double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
 
@@ -278,13 +279,15 @@ extern "C"
      * those that reach the box by 3 cubes or less, with computed volumes also all within the
      * (unscaled) support of these, with MCOR_PAIRS also all within the (unscaled) smoothing length of
      * the box, and of these. The surface is, to the last bit, that from all of them. Borrowed
-     * until return; mcor_probe and mcor_derive do not read it. See mcor_measure_globals. */
+     * until return. See mcor_measure_globals. For mcor_probe and mcor_derive these are of
+     * mcor_measure_probe_globals, and the box tells where results are wanted: at points in it, its
+     * sides too; others' mean nothing, those of particles two cubes away from it and more are 0. */
     const mcor_globals* globals;
 
     /* NULL: alone. mcor_measure_globals measures over all ranks' inputs, each particle being in one of
      * them (a rank without any has count 0, and data that are not NULL where others have data): what it
      * returns are, to the last bit, the globals of all particles in one input, but for not_finite, a
-     * number on the rank that has the least. mcor_extract with these globals, and MCOR_PAIRS, lets cells
+     * number on the rank that has the least. So does mcor_measure_probe_globals. mcor_extract with these globals, and MCOR_PAIRS, lets cells
      * grow from box to box; each cell is to be in the box of one rank. Borrowed until return; others do
      * not read it. */
     const mcor_ranks* ranks;
@@ -453,6 +456,10 @@ extern "C"
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
+
+  /* The same for calls of mcor_probe and mcor_derive. */
+  mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, mcor_globals* globals);
 
   /* What may be wrong with the input of an extraction that succeeded. */
   typedef enum mcor_warning

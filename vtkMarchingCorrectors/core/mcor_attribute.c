@@ -81,6 +81,16 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
   return MCOR_OK;
 }
 
+static mcor_status mcor_check_components(mcor_context* context, const mcor_input* input)
+{
+  const mcor_globals* globals = context->options->globals;
+  const int components = (int)mcor_count_components(input);
+  MCOR_RETURN_IF(globals && globals->component_count != components, context, MCOR_INVALID_ARGUMENT,
+    "The global values are of %d components of attributes; the input has %d.",
+    globals->component_count, components);
+  return MCOR_OK;
+}
+
 /* Prepares the surface's attributes: finds those to leave out, and of the others the components that vary. */
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface)
@@ -92,11 +102,7 @@ mcor_status mcor_list_attributes(
   MCOR_RETURN_IF(!surface->attributes || !surface->attribute_not_finite, context,
     MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   MCOR_TRY(mcor_clear_components(context, input));
-  const mcor_globals* globals = context->options->globals;
-  const int components = (int)mcor_count_components(input);
-  MCOR_RETURN_IF(globals && globals->component_count != components, context, MCOR_INVALID_ARGUMENT,
-    "The global values are of %d components of attributes; the input has %d.",
-    globals->component_count, components);
+  MCOR_TRY(mcor_check_components(context, input));
   int next = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
@@ -132,19 +138,24 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->high[slice] = high;
 }
 
-static mcor_component mcor_scale_component(const mcor_input* input, int attribute, int component)
+void mcor_find_range(const mcor_input* input, int attribute, int component, double range[2])
 {
   mcor_range_job job = {
     .array = &input->attributes[attribute], .solid = input->solid, .component = component
   };
   const int slices = mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_range_slice, &job);
-  double low = job.low[0], high = job.high[0];
-  for (int s = 1; s < slices; ++s)
+  range[0] = DBL_MAX;
+  range[1] = -DBL_MAX;
+  for (int s = 0; s < slices; ++s)
   {
-    low = job.low[s] < low ? job.low[s] : low;
-    high = job.high[s] > high ? job.high[s] : high;
+    range[0] = fmin(range[0], job.low[s]);
+    range[1] = fmax(range[1], job.high[s]);
   }
-  const double half = 0.5 * high - 0.5 * low;
+}
+
+static mcor_component mcor_scale_component(int attribute, int component, const double range[2])
+{
+  const double low = range[0], high = range[1], half = 0.5 * high - 0.5 * low;
   int exponent = 0;
   frexp(half, &exponent);
   return (mcor_component){ .attribute = attribute,
@@ -160,13 +171,26 @@ mcor_status mcor_list_components(
 {
   mcor_attributes* attributes = &context->attributes;
   MCOR_TRY(mcor_clear_components(context, input));
+  MCOR_TRY(mcor_check_components(context, input));
+  const mcor_global_component* global =
+    context->options->globals ? context->options->globals->components : NULL;
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    not_finite[a] = mcor_find_not_finite(array, input->solid, input->count);
-    for (int c = 0; c < mcor_components(array) && not_finite[a] < 0; ++c)
+    not_finite[a] =
+      global ? global->not_finite : mcor_find_not_finite(array, input->solid, input->count);
+    for (int c = 0; c < mcor_components(array); ++c)
     {
-      attributes->varying[attributes->varying_count++] = mcor_scale_component(input, a, c);
+      double range[2] = { global ? global->low : 0, global ? global->high : 0 };
+      if (!global && not_finite[a] < 0)
+      {
+        mcor_find_range(input, a, c, range);
+      }
+      if (not_finite[a] < 0)
+      {
+        attributes->varying[attributes->varying_count++] = mcor_scale_component(a, c, range);
+      }
+      global += global ? 1 : 0;
     }
   }
   return MCOR_OK;

@@ -39,11 +39,6 @@
 /* How far apart particles of a pair may be, in smoothing lengths, and a little more. */
 #define MCOR_PAIR_REACH 1.001
 
-/* Kernel arguments of MCOR_BOX_PARAMS: owned cells, those whose particles are at hand; some more on
- * the lower and the upper sides. */
-#define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
-  MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
-    MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 #define MCOR_BOX_ARGS(r, ring) MCOR_CELL_ARGS((r)->first, (r)->last, ring, ring)
 #define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->begin, (r)->end, MCOR_BOX_RING, MCOR_BOX_RING)
 

@@ -42,6 +42,12 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
 
+/* Kernel arguments of MCOR_BOX_PARAMS: owned cells, those whose particles are at hand; some more on
+ * the lower and the upper sides. */
+#define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
+  MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
+    MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
+
 /* Cells around the owned ones that are examined, too. */
 #define MCOR_BOX_RING 1
 

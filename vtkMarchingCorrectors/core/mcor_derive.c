@@ -8,8 +8,10 @@
  * and the first-order corrected one M_i^-1 G_i with M_i = sum_j V_j grad W_ij (x_j - x_i)^T, which is
  * exact for linear A. */
 
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_probe.h"
 #include "mcor_stage.h"
 
 #include <math.h>
@@ -32,6 +34,7 @@ typedef struct mcor_derive_run
   mcor_point_batch batch; /* of particles */
   mcor_buffer moments, slopes;
   int first, count;  /* sorted particles of the batch */
+  int inside;        /* of these, where gradients are wanted */
   cl_int* particles; /* [grid.count] index on the device, in input order, of sorted particles */
 } mcor_derive_run;
 
@@ -124,16 +127,27 @@ static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
   const size_t n = (size_t)run->count, real = context->cl.real_size;
   MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, run->count, MCOR_INT(run->first),
     MCOR_INT(run->count), MCOR_INT(context->lattice.fix_bits), MCOR_BUFFER(&grid->px),
-    MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&run->batch.in_node),
-    MCOR_BUFFER(&run->batch.in_offset)));
+    MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(context->box.of_points),
+    MCOR_CELL_ARGS(context->box.begin, context->box.end, 1, 1), MCOR_BUFFER(&run->batch.in_node),
+    MCOR_BUFFER(&run->batch.in_offset), MCOR_BUFFER(&context->points.flags)));
+  run->inside = run->count;
+  if (context->box.of_points)
+  {
+    MCOR_TRY(mcor_scan(context, &context->points.flags, run->count, &run->inside));
+  }
+  if (run->inside == 0)
+  {
+    return MCOR_OK;
+  }
   for (int a = 0; a < 3; ++a)
   {
     run->batch.first[a] = 0;
     run->batch.bricks[a] = 8 * context->lattice.blocks[a];
   }
-  return mcor_group_batch(context, &run->batch, run->count, run->count, groups);
+  return mcor_group_batch(context, &run->batch, run->count, run->inside, groups);
 }
 
 /* The inverse of m; false where it would magnify rounding too much. */
@@ -219,7 +233,7 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
 static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
-  const size_t n = (size_t)run->count, real = context->cl.real_size;
+  const size_t n = (size_t)run->inside, real = context->cl.real_size;
   void *order = NULL, *moments = NULL, *slopes = NULL;
   mcor_status status = mcor_map(context, &run->batch.order, n * sizeof(cl_int), false, &order);
   if (status == MCOR_OK)
@@ -234,7 +248,7 @@ static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
   if (status == MCOR_OK)
   {
     mcor_derive_job job = { run, order, moments, slopes };
-    mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job);
+    mcor_parallel_for(run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job);
   }
   const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.order, &order),
     mcor_unmap(context, &run->moments, &moments), mcor_unmap(context, &run->slopes, &slopes) };
@@ -249,9 +263,14 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
   const int arrays = context->attributes.varying_count;
-  const size_t n = (size_t)run->count, real = context->cl.real_size;
+  const size_t real = context->cl.real_size;
   int groups;
   MCOR_TRY(mcor_place_particles(run, &groups));
+  if (run->inside == 0)
+  {
+    return MCOR_OK;
+  }
+  const size_t n = (size_t)run->inside;
   MCOR_TRY(mcor_reserve(context, &run->moments, n * 9 * real));
   MCOR_TRY(mcor_reserve(context, &run->slopes, n * 3 * (size_t)arrays * real));
   for (int array = 0; array < arrays; array += MCOR_ARRAY_STEP)
@@ -329,12 +348,16 @@ static mcor_status mcor_run_derive(
   {
     return MCOR_OK;
   }
+  if (options->has_box)
+  {
+    mcor_bound_by_box(context, options);
+  }
   MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   mcor_derive_run run = {
     .context = context, .input = input, .standard = call->standard, .derivatives = call->derivatives
   };
-  const mcor_status status = mcor_derive_all(&run);
+  const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
   mcor_release_derive(&run);
   MCOR_TRY(status);
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));

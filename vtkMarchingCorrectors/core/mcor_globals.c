@@ -73,15 +73,17 @@ static mcor_status mcor_merge_component(mcor_context* context, const mcor_input*
 {
   const bool some = input->count > 0;
   const double first = some ? mcor_array_at(array, 0, component) : 0;
-  double least = some ? first : DBL_MAX;
-  double most[2] = { some ? first : -DBL_MAX,
-    mcor_largest(array, input->solid, input->count, component) };
+  double least[2] = { some ? first : DBL_MAX, found->low };
+  double most[3] = { some ? first : -DBL_MAX,
+    mcor_largest(array, input->solid, input->count, component), found->high };
   int64_t varies = found->varies;
   MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
-  MCOR_TRY(mcor_reduce_double(context, MCOR_LEAST, &least));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, 2));
-  found->varies = varies || least != most[0];
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, least, 2));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, 3));
+  found->varies = varies || least[0] != most[0];
   found->largest = found->varies ? most[1] : 0;
+  found->low = least[1];
+  found->high = most[2];
   return MCOR_OK;
 }
 
@@ -102,7 +104,11 @@ static mcor_status mcor_measure_components(
       found->not_finite = not_finite;
       if (not_finite < 0)
       {
+        double range[2];
         mcor_measure_component(input, a, c, found);
+        mcor_find_range(input, a, c, range);
+        found->low = range[0];
+        found->high = range[1];
         MCOR_TRY(context->options->ranks ? mcor_merge_component(context, input, array, c, found)
                                          : MCOR_OK);
       }
@@ -111,13 +117,20 @@ static mcor_status mcor_measure_components(
   return MCOR_OK;
 }
 
-static mcor_status mcor_measure_all(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
+typedef struct mcor_globals_call
 {
-  mcor_globals* globals = result;
+  bool uses_solids;
+  mcor_globals* globals;
+} mcor_globals_call;
+
+static mcor_status mcor_measure_all(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  const mcor_globals_call* call = data;
+  mcor_globals* globals = call->globals;
   mcor_free_globals(globals); /* of an attempt before */
   context->grid_valid = context->value_valid = context->nodes_valid = false;
-  context->uses_solids = mcor_uses_solids(input, options);
+  context->uses_solids = call->uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
   int64_t particles = input->count;
   MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));
@@ -133,8 +146,9 @@ static mcor_status mcor_measure_all(
   return mcor_measure_components(context, input, globals);
 }
 
-mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_globals* globals)
+/* For a surface, or for what is evaluated without a scalar. */
+static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, bool surface, mcor_globals* globals)
 {
   if (!context || !globals)
   {
@@ -144,14 +158,30 @@ mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
   mcor_options own = *options;
   own.globals = NULL;
+  mcor_globals_call call = { .globals = globals };
+  call.uses_solids =
+    surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
+  own.ranks = options->ranks;
   mcor_statistics statistics = { 0 };
   const mcor_status status =
-    mcor_run_call(context, input, &own, &statistics, mcor_measure_all, globals);
+    mcor_run_call(context, input, &own, &statistics, mcor_measure_all, &call);
   if (status != MCOR_OK)
   {
     mcor_free_globals(globals);
   }
   return status;
+}
+
+mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_globals* globals)
+{
+  return mcor_measure_for(context, input, options, true, globals);
+}
+
+mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_globals* globals)
+{
+  return mcor_measure_for(context, input, options, false, globals);
 }
 
 void mcor_free_globals(mcor_globals* globals)

@@ -59,6 +59,9 @@ size_t mcor_count_components(const mcor_input* input);
 void mcor_measure_component(
   const mcor_input* input, int attribute, int component, mcor_global_component* found);
 
+/* Least and greatest value of a component, of fluid particles; of none DBL_MAX, -DBL_MAX. */
+void mcor_find_range(const mcor_input* input, int attribute, int component, double range[2]);
+
 /* Whether the scalar is a magnitude or a dot product. */
 static inline bool mcor_scalar_is_derived(const mcor_input* input)
 {

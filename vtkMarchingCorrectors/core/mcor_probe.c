@@ -289,7 +289,11 @@ static mcor_status mcor_run_probe(
   {
     return MCOR_OK;
   }
-  if (input->particles_version == 0)
+  if (options->has_box)
+  {
+    mcor_bound_by_box(context, options);
+  }
+  else if (input->particles_version == 0)
   {
     mcor_bound_probe(context, call->points, call->count); /* no other call takes the search grid */
   }
@@ -316,9 +320,8 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
     options->field != MCOR_WEIGHT_SUM && !input->ignore_solids && mcor_needs_density(input);
   options->field = MCOR_WEIGHT_SUM;
   options->iso_count = 0;
-  options->has_box = 0;
+  options->has_box = options->has_box && options->globals;
   options->cube_size_mode = MCOR_CUBES_UNIFORM;
-  options->globals = NULL;
   options->ranks = NULL;
   for (int i = 0; i < 6; ++i)
   {

@@ -24,6 +24,8 @@ typedef struct mcor_probe_run
 /* mcor_probe_points.c. The box around the finite points of the caller, which only particles nearby are
  * needed for. */
 void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count);
+/* The same, where the caller said where its points are. */
+void mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Takes the caller's points [first, last) to the device. */
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);

@@ -57,6 +57,12 @@ void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t c
   box->of_points = true;
 }
 
+void mcor_bound_by_box(mcor_context* context, const mcor_options* options)
+{
+  memcpy(context->box.points, options->box, sizeof options->box);
+  context->box.of_points = true;
+}
+
 /* Whether point i of the caller's is where particles may reach it; then its node and offset. */
 static bool mcor_locate_point(
   const mcor_probe_run* run, int64_t i, int64_t node[3], double offset[3])

@@ -6,10 +6,12 @@
  * Arrays are fixed-point numbers, so that a difference of two values is exact as that of two
  * positions is: a linear array then has an exact gradient up to the rounding of the sums. */
 
-/* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset. */
+/* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset, and
+ * whether it is in the box, if there is one; the node of others is -1. */
 __kernel void mcor_derive_place(const int first, const int count, const int fix_bits,
-  __global const fix* px, __global const fix* py, __global const fix* pz, __global int4* node,
-  __global real4* offset)
+  __global const fix* px, __global const fix* py, __global const fix* pz, const int has_box,
+  const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,
+  const int last_z, __global int4* node, __global real4* offset, __global int* flags)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -19,7 +21,12 @@ __kernel void mcor_derive_place(const int first, const int count, const int fix_
   const fix x = px[first + i], y = py[first + i], z = pz[first + i];
   const fix mask = ((fix)1 << fix_bits) - 1;
   const real unit = ldexp((real)1, -fix_bits);
-  node[i] = (int4)((int)(x >> fix_bits), (int)(y >> fix_bits), (int)(z >> fix_bits), 0);
+  const int4 at = (int4)((int)(x >> fix_bits), (int)(y >> fix_bits), (int)(z >> fix_bits), 0);
+  const bool is_in = !has_box ||
+    (at.x >= first_x && at.x < last_x && at.y >= first_y && at.y < last_y && at.z >= first_z &&
+      at.z < last_z);
+  flags[i] = is_in;
+  node[i] = is_in ? at : -1;
   offset[i] =
     (real4)((real)(x & mask) * unit, (real)(y & mask) * unit, (real)(z & mask) * unit, 0);
 }

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef RankParticles_h
+#define RankParticles_h
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+
+class MessageCapture;
+class RankSession;
+class vtkPointSet;
+
+/// Each process's part of a file, with the same arrays in all of them; a single file is the first one's.
+/// Throws std::runtime_error on all of them alike.
+vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
+  RankSession& session, const std::string& file, MessageCapture* messages);
+
+#endif

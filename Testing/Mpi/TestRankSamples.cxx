@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Run by mpirun: what ranks find together at points, and at the particles themselves, is bit for bit
+// what rank 0 finds alone, however particles and points are strewn over the ranks.
+//
+//   TestRankSamples FOLDER OF DATA [some]     some: of each case two partitions, all of them in turn
+#include "RankParts.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdTypeArray.h"
+#include "vtkMPIController.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSPHDerivatives.h"
+#include "vtkSPHProbe.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkXMLPolyDataReader.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+const char* const IndexName = "TestIndex";
+
+using Data = vtkSmartPointer<vtkPolyData>;
+
+/// Of particles and points.
+using Run = std::function<Data(vtkPolyData*, vtkPolyData*, vtkMultiProcessController*)>;
+
+Data ProbeWith(vtkSPHProbe* probe, vtkPolyData* particles, vtkPolyData* points,
+  vtkMultiProcessController* controller)
+{
+  probe->SetController(controller);
+  probe->SetInputData(points);
+  probe->SetSourceData(particles);
+  probe->Update();
+  return vtkPolyData::SafeDownCast(probe->GetOutput());
+}
+
+Data DeriveWith(vtkSPHDerivatives* filter, const char* array, vtkPolyData* particles,
+  vtkMultiProcessController* controller)
+{
+  filter->SetController(controller);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, array);
+  filter->ComputeStrainRateOn();
+  filter->SetInputData(particles);
+  filter->Update();
+  return vtkPolyData::SafeDownCast(filter->GetOutput());
+}
+
+struct Case
+{
+  const char* Name;
+  const char* File;
+  bool IsPlane; // the points lie in a plane; else in space
+  Run Do;
+};
+
+const std::vector<Case> Cases = {
+  { "probe, plane", "double_dam_break_small", true,
+    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHProbe> probe;
+      probe->ComputeGradientsOn();
+      return ProbeWith(probe, particles, points, controller);
+    } },
+  { "probe, sum, computed volumes, M'4", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHProbe> probe;
+      probe->ShepardNormalizationOff();
+      probe->DetectArraysOff();
+      probe->SetSmoothingLength(0.06);
+      probe->SetKernelToMPrime4();
+      probe->SetHScaleFactor(0.9);
+      return ProbeWith(probe, particles, points, controller);
+    } },
+  { "probe, solids, smoothing lengths that differ, double precision", "dam_break_45k", false,
+    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHProbe> probe;
+      probe->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      probe->SetFluidArrayName("ParticleType");
+      probe->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+      probe->ComputeGradientsOn();
+      return ProbeWith(probe, particles, points, controller);
+    } },
+  { "derivatives", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHDerivatives> filter;
+      return DeriveWith(filter, "Velocity", particles, controller);
+    } },
+  { "derivatives, estimated smoothing length, computed volumes", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHDerivatives> filter;
+      filter->CorrectGradientsOff();
+      filter->DetectArraysOff();
+      filter->EstimateSmoothingLengthOn();
+      return DeriveWith(filter, "Speed", particles, controller);
+    } },
+  { "derivatives, solids, smoothing lengths that differ", "dam_break_45k", false,
+    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHDerivatives> filter;
+      filter->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      filter->SetFluidArrayName("ParticleType");
+      return DeriveWith(filter, "Velocity", particles, controller);
+    } },
+};
+
+/// Numbers the points, so that they are known wherever they go.
+void AddIndex(vtkPolyData* data)
+{
+  vtkNew<vtkIdTypeArray> index;
+  index->SetName(IndexName);
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    index->InsertNextValue(i);
+  }
+  data->GetPointData()->AddArray(index);
+}
+
+Data Read(const std::string& file)
+{
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  AddIndex(reader->GetOutput());
+  return reader->GetOutput();
+}
+
+/// A lattice somewhat larger than the particles' bounds, with points that are nowhere.
+Data MakePoints(vtkPolyData* particles, bool isPlane)
+{
+  auto data = Data::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  double bounds[6];
+  particles->GetBounds(bounds);
+  const int counts[3] = { 31, 29, isPlane ? 1 : 27 };
+  for (int k = 0; k < counts[0] * counts[1] * counts[2]; ++k)
+  {
+    const int cell[3] = { k % counts[0], k / counts[0] % counts[1], k / counts[0] / counts[1] };
+    double at[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const double share = counts[a] == 1 ? 0.25 : 1.2 * cell[a] / (counts[a] - 1) - 0.1;
+      at[a] = bounds[2 * a] + share * (bounds[2 * a + 1] - bounds[2 * a]);
+    }
+    at[1] = k % 501 == 7 ? std::numeric_limits<double>::quiet_NaN() : at[1];
+    points->InsertNextPoint(at);
+  }
+  data->SetPoints(points);
+  AddIndex(data);
+  return data;
+}
+
+bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
+{
+  const auto size = static_cast<std::size_t>(a->GetNumberOfComponents()) *
+    static_cast<std::size_t>(a->GetDataTypeSize());
+  return a->GetDataType() == b->GetDataType() &&
+    a->GetNumberOfComponents() == b->GetNumberOfComponents() &&
+    std::memcmp(static_cast<char*>(a->GetVoidPointer(0)) + static_cast<std::size_t>(i) * size,
+      static_cast<char*>(b->GetVoidPointer(0)) + static_cast<std::size_t>(j) * size, size) == 0;
+}
+
+/// The same points in the order of `given`, with the arrays that `whole` has at them.
+std::string ComparePart(vtkPolyData* part, vtkPolyData* given, vtkPolyData* whole, vtkIdType& seen)
+{
+  if (!part || part->GetNumberOfPoints() != given->GetNumberOfPoints())
+  {
+    return "points are missing";
+  }
+  vtkPointData *arrays = part->GetPointData(), *expected = whole->GetPointData();
+  vtkDataArray* index = given->GetPointData()->GetArray(IndexName);
+  vtkUnsignedCharArray* marks = given->GetPointGhostArray();
+  for (int k = 0; k < expected->GetNumberOfArrays(); ++k)
+  {
+    const std::string name = expected->GetArrayName(k);
+    vtkDataArray* array = arrays->GetArray(name.c_str());
+    if (!array)
+    {
+      return name + " is missing";
+    }
+    for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+    {
+      const auto number = static_cast<vtkIdType>(index->GetComponent(i, 0));
+      if (!(marks && marks->GetValue(i)) && !IsSameTuple(array, i, expected->GetArray(k), number))
+      {
+        return name + " of point " + std::to_string(number);
+      }
+    }
+  }
+  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+  {
+    seen += marks && marks->GetValue(i) ? 0 : 1;
+  }
+  return "";
+}
+
+/// Something other than zeros.
+bool SaysSomething(vtkPolyData* whole)
+{
+  vtkDataArray* valid = whole->GetPointData()->GetArray("vtkValidPointMask");
+  vtkDataArray* found = valid ? valid : whole->GetPointData()->GetArray("Gradients");
+  int others = 0;
+  for (vtkIdType i = 0; found && i < found->GetNumberOfTuples(); ++i)
+  {
+    others += found->GetComponent(i, 0) != 0.0 ? 1 : 0;
+  }
+  return others > 50;
+}
+
+/// Returns how many ranks have something else for this partition.
+int CheckPart(const Case& tried, int part, vtkPolyData* particles, vtkPolyData* points,
+  vtkPolyData* whole, vtkMPIController* controller)
+{
+  const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
+  const bool isProbe = std::string(tried.Name).find("probe") == 0;
+  const Data own = TakePart(particles, part, rank, count);
+  const Data at = TakePart(points, (part + 2) % (PartCount - 1), rank, count);
+  vtkPolyData* given = isProbe ? at : own;
+  const Data result = tried.Do(own, at, controller);
+  vtkIdType seen = 0, total = 0;
+  const std::string problem = ComparePart(result, given, whole, seen);
+  controller->AllReduce(&seen, &total, 1, vtkCommunicator::SUM_OP);
+  const bool isGood = problem.empty() && total == whole->GetNumberOfPoints();
+  if (!isGood || rank == 0)
+  {
+    std::printf("%s, %s: %s\n", tried.Name, PartName(part),
+      isGood ? "same" : ("rank " + std::to_string(rank) + ": " + problem).c_str());
+    std::fflush(stdout);
+  }
+  return isGood ? 0 : 1;
+}
+
+int Check(int number, bool some, const std::string& folder, vtkMPIController* controller)
+{
+  const Case& tried = Cases[static_cast<std::size_t>(number)];
+  const Data particles = Read(folder + "/" + tried.File + ".vtp");
+  const Data points = MakePoints(particles, tried.IsPlane);
+  // Each alone: VTK would send no points that are not numbers as they are.
+  const Data whole = tried.Do(particles, points, nullptr);
+  if (!SaysSomething(whole))
+  {
+    std::printf("%s: nothing to compare with\n", tried.Name);
+    return 1;
+  }
+  int failures = 0;
+  for (int part = 0; part < PartCount; ++part)
+  {
+    if (some && part % 3 != number % 3)
+    {
+      continue;
+    }
+    failures += CheckPart(tried, part, particles, points, whole, controller);
+  }
+  return failures;
+}
+
+}
+
+int main(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  int failures = 0, all = 0;
+  for (int number = 0; number < static_cast<int>(Cases.size()); ++number)
+  {
+    failures += Check(number, argc > 2, argv[1], controller);
+  }
+  controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
+  controller->Finalize();
+  return all == 0 ? 0 : 1;
+}

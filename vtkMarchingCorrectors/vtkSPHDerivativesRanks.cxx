@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Derivatives that many processes share. Space is divided among them as for a surface; the rank that
+// owns a particle's place finds its derivatives, which then travel to where the particle came from.
+#include "vtkSPHDerivatives.h"
+
+#include "mcor.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHDerivativesWanted.h"
+#include "vtkSPHParticles.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksStatistics.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace
+{
+using Lists = std::vector<std::vector<vtkIdType>>;
+
+/** Of particles that came, those from each rank that this one owns. */
+Lists ListOwned(vtkPolyData* near, const std::vector<vtkIdType>& from,
+  const vtkSPHRanksPartition& partition, int self)
+{
+  Lists owned;
+  vtkIdType next = 0;
+  for (const vtkIdType count : from)
+  {
+    owned.emplace_back();
+    for (const vtkIdType end = next + count; next < end; ++next)
+    {
+      double at[3];
+      near->GetPoint(next, at);
+      if (partition.FindOwner(at) == self)
+      {
+        owned.back().push_back(next);
+      }
+    }
+  }
+  return owned;
+}
+
+/** Of this rank's particles, the numbers of those that each rank owns. */
+Lists ListOwners(
+  vtkPolyData* own, vtkIdList* numbers, const vtkSPHRanksPartition& partition, int ranks)
+{
+  Lists owners(static_cast<std::size_t>(ranks));
+  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+  {
+    double at[3];
+    own->GetPoint(i, at);
+    owners[static_cast<std::size_t>(partition.FindOwner(at))].push_back(numbers->GetId(i));
+  }
+  return owners;
+}
+}
+
+//------------------------------------------------------------------------------
+// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* output)
+{
+  vtkSPHRanks ranks(this->Controller);
+  vtkNew<vtkIdList> numbers;
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles, numbers);
+  std::int64_t counts[2] = { own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
+  ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
+  if (counts[1] > 0)
+  {
+    return;
+  }
+  std::int64_t fluid = 0;
+  vtkSPHParticlesChoice choice;
+  this->FillChoice(choice);
+  vtkSPHParticles mine(choice, own);
+  if (counts[0] > 0)
+  {
+    const bool usable = mine.CollectArray(this->FindRequest(0, own)) && mine.CollectParticles();
+    std::string message = usable ? "" : mine.Error;
+    this->SetUsedNames(&mine);
+    if (!ranks.Agree(message))
+    {
+      this->Fail(message);
+      return;
+    }
+    fluid = mine.FluidCount;
+    ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
+    if (fluid == 0 && ranks.GetRank() == 0)
+    {
+      this->WarnOfNoFluid(choice, "there are no derivatives");
+    }
+  }
+  vtkNew<vtkPointData> found;
+  const vtkIdType count = particles ? particles->GetNumberOfPoints() : 0;
+  if ((fluid == 0 || this->DeriveTogether(ranks, own, mine, numbers, count, found)) && particles &&
+    output)
+  {
+    output->ShallowCopy(particles);
+    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
+    {
+      output->GetPointData()->AddArray(found->GetArray(i));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+  vtkIdList* numbers, vtkIdType count, vtkPointData* results)
+{
+  const vtkWanted wanted = this->ListWanted();
+  const mcor_gradient form =
+    this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
+  mcor_options options;
+  this->FillOptions(options);
+  mcor_globals globals = {};
+  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
+    &globals, mcor_free_globals);
+  if (!this->CallCoreTogether(ranks, mine, options,
+        [&](mcor_context* context)
+        { return mcor_measure_probe_globals(context, &mine.Core, &options, &globals); }))
+  {
+    return false;
+  }
+  const std::string name = mine.Interpolated[0].Name;
+  if (globals.components[0].not_finite >= 0)
+  {
+    this->FailNotFinite(name, globals.components[0].not_finite);
+    return false;
+  }
+  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals);
+  std::vector<vtkIdType> from;
+  const vtkSmartPointer<vtkPolyData> near =
+    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To, &from);
+  vtkSPHParticles input(mine.Description, near);
+  const vtkSPHRequest request = { near->GetPointData()->GetAbstractArray(name.c_str()), name,
+    true };
+  std::string message = input.CollectArray(request) && input.CollectParticles() ? "" : input.Error;
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return false;
+  }
+  options.globals = &globals;
+  options.has_box = 1;
+  std::copy(route.Box, route.Box + 6, options.box);
+  mcor_derivatives derivatives = {};
+  const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(
+    &derivatives, mcor_free_derivatives);
+  if (!this->CallCoreTogether(ranks, input, options,
+        [&](mcor_context* context)
+        { return mcor_derive(context, &input.Core, &options, form, &derivatives); }))
+  {
+    return false;
+  }
+  vtkNew<vtkPointData> found;
+  message = wanted.AddTo(found, derivatives, input.Interpolated[0])
+    ? ""
+    : vtkWanted::DescribeNoMemory(derivatives.count);
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return false;
+  }
+  vtkSPHReturnArrays(ranks, found, near->GetNumberOfPoints(),
+    ListOwned(near, from, *route.Partition, ranks.GetRank()),
+    ListOwners(own, numbers, *route.Partition, ranks.GetCount()), count, results);
+  vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
+  vtkSPHAddSampleShares(ranks, this->RunStatistics, route, route.OwnedParticles);
+  return true;
+}

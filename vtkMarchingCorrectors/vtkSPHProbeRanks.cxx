@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A probe that many processes share. Space around the points is divided among them; points travel to
+// the rank that owns their place, particles to the ranks that they reach, and what was found there
+// travels back to where the points are. A point's value does not depend on the other points.
+#include "vtkSPHProbe.h"
+
+#include "mcor.h"
+#include "vtkDataSet.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSPHParticles.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksStatistics.h"
+#include "vtkSPHSamples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace
+{
+/** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
+constexpr double MarginCubes = 4.0;
+
+bool IsFinite(const double at[3])
+{
+  return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
+}
+
+/** The points that are somewhere, of which `home` are the numbers. */
+vtkSmartPointer<vtkPolyData> TakePoints(vtkDataSet* data, std::vector<vtkIdType>& home)
+{
+  auto taken = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType i = 0; data && i < data->GetNumberOfPoints(); ++i)
+  {
+    double at[3];
+    data->GetPoint(i, at);
+    if (IsFinite(at))
+    {
+      points->InsertNextPoint(at);
+      home.push_back(i);
+    }
+  }
+  taken->SetPoints(points);
+  return taken;
+}
+
+/** Around the points of all ranks. */
+void FindBox(vtkSPHRanks& ranks, vtkPolyData* points, double margin, double box[6])
+{
+  double sides[6];
+  points->GetBounds(sides);
+  for (int side = 0; side < 6; ++side)
+  {
+    sides[side] = points->GetNumberOfPoints() == 0 ? std::numeric_limits<double>::infinity()
+      : side % 2 == 0                              ? sides[side]
+                                                   : -sides[side];
+  }
+  ranks.Reduce(vtkSPHRanks::LEAST, sides, 6);
+  for (int side = 0; side < 6; ++side)
+  {
+    box[side] = side % 2 == 0 ? sides[side] - margin : -sides[side] + margin;
+  }
+}
+
+std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points)
+{
+  std::vector<vtkSPHRanksPlace> places(static_cast<std::size_t>(points->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    points->GetPoint(static_cast<vtkIdType>(i), places[i].At);
+    places[i].Work = 1;
+  }
+  return places;
+}
+
+/** Numbers one after the other, so many for each rank. */
+std::vector<std::vector<vtkIdType>> ListInTurn(const std::vector<vtkIdType>& counts)
+{
+  std::vector<std::vector<vtkIdType>> lists;
+  vtkIdType next = 0;
+  for (const vtkIdType count : counts)
+  {
+    lists.emplace_back();
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      lists.back().push_back(next++);
+    }
+  }
+  return lists;
+}
+
+/** As the core says of the components of the arrays. */
+std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor_globals& globals)
+{
+  std::vector<std::int64_t> notFinite;
+  const mcor_global_component* component = globals.components;
+  for (const vtkSPHAttribute& attribute : input.Interpolated)
+  {
+    notFinite.push_back(component->not_finite);
+    component += attribute.Components;
+  }
+  return notFinite;
+}
+}
+
+//------------------------------------------------------------------------------
+// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
+{
+  vtkSPHRanks ranks(this->Controller);
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
+  std::int64_t counts[3] = { own->GetNumberOfPoints(), points ? points->GetNumberOfPoints() : 0,
+    this->IsAborted() ? 1 : 0 };
+  ranks.Reduce(vtkSPHRanks::SUM, counts, 3);
+  if (counts[2] > 0)
+  {
+    return;
+  }
+  vtkSPHParticlesChoice choice;
+  this->FillChoice(choice);
+  vtkSPHParticles mine(choice, own);
+  if (counts[0] > 0)
+  {
+    std::string message = mine.CollectParticles() ? "" : mine.Error;
+    this->SetUsedNames(&mine);
+    if (!ranks.Agree(message))
+    {
+      this->Fail(message);
+      return;
+    }
+    if (this->InterpolateAttributes)
+    {
+      mine.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
+    }
+  }
+  std::int64_t fluid = mine.FluidCount;
+  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
+  if (counts[0] > 0 && fluid == 0 && ranks.GetRank() == 0)
+  {
+    this->WarnOfNoFluid(choice, "no point is valid");
+  }
+  if (fluid > 0 && counts[1] > 0)
+  {
+    this->ProbeTogether(ranks, own, mine, points, output);
+  }
+  else if (points && output)
+  {
+    mcor_options options;
+    this->FillProbeOptions(options);
+    const vtkSPHSamples samples(
+      mine, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints());
+    output->ShallowCopy(points);
+    samples.AddTo(output->GetPointData());
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+  vtkDataSet* points, vtkDataSet* output)
+{
+  mcor_options options;
+  this->FillProbeOptions(options);
+  mcor_globals globals = {};
+  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
+    &globals, mcor_free_globals);
+  if (!this->CallCoreTogether(ranks, mine, options,
+        [&](mcor_context* context)
+        { return mcor_measure_probe_globals(context, &mine.Core, &options, &globals); }))
+  {
+    return false;
+  }
+  std::vector<vtkIdType> numbers;
+  const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
+  options.has_box = 1;
+  FindBox(ranks, places, MarginCubes * globals.cube_size, options.box);
+  const vtkSPHRanksRoute route =
+    vtkSPHFindRoute(ranks, mine.Core, options, globals, ListPlaces(places));
+  const auto count = static_cast<std::size_t>(ranks.GetCount());
+  std::vector<std::vector<vtkIdType>> to(count), home(count);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    double at[3];
+    places->GetPoint(static_cast<vtkIdType>(i), at);
+    const auto owner = static_cast<std::size_t>(route.Partition->FindOwner(at));
+    to[owner].push_back(static_cast<vtkIdType>(i));
+    home[owner].push_back(numbers[i]);
+  }
+  const vtkSmartPointer<vtkPolyData> near =
+    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
+  std::vector<vtkIdType> from;
+  const vtkSmartPointer<vtkPolyData> here = vtkSPHSendParticles(ranks, places, to, &from);
+
+  vtkSPHParticles input(mine.Description, near);
+  std::string message = input.CollectParticles() ? "" : input.Error;
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return false;
+  }
+  if (this->InterpolateAttributes)
+  {
+    input.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
+  }
+  options.globals = &globals;
+  std::copy(route.Box, route.Box + 6, options.box);
+  vtkSPHSamples samples(input, options, this->ValidPointMaskArrayName, here->GetNumberOfPoints());
+  samples.NotFinite = ListNotFinite(input, globals);
+  vtkFieldData* statistics = this->RunStatistics;
+  if (!this->CallCoreTogether(ranks, input, options,
+        [&](mcor_context* context)
+        { return EvaluateAt(here, context, input.Core, options, samples, statistics); }))
+  {
+    return false;
+  }
+  vtkNew<vtkPointData> found, came;
+  samples.AddTo(found);
+  vtkSPHReturnArrays(ranks, found, here->GetNumberOfPoints(), ListInTurn(from), home,
+    points ? points->GetNumberOfPoints() : 0, came);
+  vtkSPHAddSampleShares(ranks, statistics, route, here->GetNumberOfPoints());
+  for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
+  {
+    if (ranks.GetRank() == 0)
+    {
+      this->Warn(sentence);
+    }
+  }
+  if (points && output)
+  {
+    output->ShallowCopy(points);
+    for (int i = 0; i < came->GetNumberOfArrays(); ++i)
+    {
+      output->GetPointData()->AddArray(came->GetArray(i));
+    }
+  }
+  return true;
+}

@@ -292,7 +292,9 @@ int vtkSPHAlgorithm::RequestData(
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
   bool good = true;
-#if MCOR_HAS_RANKS
+#if !MCOR_HAS_RANKS
+  static_cast<void>(blocks);
+#else
   vtkSPHRanks ranks(this->Controller);
   const std::int64_t count =
     blocks ? static_cast<std::int64_t>(vtkSPHNameBlocks(blocks).size()) : -1;

@@ -23,7 +23,9 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     "${CMAKE_CURRENT_SOURCE_DIR}/readme_pictures.py" "${out}")
   mcor_add_example_test(gallery vtk "${with_display}" "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/Gallery/gallery.py" "${out}")
-  set_tests_properties(example.python example.pictures example.gallery PROPERTIES
+  mcor_add_example_test(graded vtk "${with_display}" "${MCOR_VTK_PYTHON}"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Gallery/graded.py" "${out}")
+  set_tests_properties(example.python example.pictures example.gallery example.graded PROPERTIES
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 

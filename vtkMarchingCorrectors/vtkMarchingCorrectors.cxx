@@ -120,6 +120,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.has_box = this->UseBox;
   std::copy(this->Box, this->Box + 6, options.box);
   std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
+  options.capping = this->Capping;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
     ? MCOR_BOUNDARY_EIGENVALUE
@@ -370,6 +371,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   };
   printSides("Box", this->Box);
   printSides("Periodic Bounds", this->PeriodicBounds);
+  os << indent << "Capping: " << this->Capping << "\n";
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
   os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
   os << indent << "Preview: " << this->Preview << "\n";

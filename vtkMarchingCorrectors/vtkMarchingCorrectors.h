@@ -53,13 +53,13 @@
  * holds the statistics of the run, one array each: "Device", "Platform", "FluidParticles",
  * "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected", "LatticeOrigin",
  * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
- * "Points", "Triangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+ * "Points", "Triangles", "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
  * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
  * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
  * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "WallShare", "Kernel", "SeedMode",
- * "Topology", "Precision", "CubeSize", "Box" and "PeriodicBounds" (where they are used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
+ * "Topology", "Precision", "CubeSize", "Box", "PeriodicBounds" and "Capping" (where they are used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
  * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
  * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar;
  * mcor_statistics in mcor.h says more of each. All of the output is a function of the input and the
@@ -333,6 +333,17 @@ public:
 
   ///@{
   /**
+   * Close the surface at periodic sides, off by default: by flat triangles around what is above the
+   * iso value, which share the points of the surface's border. What encloses the body is then closed,
+   * unless trimming leaves it open. Not with UseBox, PAIRS or several processes.
+   */
+  vtkSetMacro(Capping, vtkTypeBool);
+  vtkGetMacro(Capping, vtkTypeBool);
+  vtkBooleanMacro(Capping, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Box as its lower corner and its lengths, as ParaView's box widget has it.
    */
   void SetPanelBoxPosition(double x, double y, double z);
@@ -512,7 +523,8 @@ public:
   ///@{
   /**
    * Compute "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
-   * vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded. Off by default.
+   * vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 of a cap
+   * alone. Off by default.
    */
   vtkSetMacro(ComputeBoundaryFlag, vtkTypeBool);
   vtkGetMacro(ComputeBoundaryFlag, vtkTypeBool);
@@ -607,6 +619,7 @@ protected:
   vtkTypeBool UseBox = 0;
   double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  vtkTypeBool Capping = 0;
   int SeedMode = COMPLETE;
   int CubeSizeMode = UNIFORM;
   int CubeLevelLimit = 24;

@@ -269,6 +269,10 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "Points", { this->Surface.point_count });
   vtkSPHAddCount(fieldData, "Triangles", { this->Surface.triangle_count });
   vtkSPHAddCount(fieldData, "TrianglesBeforeTrimming", { s.triangles_before_trimming });
+  if (this->Options.capping)
+  {
+    vtkSPHAddCount(fieldData, "CapTriangles", { s.cap_triangles });
+  }
   vtkSPHAddReal(fieldData, "CorrectionMean", { s.correction_mean });
   vtkSPHAddReal(fieldData, "CorrectionMax", { s.correction_max });
   vtkSPHAddReal(fieldData, "CorrectionStandardDeviation", { s.correction_deviation });
@@ -325,6 +329,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   if (p[0] < p[1] || p[2] < p[3] || p[4] < p[5])
   {
     vtkSPHAddReal(fieldData, "PeriodicBounds", { p[0], p[1], p[2], p[3], p[4], p[5] });
+    vtkSPHAddCount(fieldData, "Capping", { o.capping });
   }
   if (o.has_box)
   {

@@ -288,6 +288,8 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.Box = ToBox(n, v); } },
     { "--periodic", "LX,LY,LZ|BOUNDS", "particles repeat; lengths (0: open), or x0,x1,y0,y1,z0,z1",
       [](Options& o, Text n, Text v) { o.Periodic = ToPeriod(n, v); } },
+    { "--capping", "", "close the surface at periodic sides, around what is above the iso value",
+      [](Options& o, Text, Text) { o.Capping = true; } },
     { "--seeds", "pairs|complete", "the paper's seeds, or such that nothing is missed (default)",
       [](Options& o, Text n, Text v) {
         o.Seeds = ToChoice(n, v, { "pairs", "complete" });
@@ -441,6 +443,10 @@ void Check(const CommandLineOptions& options)
   if (!options.PictureFile.empty() && !EndsWith(options.PictureFile, ".png"))
   {
     throw UsageError("--screenshot writes a .png file, not '" + options.PictureFile + "'");
+  }
+  if (options.Capping && options.Periodic.empty())
+  {
+    throw UsageError("--capping closes the surface at periodic sides; add --periodic");
   }
   if (options.FreeSurface && !options.Scalar.empty())
   {

@@ -49,6 +49,7 @@ struct CommandLineOptions
   std::string Cubes = "uniform";
   int MaxLevel = 24;            ///< of adaptive cubes
   std::vector<double> Box;      ///< x0, x1, y0, y1, z0, z1; empty: all
+  bool Capping = false;
   std::vector<double> Periodic; ///< three lengths, or bounds like those of Box; empty: open
   bool Preview = false;
   double NodeThreshold = 0.1;

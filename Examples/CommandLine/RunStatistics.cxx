@@ -24,18 +24,19 @@ const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArra
   "DensityArray" };
 const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
   "Mass", "Density", "IsoValues", "Field", "Kernel", "SeedMode", "Topology", "Precision",
-  "CubeSize", "CubeSizeMode", "CubeLevelLimit", "Box", "PeriodicBounds", "CubeSizeFactor",
-  "HScaleFactor", "NodeThreshold", "BoundaryDetection", "VertexThreshold", "Tolerance",
-  "IterationLimit", "Preview" };
+  "CubeSize", "CubeSizeMode", "CubeLevelLimit", "Box", "PeriodicBounds", "Capping",
+  "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection", "VertexThreshold",
+  "Tolerance", "IterationLimit", "Preview" };
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",
   "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
   "FlatCaps", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces", "JoinedFaces",
-  "AmbiguousCells", "Tunnels", "Points", "Triangles", "TrianglesBeforeTrimming", "CorrectionMean",
-  "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance",
-  "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices",
-  "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
-  "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "AmbiguousCells", "Tunnels", "Points", "Triangles", "CapTriangles", "TrianglesBeforeTrimming",
+  "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected",
+  "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax",
+  "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
+  "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated", "RankTriangles",
+  "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

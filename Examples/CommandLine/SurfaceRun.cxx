@@ -204,6 +204,7 @@ void SetPeriod(
   if (!bounds.empty())
   {
     filter->SetPeriodicBounds(bounds.data());
+    filter->SetCapping(options.Capping);
   }
 }
 

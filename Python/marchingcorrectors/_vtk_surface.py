@@ -164,6 +164,8 @@ def add_statistics(data, s, surface, options):
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
     add_count(data, "TrianglesBeforeTrimming", s["triangles_before_trimming"])
+    if options.capping:
+        add_count(data, "CapTriangles", s["cap_triangles"])
     add_real(data, "CorrectionMean", s["correction_mean"])
     add_real(data, "CorrectionMax", s["correction_max"])
     add_real(data, "CorrectionStandardDeviation", s["correction_deviation"])
@@ -215,6 +217,7 @@ def add_parameters(data, particles, arguments):
         add_real(data, "Box", *o.box)
     if any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3)):
         add_real(data, "PeriodicBounds", *o.periodic)
+        add_count(data, "Capping", o.capping)
     add_real(data, "HScaleFactor", o.h_scale)
     add_real(data, "NodeThreshold", o.node_threshold)
     add_text(data, "BoundaryDetection", ("weight sum", "eigenvalue")[o.boundary_detection])

@@ -26,7 +26,7 @@ class Usage(CommandLineTest):
                 --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
                 --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
                 --memory-limit --list-devices --stats --screenshot --repeat --quiet --help
-                --version --precision --support-radius --output-precision --box --periodic --times
+                --version --precision --support-radius --output-precision --box --periodic --capping --times
                 --time-step""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
@@ -104,6 +104,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--mass", "0"], "--mass must be greater than 0"),
             ([*good, *ISO, "--density", "-1"], "--density must be greater than 0"),
             ([*good, *ISO, "--periodic", "1,2"], "--periodic needs three lengths, or six bounds"),
+            ([*good, *ISO, "--capping"], "--capping closes the surface at periodic sides; add --periodic"),
             ([*good, *ISO, "--periodic", "1,2,-1"], "--periodic needs a period of 0 or more along z"),
             ([*good, *ISO, "--periodic", "0,1,1,0,0,1"],
              "--periodic needs a period of 0 or more along y"),
@@ -586,8 +587,16 @@ class Options(CommandLineTest):
         self.assertLess(slab["statistics"]["cells_used"], 4 * round(cubes) ** 2)
         self.succeed(*free, "--periodic", f"{2 * half!r},{2 * half!r},0")
         self.assertEqual(self.output.read_bytes(), first)
+        capped = self.succeed(*free, "--periodic", f"{2 * half!r},{2 * half!r},0", "--capping")
+        self.assertEqual((slab["parameters"]["capping"], capped["parameters"]["capping"]), (0, 1))
+        statistics = capped["statistics"]
+        self.assertEqual(statistics["triangles"] - statistics["cap_triangles"], slab["statistics"]["triangles"])
+        self.assertGreater(statistics["cap_triangles"], 100)
+        self.assertNotIn("cap_triangles", slab["statistics"])
         self.output.unlink()
         self.refuse(self.extract(*free, "--periodic", "1e-3,0,0"), 1, "period along x")
+        self.refuse(self.extract(*free, "--periodic", f"{2 * half!r},0,0", "--capping", "--box", "0,1,0,1,0,1"), 1,
+                    "Capping does not go with a box")
 
     def test_boundary_detection(self):
         cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block

@@ -34,6 +34,7 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
     o->periodic[2 * a] = length < 1 ? 0 : from;
     o->periodic[2 * a + 1] = length < 1 ? 0 : from + length;
   }
+  o->capping = (rooms & 3) == 2;
   o->wall_share = rooms >> 2 & 1 ? shares[fuzz_byte(bytes) % 8] : 0;
 }
 
@@ -58,6 +59,7 @@ static void fuzz_globals(const fuzz_call* call)
     return;
   }
   mcor_options options = call->options;
+  options.capping = 0;
   mcor_status status[2];
   for (int given = 0; given < 2; ++given)
   {

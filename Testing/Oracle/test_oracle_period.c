@@ -5,92 +5,13 @@
  * in closed form; and all particles shifted. */
 
 #include "oracle_case.h"
-#include "oracle_period.h"
+#include "particle_period.h"
 #include "particle_sets.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
-
-/* ---- particles of a density known in closed form --------------------------------------------- */
-
-/* One of a unit volume at X, on average, is taken to x = X + AMOUNT L / (2 pi) sin(2 pi X / L) along
- * each axis: so the density at x is the product of 1 / (1 + AMOUNT cos(2 pi X / L)). */
-#define AMOUNT 0.35
-
-static const double lengths[3] = { 12.0, 10.0, 10.0 };
-
-static double stretch(double from, double length)
-{
-  return 1.0 + AMOUNT * cos(2.0 * PI * from / length);
-}
-
-static double move(double from, double length)
-{
-  return from + AMOUNT * length / (2.0 * PI) * sin(2.0 * PI * from / length);
-}
-
-static double density_at(const double x[3])
-{
-  double density = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double from = x[axis];
-    for (int step = 0; step < 50; ++step)
-    {
-      from -= (move(from, lengths[axis]) - x[axis]) / stretch(from, lengths[axis]);
-    }
-    density /= stretch(from, lengths[axis]);
-  }
-  return density;
-}
-
-/* A position that shifts by multiples of 1/2 leave exact. */
-static double on_grid(double x)
-{
-  return floor(x * 0x1p16) * 0x1p-16;
-}
-
-static oracle_particles make_box(uint64_t seed)
-{
-  oracle_particles p;
-  const int64_t n[3] = { (int64_t)lengths[0], (int64_t)lengths[1], (int64_t)lengths[2] };
-  if (!oracle_create_particles(&p, n[0] * n[1] * n[2]))
-  {
-    return p;
-  }
-  for (int64_t i = 0; i < p.count; ++i)
-  {
-    const int64_t at[3] = { i % n[0], i / n[0] % n[1], i / n[0] / n[1] };
-    p.volume[i] = 1.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double jitter = 0.25 * (2.0 * random_unit(&seed) - 1.0);
-      const double from = (double)at[axis] + 0.5 + jitter;
-      p.position[3 * i + axis] = on_grid(move(from, lengths[axis]));
-      p.volume[i] *= stretch(from, lengths[axis]);
-    }
-    p.scalar[i] = 1.0 / p.volume[i];
-    p.smoothing_length[i] = 1.25 * cbrt(p.volume[i]);
-  }
-  return p;
-}
-
-static mcor_input input_of(const oracle_particles* p)
-{
-  mcor_input input;
-  memset(&input, 0, sizeof(input));
-  input.count = p->count;
-  input.positions = particle_array(p->position, 3, 0.0);
-  input.smoothing_length = particle_array(p->smoothing_length, 1, 0.0);
-  input.volume = particle_array(p->volume, 1, 0.0);
-  input.has_volume = 1;
-  input.scalar = particle_array(p->scalar, 1, 0.0);
-  return input;
-}
 
 /* ---- against the oracle ----------------------------------------------------------------------- */
 
@@ -120,21 +41,12 @@ static const period_case cases[] = {
   { "mprime4", MCOR_M_PRIME_4, MCOR_SHEPARD, 1.2, 0.9, 1.0, "y", 1, 1 },
 };
 
-static void set_period(mcor_options* options, const char* open)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    options->periodic[2 * axis] = 0.0;
-    options->periodic[2 * axis + 1] = strchr(open, 'x' + axis) ? 0.0 : lengths[axis];
-  }
-}
-
 static void run_case(oracle_suite* suite, const oracle_particles* particles, const period_case* one)
 {
   oracle_case at;
   double iso = one->iso;
   memset(&at, 0, sizeof(at));
-  at.input = input_of(particles);
+  at.input = particle_period_input(particles);
   at.input.has_volume = one->volumes;
   at.options = oracle_case_options(&iso);
   at.options.sph_kernel = one->kernel;
@@ -142,7 +54,7 @@ static void run_case(oracle_suite* suite, const oracle_particles* particles, con
   at.options.cube_size_factor = one->cube;
   at.options.h_scale = one->h_scale;
   at.options.precision = one->precise ? MCOR_FLOAT64 : MCOR_FLOAT32;
-  set_period(&at.options, one->open);
+  particle_period_set(&at.options, one->open);
   at.skip_pairs = one->field == MCOR_WEIGHT_SUM;
   snprintf(
     at.name, sizeof(at.name), "period/%s/%g%s", one->name, iso, one->precise ? "/double" : "");
@@ -164,10 +76,10 @@ static void expect(oracle_suite* suite, int condition, const char* what, double 
 static void check_density(oracle_suite* suite, const oracle_particles* particles)
 {
   double iso = 1.0, sum = 0.0, largest = 0.0;
-  const mcor_input input = input_of(particles);
+  const mcor_input input = particle_period_input(particles);
   mcor_options options = oracle_case_options(&iso);
   mcor_surface surface;
-  set_period(&options, "");
+  particle_period_set(&options, "");
   ++suite->cases;
   const mcor_status status = mcor_extract(suite->context, &input, &options, &surface);
   expect(suite, status == MCOR_OK && surface.point_count > 1000, "points", 0.0);
@@ -182,11 +94,11 @@ static void check_density(oracle_suite* suite, const oracle_particles* particles
       {
         double y[3] = { x[0], x[1], x[2] };
         y[axis] += (2 * s - 1) * 1e-4;
-        side[s] = density_at(y);
+        side[s] = particle_period_density(y);
       }
       slope += pow((side[1] - side[0]) / 2e-4, 2.0);
     }
-    const double distance = fabs(density_at(x) - iso) / sqrt(slope);
+    const double distance = fabs(particle_period_density(x) - iso) / sqrt(slope);
     sum += distance;
     largest = fmax(largest, distance);
   }
@@ -237,7 +149,8 @@ static shifted_point* list_shifted(const mcor_surface* s, const int shift[3], do
     for (int axis = 0; axis < 3; ++axis)
     {
       const double x = s->points[3 * i + axis] - shift[axis] * cube;
-      points[i].at[axis] = x - floor((x + 1e-6) / lengths[axis]) * lengths[axis];
+      points[i].at[axis] =
+        x - floor((x + 1e-6) / particle_period_lengths[axis]) * particle_period_lengths[axis];
       points[i].carried[axis] = s->normals[3 * i + axis];
       points[i].carried[3 + axis] = (float)s->gradients[3 * i + axis];
     }
@@ -256,7 +169,7 @@ static int extract_shifted(oracle_suite* suite, const oracle_particles* particle
   {
     moved.position[i] = particles->position[i] + shift[i % 3] * options->cube_size;
   }
-  const mcor_input input = input_of(&moved);
+  const mcor_input input = particle_period_input(&moved);
   const int good =
     moved.position && mcor_extract(suite->context, &input, options, surface) == MCOR_OK;
   free(moved.position);
@@ -308,7 +221,7 @@ static void check_shifts(oracle_suite* suite, oracle_particles* particles)
   uint64_t seed = 7;
   mcor_options options = oracle_case_options(&iso);
   options.cube_size = 0.5;
-  set_period(&options, "");
+  particle_period_set(&options, "");
   for (int n = 0; n < 6; ++n)
   {
     int shift[3];
@@ -339,7 +252,7 @@ int main(int argc, char** argv)
   {
     return 1;
   }
-  oracle_particles particles = make_box(3);
+  oracle_particles particles = particle_period_make(3);
   for (size_t n = 0; n < sizeof(cases) / sizeof(cases[0]); ++n)
   {
     run_case(&suite, &particles, &cases[n]);

@@ -274,6 +274,12 @@ extern "C"
      * agree in all bits, but for the coordinate along it, which is rounded. All periods are whole numbers of cubes: the cube size is made to fit, smaller by less than a
      * half. x0 = x1, the default 0: open. mcor_probe and mcor_derive do not read it. */
     double periodic[6];
+    /* Nonzero: the surface is closed at periodic sides by flat triangles there, around the particles'
+     * side of it: where values are above the iso value. Its border's points are shared; the others
+     * are nodes of the virtual grid, with normals out of the period, boundary flag 8, and a residual
+     * that means nothing. Trimming cuts caps, too, and leaves its border open. Not with a box, MCOR_PAIRS,
+     * ranks, given globals or point keys; of no effect without a period. */
+    int capping;
 
     /* NULL: measured over the input. Else of all particles, of which the input holds some: at least
      * those that reach the box by 3 cubes or less, with computed volumes also all within the
@@ -343,6 +349,7 @@ extern "C"
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
+    int64_t cap_triangles; /* of caps; not among the ones before */
     int64_t march_rounds;
     /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. Loops
      * of a cell's triangles that lie in one side of it, next to finer cells, whose part of the surface
@@ -385,7 +392,7 @@ extern "C"
     uint8_t* boundary_flag;     /* [point_count], 0 inside; 1 on the trim boundary, weight (or
                              * eigenvalue) = vertex threshold or solids' share = wall share; 2 same, but left at the linear cut;
                              * 4 on a lattice edge next to a cell that the node threshold
-                             * discarded */
+                             * discarded; 8 of a cap alone, see capping */
     double* iso_value;          /* [point_count] */
     int64_t* nearest_particle;  /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;       /* [point_count][MCOR_POINT_KEY] */

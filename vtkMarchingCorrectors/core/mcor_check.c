@@ -52,6 +52,20 @@ static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options
   return MCOR_OK;
 }
 
+/* Caps are made of the whole of each side. */
+static mcor_status mcor_check_capping(mcor_context* context, const mcor_options* options)
+{
+  const bool pairs = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
+  const char* other = options->has_box   ? "a box"
+    : pairs                              ? "pairs as seeds"
+    : options->ranks || options->globals ? "several ranks"
+    : options->point_keys                ? "keys of points"
+                                         : NULL;
+  MCOR_RETURN_IF(options->capping && other, context, MCOR_INVALID_ARGUMENT,
+    "Capping does not go with %s. Turn one of them off.", other);
+  return MCOR_OK;
+}
+
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
 #define MCOR_NEED(condition, ...)                                                                  \
@@ -262,6 +276,7 @@ mcor_status mcor_check_input(
 {
   MCOR_TRY(mcor_check_options(context, options));
   MCOR_TRY(mcor_check_period(context, options));
+  MCOR_TRY(mcor_check_capping(context, options));
   MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
     context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
     input->attributes ? "" : ", but their list is NULL");

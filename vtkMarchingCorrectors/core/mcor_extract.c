@@ -5,6 +5,7 @@
  * are those of the paper named in mcor.h. */
 
 #include "mcor_box.h"
+#include "mcor_cap.h"
 #include "mcor_graded.h"
 
 /* One iso value's surface, appended. */
@@ -28,13 +29,14 @@ static mcor_status mcor_extract_iso(
   }
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step, begin + 0.7 * step));
-  if (context->mesh.march_count > 0)
+  if (context->mesh.march_count > 0 || mcor_makes_caps(context))
   {
     MCOR_TRY(mcor_load_attributes(context, input, 0));
   }
   MCOR_TRY(mcor_correct(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context, iso));
+  MCOR_TRY(mcor_cap(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
   if (last && input->particles_version == 0 && !mcor_output_evaluates(context))

@@ -127,7 +127,8 @@ typedef struct mcor_mesh
 {
   mcor_buffer used, edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
-  int vertex_count; /* the same and those of the trim boundary */
+  int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
+  int cap_first;
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer means; /* real [vertex_count][attributes.count] */
@@ -310,6 +311,12 @@ static inline double mcor_get_real(const mcor_context* context, const void* arra
                                                 : ((const double*)array)[i];
 }
 
+/* As the device has it. */
+static inline double mcor_real_of(const mcor_context* context, double value)
+{
+  return context->cl.real_size == sizeof(float) ? (double)(float)value : value;
+}
+
 /* Elements that kernels count: rounded up to any work-group or batch, it still is an int. */
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
 
@@ -425,6 +432,13 @@ mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(
   mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
+/* What is trimmed by, at the vertices on lattice edges, and where it ends. */
+bool mcor_is_trimmed(const mcor_context* context);
+bool mcor_trims_by_eigenvalue(const mcor_context* context);
+double mcor_fluid_share(const mcor_context* context);
+const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
+double mcor_trim_threshold(const mcor_context* context);
+mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 mcor_status mcor_list_components(
@@ -496,6 +510,7 @@ extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
 extern const char mcor_source_mcor_attribute_cl[];
 extern const char mcor_source_mcor_box_cl[];
+extern const char mcor_source_mcor_cap_cl[];
 extern const char mcor_source_mcor_probe_cl[];
 extern const char mcor_source_mcor_probe_lanes_cl[];
 extern const char mcor_source_mcor_probe_point_cl[];

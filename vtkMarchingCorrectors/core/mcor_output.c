@@ -5,6 +5,7 @@
  * caller's surface, and adds up what the correction did. */
 
 #include "mcor_box.h"
+#include "mcor_cap.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
@@ -267,6 +268,10 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   if (s->normals)
   {
     mcor_store_normal(gradient, s->normals + 3 * to);
+    if (mcor_is_cap(context, v))
+    {
+      mcor_cap_normal(context, d->node + 4 * v, s->normals + 3 * to);
+    }
   }
   if (s->weight_sum)
   {
@@ -306,7 +311,7 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
     {
       mcor_store_point(
         delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
-      if (!d->owned || d->owned[v])
+      if ((!d->owned || d->owned[v]) && !mcor_is_cap(delivery->context, v))
       {
         mcor_count_correction(delivery->context, d, v, &tally);
       }

@@ -321,6 +321,7 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
   options->field = MCOR_WEIGHT_SUM;
   options->iso_count = 0;
   options->has_box = options->has_box && options->globals;
+  options->capping = 0;
   options->cube_size_mode = MCOR_CUBES_UNIFORM;
   options->ranks = NULL;
   for (int i = 0; i < 6; ++i)

@@ -26,7 +26,7 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor
 }
 
 /* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
-static bool mcor_trims_by_eigenvalue(const mcor_context* context)
+bool mcor_trims_by_eigenvalue(const mcor_context* context)
 {
   return context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE &&
     context->options->field != MCOR_WEIGHT_SUM;
@@ -46,20 +46,26 @@ static bool mcor_ends_at_solids(const mcor_context* context)
 }
 
 /* The share of the weight that the fluid needs; 0: none. */
-static double mcor_fluid_share(const mcor_context* context)
+double mcor_fluid_share(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) ? 1 - context->options->wall_share : 0;
 }
 
 /* What is trimmed by, and where it ends. */
-static const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
+const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) ? &context->trim.margin : mcor_threshold_quantity(context);
 }
 
-static double mcor_trim_threshold(const mcor_context* context)
+double mcor_trim_threshold(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) ? 0 : context->options->vertex_threshold;
+}
+
+/* The free surface has no threshold. */
+bool mcor_is_trimmed(const mcor_context* context)
+{
+  return context->options->field != MCOR_WEIGHT_SUM || mcor_ends_at_solids(context);
 }
 
 /* Evaluates it where that is not done yet. */
@@ -99,7 +105,7 @@ static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* r
   return mcor_scan(context, &trim->cuts, batches, cuts);
 }
 
-static mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
+mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
 {
   mcor_mesh* mesh = &context->mesh;
   const size_t o = (size_t)old, n = (size_t)count, real = context->cl.real_size;
@@ -186,8 +192,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   mcor_mesh* mesh = &context->mesh;
   mcor_trim_data* trim = &context->trim;
   int remaining, cuts, cut_count;
-  if (mesh->triangle_count == 0 ||
-    (context->options->field == MCOR_WEIGHT_SUM && !mcor_ends_at_solids(context)))
+  if (mesh->triangle_count == 0 || !mcor_is_trimmed(context))
   {
     return MCOR_OK;
   }

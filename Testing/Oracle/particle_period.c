@@ -1,0 +1,96 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "particle_period.h"
+#include "particle_sets.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* One of a unit volume at X, on average, is taken to x = X + AMOUNT L / (2 pi) sin(2 pi X / L) along
+ * each axis: so the density at x is the product of 1 / (1 + AMOUNT cos(2 pi X / L)). */
+#define AMOUNT 0.35
+
+const double particle_period_lengths[3] = { 12.0, 10.0, 10.0 };
+
+static double stretch(double from, double length)
+{
+  return 1.0 + AMOUNT * cos(2.0 * PI * from / length);
+}
+
+static double move(double from, double length)
+{
+  return from + AMOUNT * length / (2.0 * PI) * sin(2.0 * PI * from / length);
+}
+
+double particle_period_density(const double x[3])
+{
+  double density = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double from = x[axis];
+    for (int step = 0; step < 50; ++step)
+    {
+      from -= (move(from, particle_period_lengths[axis]) - x[axis]) /
+        stretch(from, particle_period_lengths[axis]);
+    }
+    density /= stretch(from, particle_period_lengths[axis]);
+  }
+  return density;
+}
+
+/* A position that shifts by multiples of 1/2 leave exact. */
+static double on_grid(double x)
+{
+  return floor(x * 0x1p16) * 0x1p-16;
+}
+
+oracle_particles particle_period_make(uint64_t seed)
+{
+  oracle_particles p;
+  const int64_t n[3] = { (int64_t)particle_period_lengths[0], (int64_t)particle_period_lengths[1],
+    (int64_t)particle_period_lengths[2] };
+  if (!oracle_create_particles(&p, n[0] * n[1] * n[2]))
+  {
+    return p;
+  }
+  for (int64_t i = 0; i < p.count; ++i)
+  {
+    const int64_t at[3] = { i % n[0], i / n[0] % n[1], i / n[0] / n[1] };
+    p.volume[i] = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double jitter = 0.25 * (2.0 * random_unit(&seed) - 1.0);
+      const double from = (double)at[axis] + 0.5 + jitter;
+      p.position[3 * i + axis] = on_grid(move(from, particle_period_lengths[axis]));
+      p.volume[i] *= stretch(from, particle_period_lengths[axis]);
+    }
+    p.scalar[i] = 1.0 / p.volume[i];
+    p.smoothing_length[i] = 1.25 * cbrt(p.volume[i]);
+  }
+  return p;
+}
+
+mcor_input particle_period_input(const oracle_particles* p)
+{
+  mcor_input input;
+  memset(&input, 0, sizeof(input));
+  input.count = p->count;
+  input.positions = particle_array(p->position, 3, 0.0);
+  input.smoothing_length = particle_array(p->smoothing_length, 1, 0.0);
+  input.volume = particle_array(p->volume, 1, 0.0);
+  input.has_volume = 1;
+  input.scalar = particle_array(p->scalar, 1, 0.0);
+  return input;
+}
+
+void particle_period_set(mcor_options* options, const char* open)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    options->periodic[2 * axis] = 0.0;
+    options->periodic[2 * axis + 1] =
+      strchr(open, 'x' + axis) ? 0.0 : particle_period_lengths[axis];
+  }
+}

@@ -1,0 +1,533 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Caps close the surface at the sides of a period, around what is above the iso value. Each square of
+ * a side is cut as marching cuts it: along the lines between the surface's own vertices there, which
+ * the cap shares. The other vertices are nodes. Where the surface is trimmed the cap is, too: at the
+ * surface's own cut vertices, and linearly within the side. A square is capped where the cell beside
+ * it is valid.
+ *
+ * Vertices of caps come after all others of the mesh, and take part in what is evaluated there. */
+
+#include "mcor_cap.h"
+#include "mcor_box.h"
+#include "mcor_cap_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A cut keeps off the ends of its line, as those of the surface do. */
+#define MCOR_CAP_CUT_MARGIN 1e-5
+
+/* A vertex only caps have. */
+typedef struct mcor_cap_vertex
+{
+  cl_int node[4];
+  double offset[3];
+  bool is_cut;
+} mcor_cap_vertex;
+
+/* Corner of a polygon: a vertex of the mesh; where it is, in cubes from the lattice's origin; how far
+ * inside of what trimming leaves. */
+typedef struct mcor_cap_corner
+{
+  int32_t vertex;
+  double at[3], margin;
+} mcor_cap_corner;
+
+typedef struct mcor_cap_job
+{
+  mcor_context* context;
+  int old_count; /* vertices of the mesh */
+  mcor_cap_map
+    edges[3]; /* the surface's vertices, by lower node and axis of their edge; of a pinched
+                          * one the first */
+  mcor_cap_map nodes, cuts;
+  mcor_cap_vertex* vertices;
+  int64_t vertex_count, vertex_room;
+  cl_int* triangles;
+  int64_t triangle_count, triangle_room;
+  /* The surface's vertices, and the edges its own cuts are on, ascending. */
+  void *node, *offset, *quantity, *distinct;
+  double threshold;
+} mcor_cap_job;
+
+bool mcor_makes_caps(const mcor_context* context)
+{
+  const int* period = context->lattice.period;
+  return context->options->capping && (period[0] > 0 || period[1] > 0 || period[2] > 0);
+}
+
+bool mcor_is_cap(const mcor_context* context, int64_t v)
+{
+  return v >= context->mesh.cap_first;
+}
+
+void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
+{
+  const mcor_lattice* lattice = &context->lattice;
+  double n[3], square = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int at = node[a] - lattice->period_first[a];
+    n[a] = lattice->period[a] == 0 ? 0 : at == 0 ? -1 : at == lattice->period[a] ? 1 : 0;
+    square += n[a] * n[a];
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    normal[a] = (float)(n[a] / sqrt(square));
+  }
+}
+
+/* Of a node; the virtual grid has not more than 2^20 + 64 along an axis. */
+static uint64_t mcor_cap_key(const cl_int node[3])
+{
+  return (uint64_t)node[0] | (uint64_t)node[1] << 21 | (uint64_t)node[2] << 42 | UINT64_C(1) << 63;
+}
+
+/* ---- vertices ---------------------------------------------------------------------------------- */
+
+static mcor_status mcor_no_cap_memory(mcor_context* context)
+{
+  return mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
+}
+
+/* Room for one more element of an array. */
+static bool mcor_cap_room(void** array, int64_t count, int64_t* room, size_t width)
+{
+  if (count < *room)
+  {
+    return true;
+  }
+  const int64_t more = 2 * *room + 1024;
+  void* grown = realloc(*array, (size_t)more * width);
+  *array = grown ? grown : *array;
+  *room = grown ? more : *room;
+  return grown != NULL;
+}
+
+static mcor_status mcor_add_cap_vertex(mcor_cap_job* job, const double at[3], bool is_cut)
+{
+  mcor_context* context = job->context;
+  MCOR_RETURN_IF(job->old_count + job->vertex_count >= MCOR_COUNT_LIMIT, context,
+    MCOR_OUT_OF_CAPACITY, "The caps have too many vertices. Use a larger cube size.");
+  if (!mcor_cap_room(
+        (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices))
+  {
+    return mcor_no_cap_memory(context);
+  }
+  mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
+  *vertex = (mcor_cap_vertex){ .is_cut = is_cut };
+  for (int a = 0; a < 3; ++a)
+  {
+    vertex->node[a] = (cl_int)floor(at[a]);
+    vertex->offset[a] = at[a] - vertex->node[a];
+  }
+  return MCOR_OK;
+}
+
+/* Of a map's key, a vertex that is made where there is none. */
+static mcor_status mcor_find_cap_vertex(
+  mcor_cap_job* job, mcor_cap_map* map, uint64_t key, const double at[3], bool is_cut, int32_t* v)
+{
+  const int32_t next = (int32_t)(job->old_count + job->vertex_count);
+  *v = mcor_cap_number(map, key, next);
+  if (*v < 0)
+  {
+    return mcor_no_cap_memory(job->context);
+  }
+  return *v == next ? mcor_add_cap_vertex(job, at, is_cut) : MCOR_OK;
+}
+
+/* Node (u, v) of the side. */
+static mcor_status mcor_cap_node_corner(
+  mcor_cap_job* job, const mcor_cap_face* face, int u, int v, mcor_cap_corner* corner)
+{
+  cl_int node[3];
+  node[face->axis] = face->plane;
+  node[face->across[0]] = face->first[0] + u;
+  node[face->across[1]] = face->first[1] + v;
+  for (int a = 0; a < 3; ++a)
+  {
+    corner->at[a] = node[a];
+  }
+  corner->margin = face->margin[mcor_cap_index(face, u, v)];
+  return mcor_find_cap_vertex(
+    job, &job->nodes, mcor_cap_key(node), corner->at, false, &corner->vertex);
+}
+
+/* The surface's vertex on the edge from node (u, v) of the side along across[along], for square
+ * (u0, v0): see mcor_march_emit for pinched ones. */
+static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, const mcor_cap_face* face, int u, int v,
+  int along, int u0, int v0, mcor_cap_corner* corner)
+{
+  mcor_context* context = job->context;
+  const int axis = face->across[along], other = axis == 0 ? 1 : 0;
+  cl_int node[3], cell[3];
+  node[face->axis] = face->plane;
+  node[face->across[0]] = face->first[0] + u;
+  node[face->across[1]] = face->first[1] + v;
+  cell[face->axis] = face->cell;
+  cell[face->across[0]] = face->first[0] + u0;
+  cell[face->across[1]] = face->first[1] + v0;
+  int32_t vertex = mcor_find_cap_number(&job->edges[axis], mcor_cap_key(node));
+  MCOR_RETURN_IF(vertex < 0, context, MCOR_DEVICE_ERROR,
+    "A cap does not fit the surface at node %d %d %d. Please report it.", node[0], node[1],
+    node[2]);
+  const cl_int* nodes = job->node;
+  const bool pinched = vertex + 1 < context->mesh.march_count &&
+    memcmp(nodes + 4 * (size_t)vertex, nodes + 4 * ((size_t)vertex + 1), 4 * sizeof *nodes) == 0;
+  vertex += pinched && node[other] > cell[other];
+  corner->vertex = vertex;
+  corner->margin =
+    job->quantity ? mcor_get_real(context, job->quantity, vertex) - job->threshold : INFINITY;
+  for (int a = 0; a < 3; ++a)
+  {
+    corner->at[a] = node[a] + mcor_get_real(context, job->offset, 4 * (int64_t)vertex + a);
+  }
+  return MCOR_OK;
+}
+
+static int mcor_compare_cap_keys(const void* x, const void* y)
+{
+  const cl_ulong *a = x, *b = y;
+  return (*a > *b) - (*a < *b);
+}
+
+/* Where trimming cuts the line between two corners. */
+static mcor_status mcor_cap_cut(
+  mcor_cap_job* job, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
+{
+  const mcor_mesh* mesh = &job->context->mesh;
+  const mcor_cap_corner *low = p->vertex < q->vertex ? p : q, *high = low == p ? q : p;
+  const cl_ulong key = (cl_ulong)low->vertex << 32 | (cl_ulong)high->vertex;
+  const size_t cuts = (size_t)(job->old_count - mesh->march_count);
+  const cl_ulong* own = cuts > 0 && high->vertex < mesh->march_count
+    ? bsearch(&key, job->distinct, cuts, sizeof key, mcor_compare_cap_keys)
+    : NULL;
+  *cut = (mcor_cap_corner){ .margin = 0 };
+  if (own)
+  {
+    cut->vertex = mesh->march_count + (int32_t)(own - (const cl_ulong*)job->distinct);
+    return MCOR_OK;
+  }
+  const double s = fmin(
+    fmax(low->margin / (low->margin - high->margin), MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
+  for (int a = 0; a < 3; ++a)
+  {
+    cut->at[a] = low->at[a] + s * (high->at[a] - low->at[a]);
+  }
+  return mcor_find_cap_vertex(job, &job->cuts, key, cut->at, true, &cut->vertex);
+}
+
+/* ---- polygons ---------------------------------------------------------------------------------- */
+
+/* A fan. Corners go round as seen from above the axis. */
+static mcor_status mcor_add_cap_fan(
+  mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count)
+{
+  for (int i = 1; i + 1 < count; ++i)
+  {
+    if (!mcor_cap_room((void**)&job->triangles, job->triangle_count + 1, &job->triangle_room,
+          3 * sizeof *job->triangles))
+    {
+      return mcor_no_cap_memory(job->context);
+    }
+    cl_int* t = job->triangles + 3 * job->triangle_count++;
+    t[0] = corners[0].vertex;
+    t[1] = corners[face->upper ? i : i + 1].vertex;
+    t[2] = corners[face->upper ? i + 1 : i].vertex;
+  }
+  return MCOR_OK;
+}
+
+/* What trimming leaves of a polygon of up to 6 corners: each run of corners inside, with the cuts
+ * before and behind it. */
+static mcor_status mcor_add_cap_polygon(
+  mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count)
+{
+  int start = 0;
+  while (start < count && corners[start].margin > 0)
+  {
+    ++start;
+  }
+  if (start == count)
+  {
+    return mcor_add_cap_fan(job, face, corners, count);
+  }
+  mcor_cap_corner run[8];
+  int length = 0;
+  for (int i = 1; i <= count; ++i)
+  {
+    const mcor_cap_corner *before = &corners[(start + i - 1) % count],
+                          *corner = &corners[(start + i) % count];
+    const bool inside = corner->margin > 0;
+    if (inside != (before->margin > 0))
+    {
+      MCOR_TRY(mcor_cap_cut(job, before, corner, &run[length++]));
+    }
+    if (inside)
+    {
+      run[length++] = *corner;
+    }
+    else if (length > 0)
+    {
+      MCOR_TRY(mcor_add_cap_fan(job, face, run, length));
+      length = 0;
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Whether the cell beside square (u, v), which the surface does not meet, is valid. */
+static bool mcor_is_capped(const mcor_cap_face* face, int u, int v)
+{
+  bool valid = true;
+  for (int c = 0; c < 4; ++c)
+  {
+    const int64_t at = mcor_cap_index(face, u + (c & 1), v + (c >> 1));
+    valid = valid && (face->state[at] & MCOR_CAP_VALID) && (face->within[at] & MCOR_CAP_VALID);
+  }
+  return valid;
+}
+
+/* Square (u, v): corners in the order (0, 0), (1, 0), (1, 1), (0, 1); side k follows corner k. */
+static mcor_status mcor_cap_square(mcor_cap_job* job, const mcor_cap_face* face, int u, int v)
+{
+  static const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
+  static const int side_u[4] = { 0, 1, 0, 0 }, side_v[4] = { 0, 0, 1, 0 };
+  const int state = face->state[mcor_cap_index(face, u, v)];
+  int above[4], total = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    above[k] =
+      (face->state[mcor_cap_index(face, u + corner_u[k], v + corner_v[k])] & MCOR_CAP_ABOVE) != 0;
+    total += above[k];
+  }
+  if (total == 0 || (total == 4 ? !mcor_is_capped(face, u, v) : !(state & MCOR_CAP_USED)))
+  {
+    return MCOR_OK;
+  }
+  const bool apart =
+    total == 2 && above[0] == above[2] && !(state & MCOR_CAP_JOINED); /* two corners above */
+  mcor_cap_corner corners[6];
+  int count = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    const int before = (k + 3) % 4, next = (k + 1) % 4;
+    if (apart && above[k])
+    {
+      MCOR_TRY(mcor_cap_edge_corner(
+        job, face, u + side_u[before], v + side_v[before], before & 1, u, v, &corners[count++]));
+    }
+    if (above[k])
+    {
+      MCOR_TRY(
+        mcor_cap_node_corner(job, face, u + corner_u[k], v + corner_v[k], &corners[count++]));
+    }
+    if (apart ? above[k] : above[k] != above[next])
+    {
+      MCOR_TRY(mcor_cap_edge_corner(
+        job, face, u + side_u[k], v + side_v[k], k & 1, u, v, &corners[count++]));
+    }
+    if (apart && above[k])
+    {
+      MCOR_TRY(mcor_add_cap_polygon(job, face, corners, count));
+      count = 0;
+    }
+  }
+  return apart ? MCOR_OK : mcor_add_cap_polygon(job, face, corners, count);
+}
+
+/* ---- the mesh -------------------------------------------------------------------------------- */
+
+/* The surface's vertices on the sides of the period. */
+static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
+{
+  const mcor_context* context = job->context;
+  const mcor_lattice* lattice = &context->lattice;
+  const cl_int* nodes = job->node;
+  for (int32_t v = 0; v < context->mesh.march_count; ++v)
+  {
+    const cl_int* node = nodes + 4 * (size_t)v;
+    const int axis = node[3] & 3;
+    bool on_side = false;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int at = node[a] - lattice->period_first[a];
+      on_side =
+        on_side || (a != axis && lattice->period[a] > 0 && (at == 0 || at == lattice->period[a]));
+    }
+    if (on_side && mcor_cap_number(&job->edges[axis], mcor_cap_key(node), v) < 0)
+    {
+      return mcor_no_cap_memory(job->context);
+    }
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_cap_side(
+  mcor_cap_job* job, int axis, int upper, double iso, mcor_cap_points* points)
+{
+  mcor_cap_face face = { 0 };
+  mcor_status status = mcor_load_cap_face(job->context, axis, upper, iso, points, &face);
+  for (int v = 0; v + 1 < face.count[1] && status == MCOR_OK; ++v)
+  {
+    for (int u = 0; u + 1 < face.count[0] && status == MCOR_OK; ++u)
+    {
+      status = mcor_cap_square(job, &face, u, v);
+    }
+  }
+  mcor_free_cap_face(&face);
+  return status;
+}
+
+/* Views of the surface's vertices while caps are made. */
+static mcor_status mcor_make_caps(mcor_cap_job* job, double iso, mcor_cap_points* points)
+{
+  mcor_context* context = job->context;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->march_count, real = context->cl.real_size;
+  const size_t cuts = (size_t)(mesh->vertex_count - mesh->march_count);
+  if (n > 0)
+  {
+    MCOR_TRY(mcor_map(context, &mesh->node, n * 4 * sizeof(cl_int), false, &job->node));
+    MCOR_TRY(mcor_map(context, &mesh->offset, n * 4 * real, false, &job->offset));
+    if (mcor_is_trimmed(context))
+    {
+      MCOR_TRY(mcor_map(context, mcor_trim_quantity(context), n * real, false, &job->quantity));
+    }
+    MCOR_TRY(mcor_index_cap_edges(job));
+  }
+  if (cuts > 0)
+  {
+    MCOR_TRY(
+      mcor_map(context, &context->trim.distinct, cuts * sizeof(cl_ulong), false, &job->distinct));
+  }
+  for (int side = 0; side < 6; ++side)
+  {
+    if (context->lattice.period[side / 2] > 0)
+    {
+      MCOR_TRY(mcor_cap_side(job, side / 2, side % 2, iso, points));
+    }
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_end_cap_views(mcor_cap_job* job)
+{
+  mcor_context* context = job->context;
+  const mcor_status unmapped[] = { mcor_unmap(context, &context->mesh.node, &job->node),
+    mcor_unmap(context, &context->mesh.offset, &job->offset),
+    mcor_unmap(context, mcor_trim_quantity(context), &job->quantity),
+    mcor_unmap(context, &context->trim.distinct, &job->distinct) };
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < 4; ++i)
+  {
+    status = status == MCOR_OK ? unmapped[i] : status;
+  }
+  return status;
+}
+
+/* Appends elements to a buffer of `old` bytes. */
+static mcor_status mcor_append_bytes(
+  mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes)
+{
+  mcor_buffer more = { 0 };
+  MCOR_TRY(mcor_extend(context, to, old, old + bytes));
+  mcor_status status = mcor_write(context, &more, data, bytes);
+  status = status == MCOR_OK ? mcor_copy(context, &more, to, old, bytes) : status;
+  mcor_release(context, &more);
+  return status;
+}
+
+/* Places and flags of the caps' vertices: 8, of cuts 2. */
+static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
+{
+  mcor_context* context = job->context;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)job->vertex_count, old = (size_t)job->old_count,
+               real = context->cl.real_size;
+  cl_int* node = malloc(n * 4 * sizeof *node);
+  uint8_t *offset = calloc(n * 4, real), *flag = malloc(n);
+  mcor_status status = node && offset && flag ? MCOR_OK : mcor_no_cap_memory(context);
+  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  {
+    const mcor_cap_vertex* vertex = &job->vertices[i];
+    memcpy(node + 4 * i, vertex->node, sizeof vertex->node);
+    flag[i] = vertex->is_cut ? 2 : MCOR_CAP_FLAG;
+    for (size_t a = 0; a < 3; ++a)
+    {
+      const float single = (float)vertex->offset[a];
+      memcpy(offset + (4 * i + a) * real,
+        real == sizeof single ? (const void*)&single : (const void*)&vertex->offset[a], real);
+    }
+  }
+  status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)(old + n)) : status;
+  status =
+    status == MCOR_OK ? mcor_append_bytes(context, &mesh->node, old * 16, node, n * 16) : status;
+  status = status == MCOR_OK
+    ? mcor_append_bytes(context, &mesh->offset, old * 4 * real, offset, n * 4 * real)
+    : status;
+  status = status == MCOR_OK ? mcor_append_bytes(context, &mesh->flag, old, flag, n) : status;
+  free(node);
+  free(offset);
+  free(flag);
+  return status;
+}
+
+static mcor_status mcor_append_caps(mcor_cap_job* job, double iso)
+{
+  mcor_context* context = job->context;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t old = (size_t)mesh->triangle_count, more = (size_t)job->triangle_count;
+  const size_t width = 3 * sizeof(cl_int);
+  int groups;
+  MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
+    "With its caps the surface would have %zu triangles, %d is the limit. Use a larger cube size.",
+    old + more, MCOR_COUNT_LIMIT / 3);
+  MCOR_TRY(mcor_append_cap_vertices(job));
+  MCOR_TRY(mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles, more * width));
+  MCOR_TRY(mcor_extend(context, &context->box.owned, old, old + more));
+  MCOR_TRY(mcor_fill_range(context, &context->box.owned, 1, old, old + more));
+  mesh->triangle_count += (int)more;
+  mesh->vertex_count += (int)job->vertex_count;
+  MCOR_TRY(mcor_make_groups(context, &mesh->node, job->old_count, (int)job->vertex_count, &groups));
+  return MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+    MCOR_REAL(iso), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
+    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+}
+
+mcor_status mcor_cap(mcor_context* context, double iso)
+{
+  context->mesh.cap_first = context->mesh.vertex_count;
+  if (!mcor_makes_caps(context))
+  {
+    return MCOR_OK;
+  }
+  mcor_cap_job job = { .context = context,
+    .old_count = context->mesh.vertex_count,
+    .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
+  mcor_cap_points points = { .node = { 0 } };
+  mcor_status status = mcor_make_caps(&job, iso, &points);
+  const mcor_status unmapped = mcor_end_cap_views(&job);
+  mcor_release_cap_points(context, &points);
+  status = status == MCOR_OK ? unmapped : status;
+  if (status == MCOR_OK && job.triangle_count > 0)
+  {
+    status = mcor_append_caps(&job, iso);
+    context->statistics->cap_triangles += job.triangle_count;
+  }
+  mcor_cap_map* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes,
+    &job.cuts };
+  for (int i = 0; i < 5; ++i)
+  {
+    mcor_free_cap_map(maps[i]);
+  }
+  free(job.vertices);
+  free(job.triangles);
+  return status;
+}

@@ -1,0 +1,63 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_cap_h
+#define mcor_cap_h
+
+/* Caps: what closes the surface at the sides of a period. See mcor_cap.c. */
+
+#include "mcor_internal.h"
+
+/* Boundary flag of a cap's nodes. */
+#define MCOR_CAP_FLAG 8
+
+/* Adds the caps to the trimmed mesh. iso: relative to A0. */
+mcor_status mcor_cap(mcor_context* context, double iso);
+
+/* Whether they are asked for. */
+bool mcor_makes_caps(const mcor_context* context);
+
+/* Whether vertex v of the mesh is one of a cap alone; then which way the sides it is on face. */
+bool mcor_is_cap(const mcor_context* context, int64_t v);
+void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3]);
+
+/* ---- mcor_cap_face.c: nodes of one side of the period ------------------------------------------ */
+
+enum
+{
+  MCOR_CAP_KNOWN = 1, /* as marching has it */
+  MCOR_CAP_ABOVE = 2,
+  MCOR_CAP_VALID = 4,
+  /* Of the cell beside the side, and of the side itself, that have their lowest node here. */
+  MCOR_CAP_USED = 8,
+  MCOR_CAP_JOINED = 16 /* nodes above are joined where the side is ambiguous */
+};
+
+typedef struct mcor_cap_face
+{
+  int axis, upper; /* upper: the higher one of the two sides */
+  int plane;       /* nodes along the axis; of the next ones within; cells beside */
+  int inner, cell;
+  int across[2];           /* the other axes: right-handed, this one being the third */
+  int first[2], count[2];  /* of nodes along these */
+  uint8_t *state, *within; /* [count[1]][count[0]] of the nodes, and of the next ones within */
+  double* margin;          /* how far nodes above are inside of what trimming leaves */
+} mcor_cap_face;
+
+/* Where points are evaluated. */
+typedef struct mcor_cap_points
+{
+  mcor_buffer node, offset, value, gradient, weight, eigenvalue;
+} mcor_cap_points;
+
+static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
+{
+  return (int64_t)v * face->count[0] + u;
+}
+
+/* Axis a's lower or upper side. */
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper, double iso,
+  mcor_cap_points* points, mcor_cap_face* face);
+void mcor_free_cap_face(mcor_cap_face* face);
+void mcor_release_cap_points(mcor_context* context, mcor_cap_points* points);
+
+#endif

@@ -1,0 +1,315 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Nodes of one side of a period: on which side of the iso value they are, and whether they are valid.
+ * Where marching has evaluated them its answer is taken, so that a cap fits the surface; elsewhere
+ * no surface is near. */
+
+#include "mcor_box.h"
+#include "mcor_cap.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* As MCOR_LEAST_WEIGHT of mcor_node.cl. */
+#define MCOR_LEAST_MEAN_WEIGHT 1e-3
+
+/* Points evaluated at a time. */
+#define MCOR_CAP_BATCH (1 << 18)
+
+static mcor_status mcor_make_cap_face(
+  mcor_context* context, int axis, int upper, mcor_cap_face* face)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const int side = upper ? lattice->period[axis] : 0;
+  *face = (mcor_cap_face){ .axis = axis,
+    .upper = upper,
+    .plane = lattice->period_first[axis] + side,
+    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
+  face->inner = face->plane + (upper ? -1 : 1);
+  face->cell = face->plane - upper;
+  for (int i = 0; i < 2; ++i)
+  {
+    face->first[i] = box->first[face->across[i]];
+    face->count[i] = box->last[face->across[i]] - face->first[i] + 1;
+  }
+  const size_t nodes = (size_t)face->count[0] * (size_t)face->count[1];
+  face->state = calloc(nodes, 1);
+  face->within = calloc(nodes, 1);
+  face->margin = calloc(nodes, sizeof(double));
+  MCOR_RETURN_IF(!face->state || !face->within || !face->margin, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %zu nodes of a cap could not be allocated.", nodes);
+  return MCOR_OK;
+}
+
+void mcor_free_cap_face(mcor_cap_face* face)
+{
+  free(face->state);
+  free(face->within);
+  free(face->margin);
+}
+
+/* ---- what marching knows ------------------------------------------------------------------- */
+
+enum
+{
+  MCOR_CAP_VIEW_BRICKS,
+  MCOR_CAP_VIEW_KNOWN,
+  MCOR_CAP_VIEW_ABOVE,
+  MCOR_CAP_VIEW_VALID,
+  MCOR_CAP_VIEW_CELLS,
+  MCOR_CAP_VIEW_DECISIONS,
+  MCOR_CAP_VIEWS
+};
+
+/* Sets `to` at those nodes of a brick that lie in a plane of the face, where their bits in a mask are
+ * set. */
+static void mcor_mark_plane(
+  const mcor_cap_face* face, const cl_int* brick, int plane, cl_ulong mask, int flag, uint8_t* to)
+{
+  const int at = plane - brick[face->axis] * MCOR_BRICK;
+  if (at < 0 || at >= MCOR_BRICK)
+  {
+    return;
+  }
+  const int step = 2 * face->axis, step_u = 2 * face->across[0], step_v = 2 * face->across[1];
+  for (int n = 0; n < MCOR_BRICK * MCOR_BRICK; ++n)
+  {
+    const int u = brick[face->across[0]] * MCOR_BRICK + (n & 3) - face->first[0];
+    const int v = brick[face->across[1]] * MCOR_BRICK + (n >> 2) - face->first[1];
+    const int bit = at << step | (n & 3) << step_u | n >> 2 << step_v;
+    if (u >= 0 && u < face->count[0] && v >= 0 && v < face->count[1] && mask >> bit & 1)
+    {
+      to[mcor_cap_index(face, u, v)] |= (uint8_t)flag;
+    }
+  }
+}
+
+static void mcor_take_masks(
+  const mcor_context* context, void* const views[MCOR_CAP_VIEWS], mcor_cap_face* face)
+{
+  const cl_ulong *known = views[MCOR_CAP_VIEW_KNOWN], *above = views[MCOR_CAP_VIEW_ABOVE],
+                 *valid = views[MCOR_CAP_VIEW_VALID], *cells = views[MCOR_CAP_VIEW_CELLS],
+                 *decisions = views[MCOR_CAP_VIEW_DECISIONS];
+  for (int slot = 0; slot < context->bricks.now.count; ++slot)
+  {
+    const cl_int* brick = (const cl_int*)views[MCOR_CAP_VIEW_BRICKS] + 4 * (size_t)slot;
+    const cl_ulong k = known[slot];
+    mcor_mark_plane(face, brick, face->plane, k, MCOR_CAP_KNOWN, face->state);
+    mcor_mark_plane(face, brick, face->plane, k & above[slot], MCOR_CAP_ABOVE, face->state);
+    mcor_mark_plane(face, brick, face->plane, k & valid[slot], MCOR_CAP_VALID, face->state);
+    mcor_mark_plane(face, brick, face->inner, k, MCOR_CAP_KNOWN, face->within);
+    mcor_mark_plane(face, brick, face->inner, k & valid[slot], MCOR_CAP_VALID, face->within);
+    mcor_mark_plane(face, brick, face->cell, cells[slot], MCOR_CAP_USED, face->state);
+    if (decisions)
+    {
+      mcor_mark_plane(face, brick, face->plane,
+        decisions[(size_t)slot * MCOR_DECISION_MASKS + (size_t)face->axis], MCOR_CAP_JOINED,
+        face->state);
+    }
+  }
+}
+
+static mcor_status mcor_take_bricks(mcor_context* context, mcor_cap_face* face)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  const size_t n = (size_t)now->count;
+  const bool resolved = context->options->topology == MCOR_TOPOLOGY_FIELD;
+  const mcor_buffer* buffers[MCOR_CAP_VIEWS] = { &now->bricks, &now->known, &now->above,
+    &now->valid, &context->mesh.used, &context->topology.decisions };
+  const size_t bytes[MCOR_CAP_VIEWS] = { 4 * n * sizeof(cl_int), n * sizeof(cl_ulong),
+    n * sizeof(cl_ulong), n * sizeof(cl_ulong), n * sizeof(cl_ulong),
+    n * MCOR_DECISION_MASKS * sizeof(cl_ulong) };
+  const int count = n == 0 ? 0 : resolved ? MCOR_CAP_VIEWS : MCOR_CAP_VIEW_DECISIONS;
+  void* views[MCOR_CAP_VIEWS] = { NULL };
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < count && status == MCOR_OK; ++i)
+  {
+    status = mcor_map(context, buffers[i], bytes[i], false, &views[i]);
+  }
+  if (status == MCOR_OK && count > 0)
+  {
+    mcor_take_masks(context, views, face);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const mcor_status unmapped = mcor_unmap(context, buffers[i], &views[i]);
+    status = status == MCOR_OK ? unmapped : status;
+  }
+  return status;
+}
+
+/* ---- what it does not know --------------------------------------------------------------------- */
+
+void mcor_release_cap_points(mcor_context* context, mcor_cap_points* p)
+{
+  MCOR_RELEASE(context, &p->node, &p->offset, &p->value, &p->gradient, &p->weight, &p->eigenvalue);
+}
+
+/* Evaluates at nodes. */
+static mcor_status mcor_evaluate_cap_nodes(
+  mcor_context* context, const cl_int* nodes, int count, double iso, mcor_cap_points* p)
+{
+  const size_t n = (size_t)count, real = context->cl.real_size;
+  int groups;
+  MCOR_TRY(mcor_write(context, &p->node, nodes, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &p->offset, 0, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &p->value, n * real));
+  MCOR_TRY(mcor_reserve(context, &p->gradient, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &p->weight, n * real));
+  MCOR_TRY(mcor_make_groups(context, &p->node, 0, count, &groups));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->node), MCOR_REAL(iso),
+    MCOR_BUFFER(&p->offset), MCOR_BUFFER(&p->value), MCOR_BUFFER(&p->gradient),
+    MCOR_BUFFER(&p->weight), MCOR_INT(0), MCOR_INT(0), MCOR_BUFFER(&p->value),
+    MCOR_BUFFER(&p->weight)));
+  if (!mcor_trims_by_eigenvalue(context))
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_reserve(context, &p->eigenvalue, n * real));
+  return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->node),
+    MCOR_BUFFER(&p->offset), MCOR_BUFFER(&p->eigenvalue));
+}
+
+/* What was evaluated, on the host. */
+typedef struct mcor_cap_values
+{
+  void *value, *gradient, *weight, *eigenvalue;
+} mcor_cap_values;
+
+/* How far point i is inside of what trimming leaves. */
+static double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)
+{
+  const double weight = mcor_get_real(context, v->weight, i), share = mcor_fluid_share(context);
+  const double fluid = share > 0 ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
+  const double quantity = v->eigenvalue ? mcor_get_real(context, v->eigenvalue, i) : weight;
+  const double threshold = context->options->field == MCOR_WEIGHT_SUM
+    ? DBL_MAX
+    : quantity - mcor_real_of(context, context->options->vertex_threshold);
+  const double ends = share > 0 ? fluid - share * weight : DBL_MAX;
+  return threshold < ends ? threshold : ends;
+}
+
+static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
+{
+  const mcor_options* options = context->options;
+  const double weight = mcor_get_real(context, v->weight, i);
+  const double fluid =
+    context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
+  return options->field == MCOR_WEIGHT_SUM ||
+    (weight >= mcor_real_of(context, options->node_threshold) &&
+      (options->field == MCOR_SUM || fluid >= mcor_real_of(context, MCOR_LEAST_MEAN_WEIGHT)));
+}
+
+/* Takes point i, which is node number `to`: of the side itself, or of those within. */
+static void mcor_take_cap_node(const mcor_context* context, const mcor_cap_values* v, int64_t i,
+  bool within, int64_t to, mcor_cap_face* face)
+{
+  uint8_t* state = within ? &face->within[to] : &face->state[to];
+  if (!(*state & MCOR_CAP_KNOWN))
+  {
+    *state |= mcor_cap_is_valid(context, v, i) ? MCOR_CAP_VALID : 0;
+    *state |= mcor_get_real(context, v->value, i) >= 0 ? MCOR_CAP_ABOVE : 0;
+  }
+  if (!within)
+  {
+    face->margin[to] = mcor_cap_margin(context, v, i);
+  }
+}
+
+/* Evaluates a list of nodes, and takes them. */
+static mcor_status mcor_take_cap_nodes(mcor_context* context, const cl_int* nodes,
+  const int64_t* to, int count, bool within, double iso, mcor_cap_points* p, mcor_cap_face* face)
+{
+  if (count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_evaluate_cap_nodes(context, nodes, count, iso, p));
+  const size_t n = (size_t)count * context->cl.real_size;
+  mcor_cap_values v = { NULL };
+  mcor_status status = mcor_map(context, &p->value, n, false, &v.value);
+  status = status == MCOR_OK ? mcor_map(context, &p->gradient, 4 * n, false, &v.gradient) : status;
+  status = status == MCOR_OK ? mcor_map(context, &p->weight, n, false, &v.weight) : status;
+  if (status == MCOR_OK && mcor_trims_by_eigenvalue(context))
+  {
+    status = mcor_map(context, &p->eigenvalue, n, false, &v.eigenvalue);
+  }
+  for (int i = 0; i < count && status == MCOR_OK; ++i)
+  {
+    mcor_take_cap_node(context, &v, i, within, to[i], face);
+  }
+  const mcor_status unmapped[] = { mcor_unmap(context, &p->value, &v.value),
+    mcor_unmap(context, &p->gradient, &v.gradient), mcor_unmap(context, &p->weight, &v.weight),
+    mcor_unmap(context, &p->eigenvalue, &v.eigenvalue) };
+  for (int i = 0; i < 4; ++i)
+  {
+    status = status == MCOR_OK ? unmapped[i] : status;
+  }
+  return status == MCOR_OK ? mcor_report_launch(context) : status;
+}
+
+/* Whether a node of the side is to be evaluated: below it is of no use, but whether it is must be
+ * known. Of those within, the validity, where a cell has no vertex on the side. */
+static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, int v)
+{
+  const int64_t at = mcor_cap_index(face, u, v);
+  if (!within)
+  {
+    return !(face->state[at] & MCOR_CAP_KNOWN) || (face->state[at] & MCOR_CAP_ABOVE);
+  }
+  return !(face->within[at] & MCOR_CAP_KNOWN) && (face->state[at] & MCOR_CAP_ABOVE) &&
+    (face->state[at] & MCOR_CAP_VALID);
+}
+
+/* Evaluates what is needed, by squares of 4 x 4 nodes, which are near each other. */
+static mcor_status mcor_fill_cap_nodes(
+  mcor_context* context, bool within, double iso, mcor_cap_points* p, mcor_cap_face* face)
+{
+  cl_int* nodes = malloc((size_t)(MCOR_CAP_BATCH + 16) * 4 * sizeof *nodes);
+  int64_t* to = malloc((size_t)(MCOR_CAP_BATCH + 16) * sizeof *to);
+  mcor_status status = nodes && to
+    ? MCOR_OK
+    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
+  const int64_t tiles_u = (face->count[0] + 3) / 4 + 1, tiles_v = (face->count[1] + 3) / 4 + 1;
+  int count = 0;
+  for (int64_t tile = 0; tile < tiles_u * tiles_v && status == MCOR_OK; ++tile)
+  {
+    const int u0 = (int)(tile % tiles_u) * 4 - (face->first[0] & 3);
+    const int v0 = (int)(tile / tiles_u) * 4 - (face->first[1] & 3);
+    for (int n = 0; n < 16; ++n)
+    {
+      const int u = u0 + (n & 3), v = v0 + (n >> 2);
+      if (u >= 0 && v >= 0 && u < face->count[0] && v < face->count[1] &&
+        mcor_needs_cap_node(face, within, u, v))
+      {
+        cl_int* node = nodes + 4 * (size_t)count;
+        node[face->axis] = within ? face->inner : face->plane;
+        node[face->across[0]] = face->first[0] + u;
+        node[face->across[1]] = face->first[1] + v;
+        node[3] = 0;
+        to[count++] = mcor_cap_index(face, u, v);
+      }
+    }
+    if (count >= MCOR_CAP_BATCH || tile + 1 == tiles_u * tiles_v)
+    {
+      status = mcor_take_cap_nodes(context, nodes, to, count, within, iso, p, face);
+      count = 0;
+    }
+  }
+  free(nodes);
+  free(to);
+  return status;
+}
+
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper, double iso,
+  mcor_cap_points* points, mcor_cap_face* face)
+{
+  MCOR_TRY(mcor_make_cap_face(context, axis, upper, face));
+  MCOR_TRY(mcor_take_bricks(context, face));
+  MCOR_TRY(mcor_fill_cap_nodes(context, false, iso, points, face));
+  return mcor_fill_cap_nodes(context, true, iso, points, face);
+}

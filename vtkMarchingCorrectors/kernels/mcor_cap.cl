@@ -1,0 +1,38 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Caps, which close the surface at the sides of a period. */
+
+#if MCOR_OF_OPTIONS
+/* One work-item = one group of points. Writes value, gradient, weight and attributes there. */
+__kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
+  __global const int4* node, const real iso, __global real4* offset, __global real* value,
+  __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
+{
+  const int group = get_global_id(0);
+  if (group >= group_count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_points points;
+  mcor_query query;
+  mcor_reach reach;
+  mcor_field_at at;
+  mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
+  mcor_tile_init(&reach.tile);
+  mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
+  if (attribute_count > 0)
+  {
+    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = points.index[lane];
+    if (v >= 0)
+    {
+      mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
+    }
+  }
+}
+#endif

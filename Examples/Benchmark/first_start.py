@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How long the first surface takes: whole processes, with no kernel compiled yet; medians.
 
-first_start.py PROGRAM [PARTICLES] [--runs N] [--alone]
+first_start.py PROGRAM [PARTICLES] [--runs N] [--alone | --kept]
 
 first: the free surface, with empty caches. next: the same with another kernel. warm: the first once
-more. --alone: without the second process that compiles.
+more. --alone: without the second process that compiles. --kept: with kernels that the machine keeps,
+made before by `marching-correctors-compile --keep`.
 """
 import argparse
 import os
@@ -32,13 +33,24 @@ def main():
                         default=os.path.join(here, "..", "Data", "dam_break_45k.vtp"))
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--alone", action="store_true")
+    parser.add_argument("--kept", action="store_true")
     arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as kept:
+        if arguments.kept:
+            compiler = os.path.join(os.path.dirname(os.path.abspath(arguments.program)), "..", "lib",
+                                    "marching-correctors-compile")
+            subprocess.run([compiler, "--keep"], env=dict(os.environ, MCOR_KERNEL_DIR=kept),
+                           check=True)
+        measure(arguments, kept if arguments.kept else "")
+
+
+def measure(arguments, kept):
     taken = {name: [] for name, _ in RUNS}
     for _ in range(arguments.runs):
         with tempfile.TemporaryDirectory() as folder:
             cache = os.path.join(folder, "pocl")
             os.mkdir(cache)
-            environment = dict(os.environ, POCL_CACHE_DIR=cache,
+            environment = dict(os.environ, POCL_CACHE_DIR=cache, MCOR_KERNEL_DIR=kept,
                                XDG_CACHE_HOME=os.path.join(folder, "cache"))
             environment.pop("MCOR_CACHE_DIR", None)
             if arguments.alone:

@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -230,10 +231,90 @@ static void test_no_process(void** state)
   core_free_set(&set);
 }
 
+static void write_text(const char* in, const char* name, const char* text)
+{
+  char path[512];
+  snprintf(path, sizeof path, "%s/%s", in, name);
+  FILE* file = fopen(path, "w");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+static void expect_text(const char* in, const char* name, const char* text)
+{
+  char path[512], read[64] = "";
+  snprintf(path, sizeof path, "%s/%s", in, name);
+  FILE* file = fopen(path, "r");
+  CORE_CHECK((file != NULL) == (text != NULL), "%s", path);
+  if (file)
+  {
+    CORE_CHECK(!fgets(read, sizeof read, file) || strcmp(read, text) == 0, "%s: %s", path, read);
+    fclose(file);
+  }
+}
+
+/* Kernels that a machine keeps are taken if they are those that are needed, and are not touched. */
+static void test_kept(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(6, 0, 1, core_ball);
+  const mcor_input input = core_input(&set);
+  const mcor_build build = { .sph_kernel = MCOR_M_PRIME_4, .field = MCOR_WEIGHT_SUM };
+  const mcor_build other = { .sph_kernel = MCOR_M_PRIME_4, .field = MCOR_SUM };
+  char kept[] = "/tmp/test_core_kept_XXXXXX", path[512], ready[1024], request[MCOR_AHEAD_BYTES];
+  mcor_ahead_kernel kernels[MCOR_AHEAD_LIMIT];
+  if (!has_pocl(context))
+  {
+    core_free_set(&set);
+    skip();
+  }
+  assert_non_null(mkdtemp(kept));
+  for (int i = 0; i < 2; ++i) /* one program is there already */
+  {
+    static const char* const names[] = { "XY", "XY/NEW", "XY/NEW/kernel", "XY/OLD" };
+    for (int n = 0; n < 4; n += i ? 3 : 1)
+    {
+      snprintf(path, sizeof path, "%s/%s", i ? folder : kept, names[n]);
+      assert_int_equal(mkdir(path, 0700), 0);
+    }
+    write_text(i ? folder : kept, "XY/OLD/program.bc", i ? "user's" : "kept");
+  }
+  write_text(kept, "XY/NEW/kernel/k.so", "kernel");
+  write_text(kept, "else", "");
+  const int count = mcor_list_ahead(&build, set.count, kernels);
+  mcor_write_request(&context->cl, &build, kernels, count, request);
+  assert_true(mcor_ready_file(&context->cl, &build, request, ready));
+  write_text(kept, strrchr(ready, '/') + 1, "");
+  setenv("MCOR_COMPILER", "/bin/false", 1);
+  const struct
+  {
+    const char* kept;
+    const mcor_build* build;
+    bool started, taken;
+  } steps[] = { { "", &build, true, false }, { "/nowhere", &build, true, false },
+    { kept, &other, true, false }, { kept, &build, false, true } };
+  for (int i = 0; i < 4; ++i)
+  {
+    setenv("MCOR_KERNEL_DIR", steps[i].kept, 1);
+    mcor_begin_ahead(context, steps[i].build, &input);
+    assert_int_equal(context->ahead.started, steps[i].started);
+    mcor_end_ahead(context, false);
+    expect_text(folder, "XY/NEW/kernel/k.so", steps[i].taken ? "kernel" : NULL);
+    expect_text(folder, strrchr(ready, '/') + 1, steps[i].taken ? "" : NULL);
+    expect_text(folder, "XY/OLD/program.bc", "user's");
+    expect_text(folder, "else", NULL);
+  }
+  unsetenv("MCOR_KERNEL_DIR");
+  expect_text(kept, "XY/NEW/kernel/k.so", "kernel");
+  nftw(kept, remove_file, 16, FTW_DEPTH | FTW_PHYS);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_list),
     cmocka_unit_test(test_zero_launches), cmocka_unit_test(test_process),
-    cmocka_unit_test(test_no_process) };
+    cmocka_unit_test(test_no_process), cmocka_unit_test(test_kept) };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

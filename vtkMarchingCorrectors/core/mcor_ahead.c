@@ -2,12 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 #if !defined(_WIN32) && !defined(_GNU_SOURCE)
-#define _GNU_SOURCE /* for dladdr, pipe2 */
+#define _GNU_SOURCE /* for pipe2 */
 #endif
 
 #include "mcor_ahead.h"
 #include "mcor_cache.h"
 #include "mcor_internal.h"
+#include "mcor_kept.h"
 #include "mcor_program.h"
 
 #include <stdio.h>
@@ -15,7 +16,6 @@
 #include <string.h>
 
 #ifndef _WIN32
-#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -152,27 +152,17 @@ void mcor_end_ahead(mcor_context* context, bool succeeded)
 static bool mcor_find_compiler(char path[MCOR_PATH_LIMIT])
 {
   const char* own = getenv("MCOR_COMPILER");
-  Dl_info info = { 0 };
   if (own)
   {
     snprintf(path, MCOR_PATH_LIMIT, "%s", own);
     return *own && access(path, X_OK) == 0;
   }
-  if (dladdr((const void*)(uintptr_t)&mcor_extract, &info) == 0 || !info.dli_fname)
-  {
-    return false;
-  }
-  const char* slash = strrchr(info.dli_fname, '/');
-  const int folder = slash ? (int)(slash - info.dli_fname) : 0;
-  return folder > 0 && folder < MCOR_PATH_LIMIT - 64 &&
-    snprintf(path, MCOR_PATH_LIMIT, "%.*s/marching-correctors-compile", folder, info.dli_fname) >
-    0 &&
+  return mcor_library_path("marching-correctors-compile", path, MCOR_PATH_LIMIT) &&
     access(path, X_OK) == 0;
 }
 
-/* The text that the program reads, see mcor_compile_ahead; its length. */
-static int mcor_write_request(const mcor_cl* cl, const mcor_build* build,
-  const mcor_ahead_kernel* kernels, int count, char text[MCOR_AHEAD_BYTES])
+int mcor_write_request(const mcor_cl* cl, const mcor_build* build, const mcor_ahead_kernel* kernels,
+  int count, char text[MCOR_AHEAD_BYTES])
 {
   int length = snprintf(text, MCOR_AHEAD_BYTES, "%d\n%d %d %d %d\n", cl->device_number,
     (int)build->sph_kernel, (int)build->field, (int)build->precision, (int)build->solids);
@@ -191,8 +181,7 @@ static int mcor_write_request(const mcor_cl* cl, const mcor_build* build,
   return length;
 }
 
-/* A file in PoCL's folder says that these kernels were compiled: it goes when they go. */
-static bool mcor_ready_file(
+bool mcor_ready_file(
   const mcor_cl* cl, const mcor_build* build, const char* request, char path[MCOR_PATH_LIMIT])
 {
   char folder[MCOR_PATH_LIMIT];
@@ -283,7 +272,7 @@ void mcor_begin_ahead(mcor_context* context, const mcor_build* build, const mcor
   const int length = mcor_write_request(&context->cl, build, kernels, count, request);
   char ready[MCOR_PATH_LIMIT];
   if (mcor_ready_file(&context->cl, build, request, ready) && access(ready, F_OK) != 0 &&
-    mcor_find_compiler(compiler))
+    !mcor_take_kept(ready) && mcor_find_compiler(compiler))
   {
     ahead->input = mcor_start_compiler(compiler, request, length);
     ahead->started = ahead->input >= 0;

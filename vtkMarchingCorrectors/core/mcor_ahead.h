@@ -30,6 +30,13 @@ typedef struct mcor_ahead
 int mcor_list_ahead(
   const mcor_build* build, int64_t particles, mcor_ahead_kernel kernels[MCOR_AHEAD_LIMIT]);
 
+/* The text that the second process reads, see mcor_compile_ahead; its length. */
+int mcor_write_request(const mcor_cl* cl, const mcor_build* build, const mcor_ahead_kernel* kernels,
+  int count, char text[MCOR_AHEAD_BYTES]);
+/* Path of the file in PoCL's folder that says that these kernels were compiled: it goes when they go. */
+bool mcor_ready_file(
+  const mcor_cl* cl, const mcor_build* build, const char* request, char path[1024]);
+
 /* Before a call: starts the second process, unless a call like it has succeeded on this machine. */
 void mcor_begin_ahead(mcor_context* context, const mcor_build* build, const mcor_input* input);
 /* After it: ends the process, soon. */

@@ -2,16 +2,20 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The program marching-correctors-compile, see mcor_ahead.h. It reads a request from its standard
- * input, says nothing, and ends when that input does, or when all is compiled. */
+ * input, says nothing, and ends when that input does, or when all is compiled. With --keep, it
+ * compiles the kernels that all users of a machine share, see mcor_kept.h. */
 
 #define _GNU_SOURCE
 
 #include "mcor_ahead.h"
+#include "mcor_kept.h"
 
 #include <poll.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Whatever a compiler does, there is an end. */
@@ -24,23 +28,67 @@ static bool mcor_is_wanted(void)
   return poll(&input, 1, 0) == 0;
 }
 
+/* Path of what is beside this program. */
+static bool mcor_find_beside(const char* name, char path[1024])
+{
+  const ssize_t length = readlink("/proc/self/exe", path, 1024 - 64);
+  path[length > 0 ? length : 0] = '\0';
+  char* const end = strrchr(path, '/');
+  if (end)
+  {
+    strcpy(end + 1, name);
+  }
+  return end != NULL;
+}
+
 /* Kernels are linked by the small linker beside this program, see mcor_link.c. */
 static void mcor_use_own_linker(void)
 {
-  char path[1024] = "";
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 64);
-  char* const end = length > 0 ? strrchr(path, '/') : NULL;
-  if (end)
+  char path[1024];
+  if (mcor_find_beside("marching-correctors-linker", path))
   {
-    strcpy(end, "/marching-correctors-linker");
     setenv("COMPILER_PATH", path, 0);
   }
 }
 
-int main(void)
+static int mcor_keep_kernels(void)
+{
+  mcor_context* context = NULL;
+  char folder[1024];
+  const char* own = getenv("MCOR_KERNEL_DIR");
+  const bool known = own ? *own && snprintf(folder, sizeof folder, "%s", own) < (int)sizeof folder
+                         : mcor_find_beside("marching-correctors-kernels", folder);
+  if (!known || (mkdir(folder, 0755) != 0 && access(folder, W_OK | X_OK) != 0))
+  {
+    fprintf(stderr, "marching-correctors-compile: %s cannot be written.\n",
+      known ? folder : "MCOR_KERNEL_DIR");
+    return 1;
+  }
+  setenv("POCL_CACHE_DIR", folder, 1);
+  mcor_use_own_linker();
+  mcor_status status = mcor_create_context(NULL, &context);
+  if (status == MCOR_OK)
+  {
+    printf("Compiling the usual surfaces' kernels into %s ...\n", folder);
+    fflush(stdout);
+    status = mcor_keep(context, folder);
+  }
+  if (status != MCOR_OK)
+  {
+    fprintf(stderr, "marching-correctors-compile: %s\n", mcor_last_error(context));
+  }
+  mcor_free_context(context);
+  return status != MCOR_OK;
+}
+
+int main(int count, char** arguments)
 {
   static char request[MCOR_AHEAD_BYTES + 1];
   const struct rlimit no_core = { 0, 0 };
+  if (count == 2 && strcmp(arguments[1], "--keep") == 0)
+  {
+    return mcor_keep_kernels();
+  }
   const ssize_t length = read(STDIN_FILENO, request, MCOR_AHEAD_BYTES);
   if (length <= 0 || fork() != 0)
   {

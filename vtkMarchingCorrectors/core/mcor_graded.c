@@ -3,18 +3,17 @@
 
 /* Adaptive cubes: marching the leaves of the tree.
  *
- * Seeds: of each leaf, sides included, bounds of the sums tell whether all its nodes are on one side of
- * the iso value, or of too low a weight. The others' cells are all examined, and no more than these:
- * nodes that they share with a leaf that is certain are evaluated for them. The rest is as on the
- * uniform lattice: values of nodes in slots, masks, edges, vertices, triangles. Slots are sorted by
+ * The cells of leaves where there may be surface (mcor_graded_seed.c) are all examined, and no more than
+ * these: nodes that they share with a leaf that is certain are evaluated for them. The rest is as on
+ * the uniform lattice: values of nodes in slots, masks, edges, vertices, triangles. Slots are sorted by
  * level, and so are vertices; what evaluates the field goes level by level, and sees the search grid
  * in cells of that level (mcor_view_level). */
 
 #include "mcor_graded.h"
+#include "mcor_graded_seed.h"
 #include "mcor_tree.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- Levels ---- */
@@ -54,154 +53,6 @@ void mcor_level_vertices(
   const int end = boundary ? mesh->vertex_count : mesh->march_count;
   *first = one ? begin : mesh->level_first[boundary][level];
   *count = (one ? end : mesh->level_first[boundary][level + 1]) - *first;
-}
-
-/* ---- Seeds ---- */
-
-/* Takes the tree to the device. */
-static mcor_status mcor_write_tree(mcor_context* context)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
-  MCOR_TRY(mcor_write(
-    context, &graded->leaves, tree->leaves, (size_t)tree->leaf_count * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_write(
-    context, &graded->regions, tree->regions, ((size_t)tree->region_count + 1) * sizeof(cl_int)));
-  return mcor_write(
-    context, &graded->rungs, tree->rungs, (size_t)(tree->top + 1) * sizeof tree->rungs[0]);
-}
-
-/* States of all leaves. */
-static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
-  for (int l = 0; l <= tree->top; ++l)
-  {
-    const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves), MCOR_SEED_ARGS(context, iso),
-      MCOR_BUFFER(&graded->states)));
-  }
-  return mcor_view_level(context, 0);
-}
-
-/* The same, and the values of nodes of those that are to be examined, as all their particles are at
- * hand: `found` becomes what is known of leaves. */
-static mcor_status mcor_find_leaf_nodes(mcor_context* context, double iso, mcor_brick_data* found)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
-  const size_t n = (size_t)tree->leaf_count, values = n * 64 * context->cl.real_size;
-  MCOR_TRY(mcor_reserve(context, &found->known, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &found->value, values));
-  MCOR_TRY(mcor_reserve(context, &found->weight, values));
-  for (int l = 0; l <= tree->top; ++l)
-  {
-    const int first = tree->first_region[l], count = tree->first_region[l + 1] - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_regions", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->regions), MCOR_BUFFER(&graded->leaves),
-      MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&graded->states), MCOR_BUFFER(&found->known),
-      MCOR_BUFFER(&found->value), MCOR_BUFFER(&found->weight)));
-  }
-  return mcor_view_level(context, 0);
-}
-
-/* Which of the bricks around a leaf are finer, see MCOR_DIRECTION. */
-static cl_uint mcor_finer_around(const mcor_tree* tree, const cl_int* leaf)
-{
-  cl_uint finer = 0;
-  const int level = leaf[3];
-  for (int d = 0; d < 27 && level > 0; ++d)
-  {
-    const int b[3] = { leaf[0] + d % 3 - 1, leaf[1] + d / 3 % 3 - 1, leaf[2] + d / 9 - 1 };
-    bool within = true;
-    for (int a = 0; a < 3; ++a)
-    {
-      within = within && b[a] >= 0 && b[a] < tree->rungs[level].n[a];
-    }
-    finer |= (cl_uint)(within && mcor_tree_is_split(tree, level, b)) << d;
-  }
-  return finer;
-}
-
-/* A leaf by its key, to be sorted. */
-typedef struct mcor_keyed_leaf
-{
-  uint64_t key;
-  const cl_int* leaf;
-} mcor_keyed_leaf;
-
-static int mcor_compare_leaves(const void* a, const void* b)
-{
-  const uint64_t x = ((const mcor_keyed_leaf*)a)->key, y = ((const mcor_keyed_leaf*)b)->key;
-  return (x > y) - (x < y);
-}
-
-/* Sorts the leaves that are to be examined, and takes them and what is beside them to the device. */
-static mcor_status mcor_write_examined(
-  mcor_context* context, mcor_keyed_leaf* examined, cl_int (*cells)[4], cl_uint* finer)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
-  const size_t n = (size_t)graded->count;
-  qsort(examined, n, sizeof *examined, mcor_compare_leaves);
-  memset(graded->first_leaf, 0, sizeof graded->first_leaf);
-  for (size_t i = 0; i < n; ++i)
-  {
-    memcpy(cells[i], examined[i].leaf, sizeof cells[i]);
-    finer[i] = mcor_finer_around(tree, examined[i].leaf);
-    ++graded->first_leaf[cells[i][3] + 1];
-  }
-  for (int l = 0; l <= tree->top; ++l)
-  {
-    graded->first_leaf[l + 1] += graded->first_leaf[l];
-  }
-  MCOR_TRY(mcor_write(context, &graded->cells, cells, n * sizeof *cells));
-  return mcor_write(context, &graded->finer, finer, n * sizeof *finer);
-}
-
-static mcor_status mcor_list_examined(mcor_context* context)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
-  const size_t n = (size_t)tree->leaf_count;
-  uint8_t* states = malloc(n + 1);
-  MCOR_RETURN_IF(!states, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  mcor_status status = mcor_read(context, &graded->states, 0, states, n);
-  size_t count = 0;
-  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
-  {
-    count += states[i] == MCOR_EXAMINE;
-  }
-  mcor_keyed_leaf* examined = malloc((count + 1) * sizeof *examined);
-  cl_int(*cells)[4] = malloc((count + 1) * sizeof *cells);
-  cl_uint* finer = malloc((count + 1) * sizeof *finer);
-  graded->count = (int)count;
-  if (status == MCOR_OK && examined && cells && finer)
-  {
-    size_t to = 0;
-    for (size_t i = 0; i < n; ++i)
-    {
-      if (states[i] == MCOR_EXAMINE)
-      {
-        const cl_int* leaf = tree->leaves + 4 * i;
-        examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), leaf };
-      }
-    }
-    status = mcor_write_examined(context, examined, cells, finer);
-  }
-  else if (status == MCOR_OK)
-  {
-    status = mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  }
-  free(states);
-  free(examined);
-  free(cells);
-  free(finer);
-  return status;
 }
 
 /* ---- Nodes ---- */
@@ -269,25 +120,26 @@ static mcor_status mcor_fill_slots(mcor_context* context, int count)
   MCOR_TRY(mcor_reserve(context, &now->valid, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &now->value, n * 64 * real));
   MCOR_TRY(mcor_reserve(context, &now->weight, n * 64 * real));
+  MCOR_TRY(mcor_reserve(context, &graded->proofs, n));
   return MCOR_LAUNCH(context, "mcor_graded_bricks", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_INT(context->tree.top), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->keys),
     MCOR_BUFFER(&now->bricks));
 }
 
-/* Takes over what is known of the nodes of `count` bricks. */
-static mcor_status mcor_take_nodes(
-  mcor_context* context, int count, const mcor_buffer* bricks, const mcor_brick_data* from)
+/* Takes over what is known of nodes from the last set of slots. */
+static mcor_status mcor_move_nodes(mcor_context* context, const mcor_brick_data* last)
 {
   const mcor_brick_data* now = &context->bricks.now;
-  return MCOR_LAUNCH(context, "mcor_graded_move", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&context->graded.rungs), MCOR_BUFFER(bricks),
-    MCOR_BUFFER(&from->known), MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))),
-    MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight), MCOR_BUFFER(&now->known),
+  return MCOR_LAUNCH(context, "mcor_graded_move", MCOR_MEDIUM, last->count, MCOR_SLOT_ARGS(context),
+    MCOR_INT(last->count), MCOR_BUFFER(&context->graded.rungs), MCOR_BUFFER(&last->bricks),
+    MCOR_BUFFER(&last->known), MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))),
+    MCOR_BUFFER(&last->value), MCOR_BUFFER(&last->weight), MCOR_BUFFER(&now->known),
     MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
 }
 
-/* Evaluates the nodes of all slots that are not known. */
-static mcor_status mcor_evaluate_slots(mcor_context* context)
+/* Evaluates the nodes of all slots that are neither known nor proven to lie inside; then the signs of all
+ * are known. iso: relative to A0. */
+static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 {
   const mcor_graded* graded = &context->graded;
   const mcor_brick_data* now = &context->bricks.now;
@@ -298,29 +150,42 @@ static mcor_status mcor_evaluate_slots(mcor_context* context)
     const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
       MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
-      MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight)));
+      MCOR_REAL(iso), MCOR_BUFFER(&graded->proofs), MCOR_BUFFER(&now->value),
+      MCOR_BUFFER(&now->weight)));
   }
   MCOR_TRY(mcor_view_level(context, 0));
-  return mcor_fill(
-    context, &context->bricks.now.known, 0xff, (size_t)now->count * sizeof(cl_ulong));
+  return MCOR_LAUNCH(context, "mcor_graded_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_BUFFER(&graded->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
+    MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&now->known),
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
+}
+
+/* Finds the leaves that have nodes on both sides, and evaluates all of these. */
+static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
+{
+  mcor_graded* graded = &context->graded;
+  const int count = graded->count;
+  MCOR_TRY(
+    mcor_reserve(context, &graded->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &graded->mixed, (size_t)count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells),
+    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_need", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(&graded->proofs)));
+  return mcor_evaluate_slots(context, iso);
 }
 
 /* Leaves whose nodes are evaluated along with their states: more take much memory. */
 #define MCOR_LEAVES_AT_ONCE (1 << 19)
 
-/* Slots of all nodes that the leaves where there may be surface need. `found` becomes what is known of
- * leaves. iso: relative to A0. */
-static mcor_status mcor_place_leaves(mcor_context* context, double iso, mcor_brick_data* found)
+/* Slots of all nodes that the leaves where there may be surface need, with what is known of them. found:
+ * of mcor_choose_leaves. */
+static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_nodes* found)
 {
   mcor_graded* graded = &context->graded;
-  const int leaves = context->tree.leaf_count;
   int slots = 0;
-  const bool at_once =
-    context->cl.lanes > 1 && context->bricks.now.count == 0 && leaves <= MCOR_LEAVES_AT_ONCE;
-  MCOR_TRY(mcor_reserve(context, &graded->states, (size_t)leaves));
-  MCOR_TRY(
-    at_once ? mcor_find_leaf_nodes(context, iso, found) : mcor_find_leaf_states(context, iso));
-  MCOR_TRY(mcor_list_examined(context));
   if (graded->count > 0)
   {
     MCOR_TRY(mcor_want_bricks(context, &slots));
@@ -331,8 +196,11 @@ static mcor_status mcor_place_leaves(mcor_context* context, double iso, mcor_bri
   mcor_status status = mcor_fill_slots(context, slots);
   if (status == MCOR_OK && slots > 0)
   {
-    status = at_once ? mcor_take_nodes(context, leaves, &graded->leaves, found)
-                     : mcor_take_nodes(context, last.count, &last.bricks, &last);
+    status = mcor_take_leaf_nodes(context, found);
+  }
+  if (status == MCOR_OK && slots > 0)
+  {
+    status = mcor_move_nodes(context, &last);
   }
   mcor_release_brick_data(context, &last);
   return status;
@@ -347,14 +215,19 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
     MCOR_TRY(mcor_write_tree(context));
   }
   MCOR_TRY(mcor_find_side_flags(context, iso));
-  mcor_brick_data found = { 0 };
-  const mcor_status status = mcor_place_leaves(context, iso, &found);
-  mcor_release_brick_data(context, &found);
+  const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
+    context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE;
+  mcor_leaf_nodes found = { 0 };
+  mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
+  if (status == MCOR_OK)
+  {
+    status = mcor_place_leaves(context, at_once ? &found : NULL);
+  }
+  MCOR_RELEASE(context, &found.value, &found.weight);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_evaluate_slots(context));
-  MCOR_TRY(mcor_sign_nodes(context, iso, &context->bricks.now.known));
   context->statistics->seed_cells += 64 * (int64_t)context->graded.count;
-  return MCOR_OK;
+  MCOR_TRY(mcor_evaluate_slots(context, iso));
+  return mcor_complete_leaves(context, iso);
 }
 
 /* ---- Cells ---- */
@@ -371,19 +244,15 @@ static mcor_status mcor_count_leaves(mcor_context* context)
   mcor_mesh* mesh = &context->mesh;
   const int count = graded->count, slots = context->bricks.now.count;
   const size_t n = (size_t)count, s = (size_t)slots;
-  MCOR_TRY(mcor_reserve(context, &graded->tables, n * MCOR_LEAF_SLOTS * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells),
-    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&graded->flat)));
+    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&graded->flat)));
   return MCOR_LAUNCH(context, "mcor_graded_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
     MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
 }
@@ -526,7 +395,8 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
 void mcor_release_graded(mcor_context* context)
 {
   mcor_graded* g = &context->graded;
-  MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->regions, &g->states, &g->cells, &g->finer,
+  MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys,
+    &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
     &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
     &context->grid.view_levels, &context->grid.view_inv_h);
   mcor_release_tree(&context->tree);

@@ -153,6 +153,7 @@ typedef struct mcor_tree
   uint64_t key_limit;
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */
+  cl_uint* finer; /* [leaf_count]: what is finer around each, see MCOR_DIRECTION */
   int leaf_count, first_leaf[MCOR_TREE_LEVEL_LIMIT + 2];
   /* Leaves that are parts of one brick follow each other: first of each such region. */
   cl_int* regions; /* [region_count + 1] */
@@ -165,9 +166,11 @@ typedef struct mcor_graded
   int count;                                 /* leaves where there may be surface */
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
-  mcor_buffer rungs;                   /* mcor_rung, of all levels of leaves */
-  mcor_buffer leaves, regions;         /* int4, int: of the tree */
-  mcor_buffer states;                  /* uchar: of all leaves */
+  mcor_buffer rungs;                       /* mcor_rung, of all levels of leaves */
+  mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
+  mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
+  mcor_buffer states, chosen;              /* uchar: of all leaves */
+  mcor_buffer proofs, mixed;           /* uchar: of slots; of leaves where there may be surface */
   mcor_buffer cells;                   /* int4: those where there may be surface, in order */
   mcor_buffer finer;                   /* uint: where their neighbours are finer */
   mcor_buffer wanted, requests, index; /* keys of bricks with nodes of theirs */
@@ -239,11 +242,11 @@ typedef struct mcor_box
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
-  int begin[3], end[3];   /* the same of those whose particles are on the device */
-  mcor_buffer owned;      /* uchar per triangle of the mesh: 1 of an owned cell */
-  mcor_buffer clipped;    /* ulong per brick, of mcor_count_cells */
-  uint8_t* kept;          /* per triangle of the surface: as owned; NULL: all are */
-  cl_ulong* told;         /* per brick, cells that others know of; see mcor_pair_rounds.c */
+  int begin[3], end[3]; /* the same of those whose particles are on the device */
+  mcor_buffer owned;    /* uchar per triangle of the mesh: 1 of an owned cell */
+  mcor_buffer clipped;  /* ulong per brick, of mcor_count_cells */
+  uint8_t* kept;        /* per triangle of the surface: as owned; NULL: all are */
+  cl_ulong* told;       /* per brick, cells that others know of; see mcor_pair_rounds.c */
   int told_count;
 } mcor_box;
 
@@ -516,6 +519,7 @@ extern const char mcor_source_mcor_probe_lanes_cl[];
 extern const char mcor_source_mcor_probe_point_cl[];
 extern const char mcor_source_mcor_derive_cl[];
 extern const char mcor_source_mcor_graded_cell_h[];
+extern const char mcor_source_mcor_graded_seed_cl[];
 extern const char mcor_source_mcor_graded_cl[];
 extern const char mcor_source_mcor_graded_march_cl[];
 

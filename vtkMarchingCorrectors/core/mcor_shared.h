@@ -17,7 +17,7 @@
 
 typedef struct mcor_level
 {
-  MCOR_TYPE(ulong) base;     /* key of the level's cell (0, 0, 0) */
+  MCOR_TYPE(ulong) base; /* key of the level's cell (0, 0, 0) */
   /* In fixed-point units: a period, 0 where there is none, and the first side of one above 0. */
   MCOR_TYPE(long) period[3], side[3];
   MCOR_TYPE(int) cells[3];        /* extent of the level, in its cells */
@@ -68,6 +68,7 @@ typedef struct mcor_level
 #define MCOR_ABOVE 1
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* not enough; evaluate */
+#define MCOR_INSIDE 4  /* above, but for the far sides of a leaf */
 
 /* Masks per brick: of lattice edges with a vertex, see mcor_march_count, and of decisions about the
  * topology: ambiguous faces with their lowest node in the brick, by axis of their normal, of which
@@ -96,6 +97,9 @@ typedef struct mcor_rung
 
 /* A vertex's level is above so many bits of its edge's last number. */
 #define MCOR_LEVEL_SHIFT 8
+
+/* Set beside the bits of what is finer around a leaf where, beyond a far side, one is coarser or none. */
+#define MCOR_COARSER_UP (1u << 27)
 
 /* Slots that hold the nodes of a leaf: of its level 2^3, of the next finer one 3^3. */
 #define MCOR_LEAF_SLOTS (8 + 27)

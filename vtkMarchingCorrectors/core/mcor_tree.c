@@ -428,6 +428,7 @@ void mcor_release_tree(mcor_tree* tree)
     mcor_set_free(&tree->split[l]);
   }
   free(tree->leaves);
+  free(tree->finer);
   free(tree->regions);
   *tree = (mcor_tree){ 0 };
 }

@@ -1,115 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the nodes of leaves.
- *
- * A leaf is a brick of 4 x 4 x 4 cells of its level, (x, y, z; level). Its cells have the nodes of that
- * level, 5 along an edge, and where a leaf beside is finer those of the level below on its sides: 9
- * along an edge. Nodes are kept in slots, of bricks of one level as everywhere: those of a leaf, and
- * those that hold the far ends of its cells and the finer nodes. All lengths are in cells of the level,
- * as which the search grid is seen (mcor_view_level). */
-
-/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: of the 27 bricks in and around a leaf, those that are
- * finer. */
-#define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
-
-/* Key of a brick of a level. */
-ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
-{
-  __global const mcor_rung* rung = rungs + level;
-  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
-}
-
-/* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
-__kernel void mcor_graded_scale(
-  const int count, __global const real* inv_h, const real factor, __global real* scaled)
-{
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    scaled[i] = inv_h[i] * factor;
-  }
-}
-
-/* One work-item = one leaf, of `count` from `first` on. Reads the particles that reach it, sides
- * included. Writes its state. */
-__kernel void mcor_graded_states(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* leaves, MCOR_SEED_PARAMS, __global uchar* states)
-{
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  mcor_query query = mcor_seed_query(&grid, leaves[first + i], MCOR_BRICK);
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  states[first + i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
-}
-
-#if MCOR_LANES > 1
-/* One work-item = one region, of `count` from `first` on: the leaves that are parts of one brick, the
- * particles of which are gathered once. Reads the particles that reach it. Writes the leaves' states
- * and, of those to be examined, their nodes' values and weights. */
-__kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int* regions, __global const int4* leaves, MCOR_SEED_PARAMS,
-  __global uchar* states, __global ulong* known, __global real* node_value,
-  __global real* node_weight)
-{
-  const int region = first + get_global_id(0);
-  if (region >= first + count)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int4 brick = leaves[regions[region]] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
-  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES);
-  mcor_tile wide, tile;
-  mcor_tile_init(&wide);
-  mcor_tile_next(&grid, &query, &wide, true);
-  for (int i = regions[region]; i < regions[region + 1]; ++i)
-  {
-    query = mcor_seed_query(&grid, leaves[i], MCOR_BRICK);
-    mcor_tile_init(&tile);
-    if (wide.complete)
-    {
-      mcor_tile_narrow(&wide, &query, &tile);
-    }
-    states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
-    known[i] = states[i] == MCOR_EXAMINE ? ~0UL : 0;
-    if (known[i])
-    {
-      mcor_node_sums sums;
-      mcor_node_sum(&grid, &query, &tile, &sums);
-      mcor_node_store(&sums, node_value + 64L * i, node_weight + 64L * i);
-    }
-  }
-}
-#endif
-
-/* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, reads
- * the particles that reach them. Writes their values and weights. */
-__kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* bricks, __global const ulong* known, __global real* node_value,
-  __global real* node_weight)
-{
-  const long node = (long)get_global_id(0) * MCOR_ITEM_NODES;
-  if (node >= 64L * count || known[first + (int)(node / 64)])
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  const int slot = first + (int)(node / 64);
-  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(node % 64), 1);
-  mcor_node_sums sums;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  mcor_node_sum(&grid, &query, &tile, &sums);
-  mcor_node_store(&sums, node_value + 64L * first + node, node_weight + 64L * first + node);
-}
+/* Adaptive cubes: the nodes of leaves where there may be surface. They are kept in slots, of bricks of one
+ * level as everywhere: those of a leaf, and those that hold the far ends of its cells and the finer
+ * nodes. */
 
 /* Bricks whose nodes a leaf needs: of its level bits 0 to 7 (x, y, z up), of the finer one from bit 8
  * on, (x, y, z) 0 to 2 from its first one. Where a leaf beyond a far side is finer, that one has the
@@ -223,6 +117,88 @@ __kernel void mcor_graded_tables(MCOR_SLOT_PARAMS, const int count, __global con
     tables[i * (long)MCOR_LEAF_SLOTS + b] = wanted >> b & 1
       ? mcor_graded_find(MCOR_SLOT_ARGS, mcor_graded_wanted_key(rungs, cells[i], b))
       : -1;
+  }
+}
+
+/* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, or
+ * proven to lie inside, reads the particles that reach them; tries the proof first where it was not tried.
+ * Writes their values and weights, or the proof. */
+__kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
+  __global real* node_value, __global real* node_weight)
+{
+  const long node = (long)get_global_id(0) * MCOR_ITEM_NODES;
+  const int slot = first + (int)(node / 64);
+  if (node >= 64L * count || known[slot] || proofs[slot] == MCOR_PROVEN)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+#if MCOR_LEAF_PROOFS
+  if (proofs[slot] == MCOR_UNTRIED)
+  {
+    mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_LEAF_SHARE);
+    mcor_tile tile;
+    mcor_tile_init(&tile);
+    proofs[slot] = mcor_brick_is_inside(&grid, &close, &tile, iso) ? MCOR_PROVEN : MCOR_OPEN;
+    if (proofs[slot] == MCOR_PROVEN)
+    {
+      return;
+    }
+  }
+#endif
+  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(node % 64), 1);
+  mcor_node_sums sums;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  mcor_node_sum(&grid, &query, &tile, &sums);
+  mcor_node_store(&sums, node_value + 64L * first + node, node_weight + 64L * first + node);
+}
+
+/* One work-item = one slot. Writes which of its nodes are above the iso value and which are valid: all
+ * those that were proven to lie inside. Others are known from now on. */
+__kernel void mcor_graded_sign(const int slot_count, __global const uchar* proofs,
+  __global const real* node_value, __global const real* node_weight, const real iso,
+  const real node_threshold, __global ulong* known, __global ulong* above, __global ulong* valid)
+{
+  const int slot = get_global_id(0);
+  if (slot >= slot_count)
+  {
+    return;
+  }
+  if (proofs[slot] == MCOR_PROVEN)
+  {
+    above[slot] = valid[slot] = ~0UL;
+    return;
+  }
+  known[slot] = ~0UL;
+  mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold,
+    above + slot, valid + slot);
+}
+
+/* One work-item = one leaf. Writes whether any of its slots has a node below: if none has, there is no
+ * surface. If one has, values are needed, of the slots that were proven to lie inside, too. */
+__kernel void mcor_graded_need(const int count, __global const int* tables,
+  __global const ulong* above, __global uchar* mixed, __global uchar* proofs)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
+  bool some = false;
+  for (int b = 0; b < MCOR_LEAF_SLOTS && !some; ++b)
+  {
+    some = slots[b] >= 0 && above[slots[b]] != ~0UL;
+  }
+  mixed[i] = some;
+  for (int b = 0; b < MCOR_LEAF_SLOTS && some; ++b)
+  {
+    if (slots[b] >= 0 && proofs[slots[b]] == MCOR_PROVEN)
+    {
+      proofs[slots[b]] = MCOR_OPEN;
+    }
   }
 }
 

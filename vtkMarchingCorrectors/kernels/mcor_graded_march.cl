@@ -218,14 +218,20 @@ void mcor_leaf_mark(
   const int count, __global const uint *finer, __global const int *tables,                         \
     __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
 
-/* One work-item = one leaf. Reads its nodes' masks. Writes the used cells, and which edges they use;
- * counts triangles, and loops that lie in one face between leaves. */
-__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global uint* quadrants, __global ulong* used,
-  __global int* triangle_count, __global int* flat)
+/* One work-item = one leaf. Reads its nodes' masks where it is mixed. Writes the used cells, and which
+ * edges they use; counts triangles, and loops that lie in one face between leaves. */
+__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+  __global uint* quadrants, __global ulong* used, __global int* triangle_count, __global int* flat)
 {
   const int i = get_global_id(0);
   if (i >= count)
   {
+    return;
+  }
+  if (!mixed[i])
+  {
+    used[i] = 0;
+    triangle_count[i] = flat[i] = 0;
     return;
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);

@@ -59,7 +59,7 @@ typedef struct
    * moved that; reach; squared distance of row z. */
   float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
-  bool has_many_rows; /* in reach, so that one passes over the empty ones at once */
+  bool has_many_rows; /* in reach, see MCOR_MANY_ROWS */
   int begin, end;     /* particles left of the current row */
 } mcor_query;
 
@@ -69,6 +69,10 @@ fix mcor_query_reach(float distance)
   const fix most = (fix)1 << (MCOR_DOUBLE ? 62 : 30);
   return distance < (float)most ? (fix)distance : most;
 }
+
+/* With more rows, one passes over the empty ones at once. Where smoothing lengths differ much, nearly all
+ * are: particles of most levels are elsewhere. */
+#define MCOR_MANY_ROWS (MCOR_OF_GRADED ? 3 : 64)
 
 /* The part of a query that depends on the level; false where the level has no cell in reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
@@ -91,7 +95,8 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
   query->y = query->last[1]; /* as if the row before the first one had just ended */
   query->z = query->first[2] - 1;
   query->has_many_rows =
-    (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) > 64;
+    (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) >
+    MCOR_MANY_ROWS;
   return some;
 }
 

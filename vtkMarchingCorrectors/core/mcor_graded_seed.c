@@ -1,0 +1,272 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: which leaves there may be surface in. Of each, bounds of the sums or a proof from the
+ * particles nearby tell whether all its nodes are on one side of the iso value, or of too low a weight.
+ * Particles are gathered for all parts of a brick at once. */
+
+#include "mcor_graded_seed.h"
+#include "mcor_graded.h"
+#include "mcor_parallel.h"
+#include "mcor_tree.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- What is finer around leaves ---- */
+
+/* Bricks of a level in and around a region, bits x + 4 y + 16 z from the one below its first, that are
+ * split. */
+static uint64_t mcor_split_around(const mcor_tree* tree, int level, const int first[3])
+{
+  uint64_t split = 0;
+  for (int i = 0; i < 64; ++i)
+  {
+    const int b[3] = { first[0] + (i & 3) - 1, first[1] + (i >> 2 & 3) - 1,
+      first[2] + (i >> 4) - 1 };
+    bool within = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      within = within && b[a] >= 0 && b[a] < tree->rungs[level].n[a];
+    }
+    split |= (uint64_t)(within && mcor_tree_is_split(tree, level, b)) << i;
+  }
+  return split;
+}
+
+/* Which of the seven bricks up from one are parts of larger leaves, or of none. A bit for each octant in which
+ * the bricks are beside the region's, see mcor_find_finer_slice. */
+static unsigned mcor_coarse_around(const mcor_tree* tree, int level, const int first[3])
+{
+  unsigned coarse = 0;
+  for (int d = 1; d < 8; ++d)
+  {
+    const int parent[3] = { first[0] / 2 + (d & 1), first[1] / 2 + (d >> 1 & 1),
+      first[2] / 2 + (d >> 2) };
+    coarse |= (unsigned)!mcor_tree_is_split(tree, level + 1, parent) << d;
+  }
+  return coarse;
+}
+
+/* Whether a leaf, its place in its region as bits of `at`, is beside these. */
+static bool mcor_is_beside_coarse(unsigned coarse, int at)
+{
+  bool beside = false;
+  for (int d = 1; d < 8; ++d)
+  {
+    beside = beside || ((coarse >> d & 1) && (at & d) == d);
+  }
+  return beside;
+}
+
+static void mcor_find_finer_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_tree* tree = data;
+  (void)slice;
+  for (int64_t r = first; r < last; ++r)
+  {
+    const cl_int* leaf = tree->leaves + 4 * (int64_t)tree->regions[r];
+    const int begin[3] = { leaf[0] & ~1, leaf[1] & ~1, leaf[2] & ~1 };
+    const uint64_t split = leaf[3] > 0 ? mcor_split_around(tree, leaf[3], begin) : 0;
+    const unsigned coarse = mcor_coarse_around(tree, leaf[3], begin);
+    for (cl_int i = tree->regions[r]; i < tree->regions[r + 1]; ++i, leaf += 4)
+    {
+      const int x = leaf[0] & 1, y = leaf[1] & 1, z = leaf[2] & 1, at = x + 4 * y + 16 * z;
+      cl_uint finer = mcor_is_beside_coarse(coarse, x + 2 * y + 4 * z) ? MCOR_COARSER_UP : 0;
+      for (int d = 0; d < 27 && split; ++d)
+      {
+        finer |= (cl_uint)(split >> (at + d % 3 + 4 * (d / 3 % 3) + 16 * (d / 9)) & 1) << d;
+      }
+      tree->finer[i] = finer;
+    }
+  }
+}
+
+/* Which of the bricks around each leaf are finer, see MCOR_DIRECTION. */
+static mcor_status mcor_find_finer(mcor_context* context)
+{
+  mcor_tree* tree = &context->tree;
+  tree->finer = malloc(((size_t)tree->leaf_count + 1) * sizeof *tree->finer);
+  MCOR_RETURN_IF(!tree->finer, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  mcor_parallel_for(tree->region_count, MCOR_HEAVY_GRAIN / 8, mcor_find_finer_slice, tree);
+  return MCOR_OK;
+}
+
+/* ---- The tree on the device ---- */
+
+mcor_status mcor_write_tree(mcor_context* context)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t leaves = (size_t)tree->leaf_count, regions = (size_t)tree->region_count;
+  MCOR_TRY(mcor_find_finer(context));
+  MCOR_TRY(mcor_write(context, &graded->leaves, tree->leaves, leaves * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &graded->leaf_finer, tree->finer, leaves * sizeof(cl_uint)));
+  MCOR_TRY(mcor_write(context, &graded->regions, tree->regions, (regions + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(
+    context, &graded->rungs, tree->rungs, (size_t)(tree->top + 2) * sizeof tree->rungs[0]));
+  MCOR_TRY(mcor_reserve(context, &graded->region_keys, regions * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_region_keys", MCOR_LIGHT, regions,
+    MCOR_INT((int)regions), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->regions),
+    MCOR_BUFFER(&graded->leaves), MCOR_BUFFER(&graded->region_keys)));
+  MCOR_TRY(mcor_sort(
+    context, &graded->region_keys, &graded->region_order, tree->region_count, tree->key_limit));
+  mcor_release_sort(context);
+  return MCOR_OK;
+}
+
+#define MCOR_REGION_ARGS(c)                                                                        \
+  MCOR_INT((c)->tree.region_count), MCOR_BUFFER(&(c)->graded.rungs),                               \
+    MCOR_BUFFER(&(c)->graded.regions), MCOR_BUFFER(&(c)->graded.leaves),                           \
+    MCOR_BUFFER(&(c)->graded.region_keys), MCOR_BUFFER(&(c)->graded.region_order)
+
+/* ---- States ---- */
+
+static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves), MCOR_SEED_ARGS(context, iso),
+      MCOR_BUFFER(&graded->states)));
+  }
+  return mcor_view_level(context, 0);
+}
+
+/* The same where particles are gathered for many lanes, with the values of nodes if `found`, as all their
+ * particles are at hand. */
+static mcor_status mcor_find_region_states(
+  mcor_context* context, double iso, const mcor_leaf_nodes* found)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const mcor_leaf_nodes none = { 0 };
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    const int first = tree->first_region[l], count = tree->first_region[l + 1] - first;
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_regions", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->regions), MCOR_BUFFER(&graded->leaves),
+      MCOR_BUFFER(&graded->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
+      MCOR_BUFFER(&graded->states), MCOR_BUFFER(found ? &found->value : &none.value),
+      MCOR_BUFFER(found ? &found->weight : &none.weight)));
+  }
+  return mcor_view_level(context, 0);
+}
+
+/* ---- The leaves to examine ---- */
+
+/* A leaf by its key, to be sorted. */
+typedef struct mcor_keyed_leaf
+{
+  uint64_t key;
+  size_t leaf;
+} mcor_keyed_leaf;
+
+static int mcor_compare_leaves(const void* a, const void* b)
+{
+  const uint64_t x = ((const mcor_keyed_leaf*)a)->key, y = ((const mcor_keyed_leaf*)b)->key;
+  return (x > y) - (x < y);
+}
+
+/* Sorts the leaves that are to be examined, and takes them and what is beside them to the device. */
+static mcor_status mcor_write_examined(
+  mcor_context* context, mcor_keyed_leaf* examined, cl_int (*cells)[4], cl_uint* finer)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t n = (size_t)graded->count;
+  qsort(examined, n, sizeof *examined, mcor_compare_leaves);
+  memset(graded->first_leaf, 0, sizeof graded->first_leaf);
+  for (size_t i = 0; i < n; ++i)
+  {
+    memcpy(cells[i], tree->leaves + 4 * examined[i].leaf, sizeof cells[i]);
+    finer[i] = tree->finer[examined[i].leaf] & (MCOR_COARSER_UP - 1);
+    ++graded->first_leaf[cells[i][3] + 1];
+  }
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    graded->first_leaf[l + 1] += graded->first_leaf[l];
+  }
+  MCOR_TRY(mcor_write(context, &graded->cells, cells, n * sizeof *cells));
+  return mcor_write(context, &graded->finer, finer, n * sizeof *finer);
+}
+
+static mcor_status mcor_list_examined(mcor_context* context)
+{
+  const mcor_tree* tree = &context->tree;
+  mcor_graded* graded = &context->graded;
+  const size_t n = (size_t)tree->leaf_count;
+  uint8_t* chosen = malloc(n + 1);
+  MCOR_RETURN_IF(!chosen, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  mcor_status status = mcor_read(context, &graded->chosen, 0, chosen, n);
+  size_t count = 0;
+  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  {
+    count += chosen[i];
+  }
+  mcor_keyed_leaf* examined = malloc((count + 1) * sizeof *examined);
+  cl_int(*cells)[4] = malloc((count + 1) * sizeof *cells);
+  cl_uint* finer = malloc((count + 1) * sizeof *finer);
+  graded->count = (int)count;
+  if (status == MCOR_OK && examined && cells && finer)
+  {
+    size_t to = 0;
+    for (size_t i = 0; i < n; ++i)
+    {
+      if (chosen[i])
+      {
+        const cl_int* leaf = tree->leaves + 4 * i;
+        examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), i };
+      }
+    }
+    status = mcor_write_examined(context, examined, cells, finer);
+  }
+  else if (status == MCOR_OK)
+  {
+    status = mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  }
+  free(chosen);
+  free(examined);
+  free(cells);
+  free(finer);
+  return status;
+}
+
+mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_nodes* found)
+{
+  mcor_graded* graded = &context->graded;
+  const mcor_tree* tree = &context->tree;
+  const size_t n = (size_t)tree->leaf_count, values = n * 64 * context->cl.real_size;
+  MCOR_TRY(mcor_reserve(context, &graded->states, n));
+  MCOR_TRY(mcor_reserve(context, &graded->chosen, n));
+  if (found)
+  {
+    MCOR_TRY(mcor_reserve(context, &found->value, values));
+    MCOR_TRY(mcor_reserve(context, &found->weight, values));
+  }
+  MCOR_TRY(context->cl.lanes > 1 ? mcor_find_region_states(context, iso, found)
+                                 : mcor_find_leaf_states(context, iso));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_choose", MCOR_MEDIUM, tree->region_count,
+    MCOR_REGION_ARGS(context), MCOR_BUFFER(&graded->leaf_finer), MCOR_BUFFER(&graded->states),
+    MCOR_BUFFER(&graded->chosen)));
+  return mcor_list_examined(context);
+}
+
+mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found)
+{
+  const mcor_graded* graded = &context->graded;
+  const mcor_brick_data* now = &context->bricks.now;
+  const mcor_leaf_nodes none = { 0 };
+  const mcor_leaf_nodes* from = found ? found : &none;
+  return MCOR_LAUNCH(context, "mcor_graded_take", MCOR_MEDIUM, now->count,
+    MCOR_REGION_ARGS(context), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks),
+    MCOR_BUFFER(&graded->states),
+    MCOR_INT(found ? (int)(64 * context->cl.real_size / sizeof(cl_uint)) : 0),
+    MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight), MCOR_BUFFER(&graded->proofs),
+    MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
+}

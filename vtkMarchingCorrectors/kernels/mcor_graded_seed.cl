@@ -1,0 +1,370 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: of which leaves it is certain that there is no surface.
+ *
+ * A leaf is a brick of 4 x 4 x 4 cells of its level, (x, y, z; level). Its cells have the nodes of that
+ * level, 5 along an edge, and where a leaf beside is finer those of the level below on its sides: 9
+ * along an edge. A bound tells of all points of a leaf, sides included. Where that is not enough, the
+ * weight sum has another proof, of the nodes of one brick: a leaf's first 4 along an edge. It needs
+ * no surface where all nodes of its cells are proven to lie inside, in its own brick or others.
+ * All lengths are in cells of the level, as which the search grid is seen (mcor_view_level). */
+
+/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: of the 27 bricks in and around a leaf, those that are
+ * finer. */
+#define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
+
+/* Key of a brick of a level. */
+ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
+{
+  __global const mcor_rung* rung = rungs + level;
+  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
+}
+
+/* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
+__kernel void mcor_graded_scale(
+  const int count, __global const real* inv_h, const real factor, __global real* scaled)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    scaled[i] = inv_h[i] * factor;
+  }
+}
+
+/* ---- Bounds and proofs ---- */
+
+/* Whether that proof is tried: where a work-item evaluates whole bricks. */
+#define MCOR_LEAF_PROOFS (MCOR_FIELD == 2 && !MCOR_TENSOR && MCOR_LANES > 1)
+
+/* Of each particle's support: within are a fifth of the particles, and in the midst of others four fifths
+ * of the weight sum. */
+#define MCOR_LEAF_SHARE 0.6f
+
+/* What is known of a slot. */
+#define MCOR_UNTRIED 0
+#define MCOR_PROVEN 1 /* its nodes lie inside */
+#define MCOR_OPEN 2   /* its nodes' values are needed */
+
+#if MCOR_LANES == 1
+/* One work-item = one leaf, of `count` from `first` on. Reads the particles that reach it, sides
+ * included. Writes its state. */
+__kernel void mcor_graded_states(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* leaves, MCOR_SEED_PARAMS, __global uchar* states)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
+  mcor_query query = mcor_seed_query(&grid, leaves[first + i], MCOR_BRICK);
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  states[first + i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
+}
+#else
+#if MCOR_LEAF_PROOFS
+/* Whether the particles close to a brick's nodes alone lift them all above the iso value, see
+ * mcor_seed_is_inside. The tile may hold them already. */
+bool mcor_brick_is_inside(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, real iso)
+{
+  mcor_node_sums sums;
+  bool inside = true;
+  mcor_node_sum(grid, query, tile, &sums);
+  for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+  {
+    inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
+  }
+  return inside;
+}
+
+/* The same of 2 x 2 points, as many above each other as there are lanes, `step` apart from (x, y, z) on. The
+ * order of the sum is not that of nodes: the margin covers it, too. */
+bool mcor_points_are_inside(const mcor_tile* tile, real x, real y, real z, real step, real iso)
+{
+  const fixv lane = mcor_lane_index();
+  const real e = (real)0.5 * step, ez = e * (MCOR_LANES / 4 - 1);
+  const realv px = x + step * MCOR_CONVERT_REALV(lane & 1);
+  const realv py = y + step * MCOR_CONVERT_REALV(lane >> 1 & 1);
+  const realv pz = z + step * MCOR_CONVERT_REALV(lane >> 2);
+  realv w = 0;
+  for (int begin = 0; begin < tile->count && !MCOR_ALL(w > iso * (real)1.0001f);
+       begin += MCOR_LANES)
+  {
+    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
+      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), x + e, y + e, z + ez, e, e, ez,
+      MCOR_LEAF_SHARE);
+    int list[MCOR_LANES];
+    const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
+    for (int k = 0; k < count; ++k)
+    {
+      const int i = begin + list[k];
+      const real inv_h = tile->inv_h[i];
+      const realv d = mcor_distance(tile->x[i] - px, tile->y[i] - py, tile->z[i] - pz, inv_h);
+      w = MCOR_FMA(tile->weight[i], mcor_weight(d, inv_h), w);
+    }
+  }
+  return MCOR_ALL(w > iso * (real)1.0001f);
+}
+
+/* Whether all points of a box are, `step` apart, from point (x, y, z) of the tile on: numbers
+ * [low, high]. */
+bool mcor_box_is_inside(
+  const mcor_tile* tile, const real at[3], const int low[3], const int high[3], real step, real iso)
+{
+  bool inside = true;
+  for (int z = low[2]; z <= high[2] && inside; z += MCOR_LANES / 4)
+  {
+    for (int y = low[1]; y <= high[1] && inside; y += 2)
+    {
+      for (int x = low[0]; x <= high[0] && inside; x += 2)
+      {
+        inside = mcor_points_are_inside(
+          tile, at[0] + step * x, at[1] + step * y, at[2] + step * z, step, iso);
+      }
+    }
+  }
+  return inside;
+}
+
+/* Whether the nodes on a leaf's sides do: those of its level on the far ones, and the finer ones. The tile
+ * has what is close to all of it. */
+bool mcor_sides_are_inside(
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, uint finer, real iso)
+{
+  bool inside = true;
+  real at[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit;
+  }
+  for (int a = 0; a < 3 && inside; ++a)
+  {
+    const int low[3] = { a == 0 ? 4 : 0, a == 1 ? 4 : 0, a == 2 ? 4 : 0 }, high[3] = { 4, 4, 4 };
+    inside = mcor_box_is_inside(tile, at, low, high, 1, iso);
+  }
+  for (int d = 0; d < 27 && inside; ++d)
+  {
+    const int to[3] = { d % 3, d / 3 % 3, d / 9 };
+    int low[3], high[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      low[a] = to[a] == 2 ? 8 : 0;
+      high[a] = to[a] == 0 ? 0 : 8;
+    }
+    inside = !(finer >> d & 1) || mcor_box_is_inside(tile, at, low, high, (real)0.5, iso);
+  }
+  return inside;
+}
+
+/* MCOR_ABOVE: the proof holds for a leaf with its sides, which is only asked where they are beside leaves
+ * of other levels. MCOR_INSIDE: for its own nodes. wide: what is close to its region, if it is complete. */
+int mcor_leaf_proof(const mcor_grid* grid, int4 leaf, uint finer, const mcor_tile* wide, real iso)
+{
+  mcor_query query = mcor_seed_query(grid, leaf, finer ? MCOR_BRICK : MCOR_BRICK - 1);
+  mcor_tile tile;
+  query.radius = -MCOR_LEAF_SHARE;
+  mcor_tile_init(&tile);
+  if (wide->complete)
+  {
+    mcor_tile_narrow(wide, &query, &tile);
+  }
+  if (!mcor_brick_is_inside(grid, &query, &tile, iso))
+  {
+    return MCOR_EXAMINE;
+  }
+  return finer && tile.complete && mcor_sides_are_inside(grid, &query, &tile, finer, iso)
+    ? MCOR_ABOVE
+    : MCOR_INSIDE;
+}
+#endif
+
+/* Proves what can be of the leaves of a region, from `begin` to before `end`; returns which are left. */
+uint mcor_region_proofs(const mcor_grid* grid, int4 brick, int begin, int end,
+  __global const int4* leaves, __global const uint* finer, real iso, mcor_tile* wide,
+  __global uchar* states)
+{
+  uint left = (1u << (end - begin)) - 1;
+#if MCOR_LEAF_PROOFS
+  mcor_query query = mcor_seed_query(grid, brick, MCOR_REGION_CUBES);
+  query.radius = -MCOR_LEAF_SHARE;
+  mcor_tile_init(wide);
+  mcor_tile_next(grid, &query, wide, true);
+  for (int i = begin; i < end && wide->count > 0; ++i)
+  {
+    states[i] = (uchar)mcor_leaf_proof(grid, leaves[i], finer[i], wide, iso);
+    left &= ~((uint)(states[i] != MCOR_EXAMINE) << (i - begin));
+  }
+#endif
+  return left;
+}
+
+/* The state of all of a region's leaves where raw values tell it, else MCOR_EXAMINE. */
+int mcor_region_range(const mcor_grid* grid, mcor_query* query, const mcor_seed_limits* limits)
+{
+  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
+  return of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(grid, query, limits->side_flags) : 3];
+}
+
+/* One work-item = one region, of `count` from `first` on: the leaves that are parts of one brick, the
+ * particles of which are gathered once. Reads the particles that reach it. Writes the leaves' states
+ * and, of those to be examined, if `evaluates`, their nodes' values and weights. */
+__kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int* regions, __global const int4* leaves, __global const uint* finer,
+  MCOR_SEED_PARAMS, const int evaluates, __global uchar* states, __global real* node_value,
+  __global real* node_weight)
+{
+  const int region = first + get_global_id(0);
+  if (region >= first + count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
+  const int begin = regions[region], end = regions[region + 1];
+  const int4 brick = leaves[begin] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
+  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES);
+  mcor_tile wide, tile;
+  const int all = mcor_region_range(&grid, &query, &limits);
+  for (int i = begin; i < end; ++i)
+  {
+    states[i] = (uchar)all;
+  }
+  if (all != MCOR_EXAMINE)
+  {
+    return;
+  }
+  const uint left = mcor_region_proofs(&grid, brick, begin, end, leaves, finer, iso, &wide, states);
+  mcor_tile_init(&wide);
+  if (left)
+  {
+    mcor_tile_next(&grid, &query, &wide, true);
+  }
+  for (uint rest = left; rest; rest &= rest - 1)
+  {
+    const int i = begin + mcor_ctz(rest);
+    query = mcor_seed_query(&grid, leaves[i], MCOR_BRICK);
+    mcor_tile_init(&tile);
+    if (wide.complete)
+    {
+      mcor_tile_narrow(&wide, &query, &tile);
+    }
+    states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
+    if (states[i] == MCOR_EXAMINE && evaluates)
+    {
+      mcor_node_sums sums;
+      mcor_node_sum(&grid, &query, &tile, &sums);
+      mcor_node_store(&sums, node_value + 64L * i, node_weight + 64L * i);
+    }
+  }
+}
+#endif
+
+/* ---- Leaves by their place ---- */
+
+/* One work-item = one region. Writes the key of the brick whose parts its leaves are. */
+__kernel void mcor_graded_region_keys(const int region_count, __global const mcor_rung* rungs,
+  __global const int* regions, __global const int4* leaves, __global ulong* keys)
+{
+  const int r = get_global_id(0);
+  if (r < region_count)
+  {
+    const int4 leaf = leaves[regions[r]];
+    keys[r] = mcor_graded_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
+  }
+}
+
+/* Regions by their sorted keys; `order`: which one has a key. */
+#define MCOR_REGION_PARAMS                                                                         \
+  const int region_count, __global const mcor_rung *rungs, __global const int *regions,            \
+    __global const int4 *leaves, __global const ulong *region_keys,                                \
+    __global const int *region_order
+#define MCOR_REGION_ARGS region_count, rungs, regions, leaves, region_keys, region_order
+
+/* The region of parts of a brick, or -1. */
+int mcor_find_region(MCOR_REGION_PARAMS, int level, int x, int y, int z)
+{
+  const ulong key = mcor_graded_key(rungs, level, x, y, z);
+  const int at = mcor_find_key(region_keys, 0, region_count, key);
+  return at < region_count && region_keys[at] == key ? region_order[at] : -1;
+}
+
+/* The leaf of a region at a place, or -1. */
+int mcor_leaf_of_region(
+  __global const int* regions, __global const int4* leaves, int region, int x, int y, int z)
+{
+  for (int i = region < 0 ? 0 : regions[region]; i < (region < 0 ? 0 : regions[region + 1]); ++i)
+  {
+    const int4 leaf = leaves[i];
+    if (leaf.x == x && leaf.y == y && leaf.z == z)
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/* One work-item = one region. Writes of its leaves whether they are to be examined: one whose own nodes
+ * lie inside need not be if the others are in like bricks. */
+__kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
+  __global const uchar* states, __global uchar* chosen)
+{
+  const int r = get_global_id(0);
+  if (r >= region_count)
+  {
+    return;
+  }
+  const int4 parent = leaves[regions[r]] >> 1;
+  const int level = leaves[regions[r]].w;
+  int up[8] = { r };
+  for (int d = 1; d < 8; ++d)
+  {
+    up[d] = mcor_find_region(MCOR_REGION_ARGS, level + 1, parent.x + (d & 1),
+      parent.y + (d >> 1 & 1), parent.z + (d >> 2));
+  }
+  for (int i = regions[r]; i < regions[r + 1]; ++i)
+  {
+    bool closed = finer[i] == 0;
+    for (int d = 1; d < 8 && closed && states[i] == MCOR_INSIDE; ++d)
+    {
+      const int x = leaves[i].x + (d & 1), y = leaves[i].y + (d >> 1 & 1),
+                z = leaves[i].z + (d >> 2);
+      const int in =
+        up[((x >> 1) - parent.x) | ((y >> 1) - parent.y) << 1 | ((z >> 1) - parent.z) << 2];
+      const int other = mcor_leaf_of_region(regions, leaves, in, x, y, z);
+      closed = other >= 0 && (states[other] == MCOR_INSIDE || states[other] == MCOR_ABOVE);
+    }
+    chosen[i] = states[i] == MCOR_EXAMINE || (states[i] == MCOR_INSIDE && !closed);
+  }
+}
+
+/* One work-item = one slot. Takes over what was found of the leaf whose brick it is, if it is one's:
+ * words: of 4 bytes, that the values of a brick's nodes take; 0: there are none. */
+__kernel void mcor_graded_take(MCOR_REGION_PARAMS, const int slot_count,
+  __global const int4* bricks, __global const uchar* states, const int words,
+  __global const uint* leaf_value, __global const uint* leaf_weight, __global uchar* proofs,
+  __global ulong* known, __global uint* node_value, __global uint* node_weight)
+{
+  const int slot = get_global_id(0);
+  if (slot >= slot_count)
+  {
+    return;
+  }
+  const int4 b = bricks[slot];
+  const int region = mcor_find_region(MCOR_REGION_ARGS, b.w + 1, b.x >> 1, b.y >> 1, b.z >> 1);
+  const int i = mcor_leaf_of_region(regions, leaves, region, b.x, b.y, b.z);
+  const int state = i < 0 ? MCOR_VOID : states[i];
+  const bool above = state == MCOR_INSIDE || (MCOR_LEAF_PROOFS && state == MCOR_ABOVE);
+  proofs[slot] = above ? MCOR_PROVEN : state == MCOR_EXAMINE ? MCOR_OPEN : MCOR_UNTRIED;
+  if (state == MCOR_EXAMINE && words > 0)
+  {
+    known[slot] = ~0UL;
+    for (int n = 0; n < words; ++n)
+    {
+      node_value[slot * (long)words + n] = leaf_value[i * (long)words + n];
+      node_weight[slot * (long)words + n] = leaf_weight[i * (long)words + n];
+    }
+  }
+}

@@ -262,8 +262,9 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1)
-      << (options->precision == MCOR_FLOAT64 ? 62 : 30))
+  /* Where smoothing lengths differ much, lattices are long, and the last bit is needed. */
+  const int bits = options->precision == MCOR_FLOAT64 ? 62 : lattice->top > 0 ? 31 : 30;
+  while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
   {
     --lattice->fix_bits;
   }

@@ -74,6 +74,13 @@ fix mcor_query_reach(float distance)
  * are: particles of most levels are elsewhere. */
 #define MCOR_MANY_ROWS (MCOR_OF_GRADED ? 3 : 64)
 
+/* x + reach, or the greatest number: a lattice may be nearly as long. */
+fix mcor_query_beyond(fix x, fix reach)
+{
+  const fix most = (((fix)1 << (MCOR_DOUBLE ? 62 : 30)) - 1) * 2 + 1;
+  return min(x, most - reach) + reach;
+}
+
 /* The part of a query that depends on the level; false where the level has no cell in reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
@@ -89,7 +96,8 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
     query->first_cell[a] = (float)level->side[a] - (float)level->period[a];
     query->slack[a] = 1 + 1e-6f * (float)level->period[a];
     query->first[a] = max(mcor_cell_of(level, a, query->low[a] - reach), 0);
-    query->last[a] = min(mcor_cell_of(level, a, query->high[a] + reach), level->cells[a] - 1);
+    query->last[a] =
+      min(mcor_cell_of(level, a, mcor_query_beyond(query->high[a], reach)), level->cells[a] - 1);
     some = some && query->first[a] <= query->last[a];
   }
   query->y = query->last[1]; /* as if the row before the first one had just ended */
@@ -155,7 +163,7 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   int begin = mcor_first_particle(grid, row + query->first[0]);
   int end = mcor_first_particle(grid, row + query->last[0] + 1);
   const fix reach = mcor_query_reach(sqrt(rest) * 1.000001f + 2);
-  const fix low = query->low[0] - reach, high = query->high[0] + reach;
+  const fix low = query->low[0] - reach, high = mcor_query_beyond(query->high[0], reach);
   while (end - begin >= MCOR_LANES && grid->px[begin + MCOR_LANES - 1] < low)
   {
     begin += MCOR_LANES;

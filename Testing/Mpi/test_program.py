@@ -15,62 +15,14 @@ import time
 import unittest
 
 import numpy as np
+from particle_pieces import corners, difference, read, write, write_pieces
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
-from vtkmodules.vtkIOXML import (vtkXMLImageDataReader, vtkXMLImageDataWriter, vtkXMLPolyDataReader,
-                                 vtkXMLPolyDataWriter, vtkXMLPPolyDataReader)
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
 PROGRAM, MPIRUN, DATA, RANKS = sys.argv[1:5]
 PARTICLES = os.path.join(DATA, "double_dam_break_small.vtp")
 BOUND = 240  # seconds in which a job ends, whatever happens
-
-
-def read(file):
-    reader = vtkXMLPPolyDataReader() if file.endswith(".pvtp") else vtkXMLPolyDataReader()
-    reader.SetFileName(file)
-    reader.Update()
-    return reader.GetOutput()
-
-
-def corners(surface):
-    """Triangles as rows of point numbers, sorted."""
-    rows = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    return rows[np.lexsort(rows.T[::-1])]
-
-
-def write_pieces(folder, count):
-    """The particles in files of their own, in no order; returns the .pvtp file."""
-    whole = read(PARTICLES)
-    arrays = [whole.GetPointData().GetArray(i) for i in range(whole.GetPointData().GetNumberOfArrays())]
-    owner = np.random.default_rng(7).integers(0, count, whole.GetNumberOfPoints())
-    for piece in range(count):
-        part = vtkPolyData()
-        ids = vtkIdList()
-        for i in np.flatnonzero(owner == piece):
-            ids.InsertNextId(int(i))
-        points = whole.GetPoints().NewInstance()
-        points.SetDataType(whole.GetPoints().GetDataType())
-        whole.GetPoints().GetPoints(ids, points)
-        part.SetPoints(points)
-        for array in arrays:
-            own = array.NewInstance()
-            own.SetName(array.GetName())
-            own.SetNumberOfComponents(array.GetNumberOfComponents())
-            own.SetNumberOfTuples(ids.GetNumberOfIds())
-            array.GetTuples(ids, own)
-            part.GetPointData().AddArray(own)
-        writer = vtkXMLPolyDataWriter()
-        writer.SetDataModeToBinary()
-        writer.SetFileName(os.path.join(folder, f"piece_{piece}.vtp"))
-        writer.SetInputData(part)
-        writer.Write()
-    text = "".join(f'<Piece Source="piece_{i}.vtp"/>' for i in range(count))
-    file = os.path.join(folder, "pieces.pvtp")
-    with open(file, "w", encoding="ascii") as stream:
-        stream.write('<?xml version="1.0"?>\n<VTKFile type="PPolyData" version="1.0">'
-                     f'<PPolyData GhostLevel="0">{text}</PPolyData></VTKFile>\n')
-    return file
 
 
 class Program(unittest.TestCase):
@@ -119,16 +71,12 @@ class Program(unittest.TestCase):
 
     def test_pieces(self):
         """Pieces in, pieces out: more of them than processes."""
-        pieces = write_pieces(self.folder.name, 5)
+        pieces = write_pieces(PARTICLES, self.folder.name, 5)
         self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface").returncode, 0)
         done = self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface")
         self.assertEqual(done.returncode, 0, done.stderr)
         alone, ranks = read(self.path("alone.vtp")), read(self.path("out.pvtp"))
-        self.assertEqual(alone.GetNumberOfPolys(), ranks.GetNumberOfPolys())
-        ids = vtk_to_numpy(ranks.GetPointData().GetArray("GlobalPointIds"))
-        self.assertEqual(len(np.unique(ids)), alone.GetNumberOfPoints())
-        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData())[ids],
-                                      vtk_to_numpy(ranks.GetPoints().GetData()))
+        self.assertEqual(difference(ranks, alone), "")
 
     def test_probe(self):
         """Points of one file, particles in pieces: the arrays are, to the last byte, those of one process."""
@@ -144,7 +92,7 @@ class Program(unittest.TestCase):
         how = ["--probe", self.path("points.vti"), "--derive", "Velocity", "--gradients"]
         alone = self.run_alone(PARTICLES, self.path("alone.vti"), *how)
         self.assertEqual(alone.returncode, 0, alone.stderr)
-        done = self.run_ranks(write_pieces(self.folder.name, 5), self.path("ranks.vti"), *how)
+        done = self.run_ranks(write_pieces(PARTICLES, self.folder.name, 5), self.path("ranks.vti"), *how)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.count("points "), 1, done.stdout)
         self.assertEqual(done.stdout.splitlines()[0], alone.stdout.splitlines()[0])
@@ -168,7 +116,7 @@ class Program(unittest.TestCase):
         """A surface of what is derived from another array."""
         how = ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "20", "--no-attributes"]
         self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), *how).returncode, 0)
-        done = self.run_ranks(write_pieces(self.folder.name, 2), self.path("ranks.vtp"), *how)
+        done = self.run_ranks(write_pieces(PARTICLES, self.folder.name, 2), self.path("ranks.vtp"), *how)
         self.assertEqual(done.returncode, 0, done.stderr)
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
         self.assertGreater(alone.GetNumberOfPolys(), 1000)
@@ -178,7 +126,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--derive", "Nope", "--free-surface"), "Nope")
 
     def test_damaged_piece(self):
-        pieces = write_pieces(self.folder.name, 3)
+        pieces = write_pieces(PARTICLES, self.folder.name, 3)
         with open(self.path("piece_1.vtp"), "r+", encoding="latin-1") as stream:
             stream.truncate(3000)
         done = self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface")
@@ -190,14 +138,10 @@ class Program(unittest.TestCase):
 
     def test_bad_value(self):
         """A particle of one piece that is not a number."""
-        pieces = write_pieces(self.folder.name, 2)
+        pieces = write_pieces(PARTICLES, self.folder.name, 2)
         part = read(self.path("piece_1.vtp"))
         part.GetPoints().SetPoint(5, float("nan"), 0, 0)
-        writer = vtkXMLPolyDataWriter()
-        writer.SetDataModeToBinary()
-        writer.SetFileName(self.path("piece_1.vtp"))
-        writer.SetInputData(part)
-        writer.Write()
+        write(part, self.path("piece_1.vtp"))
         self.check_fails(self.run_ranks(pieces, self.path("o.vtp"), "--free-surface"), "Rank 1", "particle 5")
 
     def test_killed(self):

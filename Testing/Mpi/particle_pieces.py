@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Particles in pieces, and surfaces that come in pieces."""
+import os
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLPPolyDataReader
+
+
+def read(file):
+    reader = vtkXMLPPolyDataReader() if file.endswith(".pvtp") else vtkXMLPolyDataReader()
+    reader.SetFileName(file)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def corners(surface, numbers=None):
+    """Triangles as rows of point numbers, sorted; numbers: those of the points."""
+    rows = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    rows = rows if numbers is None else numbers[rows]
+    return rows[np.lexsort(rows.T[::-1])]
+
+
+def arrays_of(surface):
+    values = surface.GetPointData()
+    return [values.GetArray(i) for i in range(values.GetNumberOfArrays())]
+
+
+def take(whole, indices):
+    """These points and their arrays, no cells."""
+    part = vtkPolyData()
+    ids = vtkIdList()
+    for i in indices:
+        ids.InsertNextId(int(i))
+    points = whole.GetPoints().NewInstance()
+    points.SetDataType(whole.GetPoints().GetDataType())
+    whole.GetPoints().GetPoints(ids, points)
+    part.SetPoints(points)
+    for array in arrays_of(whole):
+        own = array.NewInstance()
+        own.SetName(array.GetName())
+        own.SetNumberOfComponents(array.GetNumberOfComponents())
+        own.SetNumberOfTuples(ids.GetNumberOfIds())
+        array.GetTuples(ids, own)
+        part.GetPointData().AddArray(own)
+    return part
+
+
+def write(part, file):
+    writer = vtkXMLPolyDataWriter()
+    writer.SetDataModeToBinary()
+    writer.SetFileName(file)
+    writer.SetInputData(part)
+    assert writer.Write()
+
+
+def xml_array(array):
+    kind = {"float": "Float32", "double": "Float64", "int": "Int32", "unsigned char": "UInt8"}
+    name, components = array.GetName() or "Points", array.GetNumberOfComponents()
+    return f'<PDataArray type="{kind[array.GetDataTypeAsString()]}" Name="{name}" NumberOfComponents="{components}"/>'
+
+
+def write_pieces(source, folder, count):
+    """The particles of a file in files of their own, in no order; returns the .pvtp file."""
+    whole = read(source)
+    owner = np.random.default_rng(7).integers(0, count, whole.GetNumberOfPoints())
+    for piece in range(count):
+        write(take(whole, np.flatnonzero(owner == piece)), os.path.join(folder, f"piece_{piece}.vtp"))
+    point_data = "".join(xml_array(array) for array in arrays_of(whole))
+    pieces = "".join(f'<Piece Source="piece_{i}.vtp"/>' for i in range(count))
+    file = os.path.join(folder, "pieces.pvtp")
+    with open(file, "w", encoding="ascii") as stream:
+        stream.write('<?xml version="1.0"?>\n<VTKFile type="PPolyData" version="1.0"><PPolyData GhostLevel="0">'
+                     f'<PPointData>{point_data}</PPointData><PPoints>{xml_array(whole.GetPoints().GetData())}</PPoints>'
+                     f'{pieces}</PPolyData></VTKFile>\n')
+    return file
+
+
+def difference(union, alone):
+    """What is not the same, bit for bit, in the union of the pieces and the surface of one process; or ''."""
+    numbers = vtk_to_numpy(union.GetPointData().GetArray("GlobalPointIds"))
+    if not np.array_equal(np.unique(numbers), np.arange(alone.GetNumberOfPoints())):
+        return "the numbers of the points"
+    if not np.array_equal(corners(union, numbers), corners(alone)):
+        return "the triangles"
+    pairs = [("Points", union.GetPoints().GetData(), alone.GetPoints().GetData())]
+    pairs += [(a.GetName(), union.GetPointData().GetArray(a.GetName()), a) for a in arrays_of(alone)]
+    for name, found, expected in pairs:
+        if found is None or vtk_to_numpy(found).tobytes() != vtk_to_numpy(expected)[numbers].tobytes():
+            return name
+    return ""

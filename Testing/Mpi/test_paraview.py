@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plugin over processes: in pvbatch under mpirun, or in a pvserver of several processes. What they
+write in pieces is together what one process alone wrote. Renders nothing.
+
+    test_paraview.py 1 FOLDER         particles in pieces, and surfaces of one process
+    test_paraview.py RANKS FOLDER     the surfaces of so many, after that
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+# pylint: disable=wrong-import-position
+import numpy as np  # noqa: E402
+from paraview import servermanager, simple  # noqa: E402
+from paraview.simple import (Connect, Disconnect, LoadPlugin, SaveData,  # noqa: E402
+                             XMLPartitionedPolydataReader, XMLPolyDataReader)
+from particle_pieces import difference, read, write_pieces  # noqa: E402
+from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
+
+PARTICLES = os.path.join(os.environ["MCOR_TEST_DATA"], "double_dam_break_small.vtp")
+# ParaView 5.12 gave the filter and its array other names.
+PROCESS_IDS, NUMBER = ((simple.ProcessIds, "PointProcessIds") if hasattr(simple, "ProcessIds")
+                       else (simple.ProcessIdScalars, "ProcessId"))
+CASES = {
+    "free": {"FreeSurface": 1},
+    "speed": {"ContourBy": ["POINTS", "Speed"], "Isosurfaces": [1.2, 2.0], "Topology": "Field", "ComputeWeightSum": 1},
+    "middle": {"ContourBy": ["POINTS", "Speed"], "SeedMode": "Pairs"},  # of the range, which all agree on
+    "box": {"FreeSurface": 1, "OnlyInABox": 1, "BoxPosition": [-0.4, -10, -0.2], "BoxLength": [0.91, 10.33, 10.2]},
+}
+
+
+def extract(particles, name):
+    surface = MarchingCorrectors(Input=particles, **CASES[name])  # noqa: F821, LoadPlugin made it
+    surface.UpdatePipeline()
+    return surface
+
+
+# Binary: small appended data fail with VTK 9.1 and a recent expat.
+def write_alone(folder):
+    write_pieces(PARTICLES, folder, 5)
+    particles = XMLPolyDataReader(FileName=[PARTICLES])
+    for name in CASES:
+        SaveData(os.path.join(folder, f"{name}_1.vtp"), proxy=extract(particles, name), DataMode="Binary")
+
+
+def check_ranks(folder, ranks):
+    assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == ranks
+    particles = XMLPartitionedPolydataReader(FileName=[os.path.join(folder, "pieces.pvtp")])
+    for name in CASES:
+        surface = extract(particles, name)
+        colored = PROCESS_IDS(Input=surface)
+        file = os.path.join(folder, f"{name}_{ranks}.pvtp")
+        SaveData(file, proxy=colored, DataMode="Binary")
+        alone, union = read(os.path.join(folder, f"{name}_1.vtp")), read(file)
+        assert alone.GetNumberOfPolys() > 1000, name
+        problem = difference(union, alone)
+        assert not problem, (name, problem)
+        # A color for each process, and points on the seams in two.
+        owners = np.unique(vtk_to_numpy(union.GetPointData().GetArray(NUMBER)))
+        assert list(owners) == list(range(ranks)), owners
+        shared = union.GetNumberOfPoints() - alone.GetNumberOfPoints()
+        assert shared > 0
+        assert surface.GetDataInformation().GetNumberOfCells() == alone.GetNumberOfPolys()
+        print(f"{name}: {alone.GetNumberOfPolys()} triangles of {ranks} processes, {shared} points on seams", flush=True)
+
+
+def main(ranks, folder):
+    server = os.environ.get("MCOR_TEST_SERVER")
+    if server:
+        Connect(server.split(":")[0], int(server.split(":")[1]))
+    LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=bool(server), ns=globals())
+    os.makedirs(folder, exist_ok=True)
+    if ranks == 1:
+        write_alone(folder)
+    else:
+        check_ranks(folder, ranks)
+    if server:
+        Disconnect()
+
+
+main(int(sys.argv[1]), sys.argv[2])

@@ -94,6 +94,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
       continue;
     }
     auto* value = new QLabel(this);
+    value->setObjectName(property->GetXMLName());
     value->setWordWrap(true);
     value->setTextInteractionFlags(Qt::TextSelectableByMouse);
     if (vtkSMDocumentation* documentation = property->GetDocumentation())

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The filter's panel in ParaView's real window, used as a user does, by ParaView's own player of events.
+
+    test_plugin_panel.py PARAVIEW
+
+Lists of events say what the player does to widgets, and what it must find in them; states that it saves in
+between tell what came of it.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+SECONDS = 600
+WINDOW = "pqClientMainWindow"
+PANEL = f"{WINDOW}/propertiesDock/propertiesPanel"
+FILTER = f"{PANEL}/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel"
+PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it looks ahead
+FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
+APPLY = (f"{PANEL}/Accept", "activate", "")
+UNDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditUndo")
+REDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditRedo")
+CHECK = "check"  # instead of a command: a property of the widget has this value
+
+
+def shown(widget, prop, value):
+    return (f"{FILTER}/{widget}", CHECK, prop, value)
+
+
+def change(widget, command, value):
+    return (f"{FILTER}/{widget}", command, value)
+
+
+def save_state(path):
+    return [(f"{WINDOW}/menubar/menu_File", "activate", "actionFileSaveServerState"),
+            (f"{WINDOW}/FileSaveServerStateDialog", "filesSelected", path)]
+
+
+def write_events(events, path):
+    root = xml.Element("pqevents")
+    for event in events:
+        if event[1] == CHECK:
+            xml.SubElement(root, "pqcheck", object=event[0], property=event[2], arguments=event[3])
+        else:
+            xml.SubElement(root, "pqevent", object=event[0], command=event[1], arguments=event[2])
+    xml.ElementTree(root).write(path, xml_declaration=True)
+
+
+def run(paraview, events, folder):
+    script = os.path.join(folder, "events.xml")
+    write_events(events, script)
+    plugin = os.environ["MCOR_TEST_PLUGIN"]
+    command = [paraview, "-dr", "--plugin-search-paths=" + os.path.dirname(plugin), "--plugins=MarchingCorrectors",
+               "--data=" + os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp"),
+               "--test-script=" + script, "--test-directory=" + folder, "--exit"]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=SECONDS, check=False)
+    if done.returncode != 0:
+        sys.exit(f"status {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-8000:]}")
+
+
+def first_apply(folder):
+    """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
+    return [
+        APPLY, FILTERS, PAUSE,
+        change("FreeSurface/CheckBox", "set_boolean", "true"),
+        change("FluidArray/ComboBox", "set_string", "ParticleType"),
+        change("CubeSizeMode/ComboBox", "set_string", "Adaptive"), PAUSE,
+        shown("sph_in_use/NextCells", "text", "163423"),
+        shown("InteractiveBox", "visible", "false"),
+        change("UseBox/CheckBox", "set_boolean", "true"),
+        shown("InteractiveBox", "visible", "true"),
+        change("InteractiveBox/translateX", "set_string", "0.75"),
+        change("InteractiveBox/scaleX", "set_string", "1.5"), PAUSE,
+        shown("sph_in_use/NextCells", "text", "75211.7"),
+        change("CubeSize/DoubleLineEdit0", "set_string", "0.0003"), PAUSE,
+        shown("sph_in_use/NextCells", "text", "4.57686e+09: this may take minutes and much memory"),
+        change("CubeSize/DoubleLineEdit0", "set_string", "0"), PAUSE,
+        shown("sph_in_use/NextCells", "text", "75211.7"),
+        APPLY, *save_state(f"{folder}/applied.pvsm"),
+    ]
+
+
+def later_applies(folder):
+    """Undo and redo of an Apply with several changes; a second array chosen and given up again."""
+    return [
+        change("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "set_string", "1"),
+        change("CubeSizeMode/ComboBox", "set_string", "Uniform"),
+        change("InteractiveBox/translateX", "set_string", "0.5"),
+        APPLY, *save_state(f"{folder}/changed.pvsm"),
+        UNDO, shown("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "text", "0.5"),
+        shown("CubeSizeMode/ComboBox", "currentText", "Adaptive"),
+        shown("InteractiveBox/translateX", "text", "0.75"), *save_state(f"{folder}/undone.pvsm"),
+        REDO, shown("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "text", "1"), *save_state(f"{folder}/redone.pvsm"),
+        change("FreeSurface/CheckBox", "set_boolean", "false"),
+        change("SelectInputScalars/ComboBox", "set_string", "Velocity"),
+        change("DotProductWith/ComboBox", "set_string", "Vorticity"),
+        APPLY, *save_state(f"{folder}/dot.pvsm"),
+        change("DotProductWith/ComboBox", "set_string", "(none)"),
+        APPLY, *save_state(f"{folder}/none.pvsm"),
+    ]
+
+
+def properties(file):
+    """Of the filter in a saved state: a list of values each."""
+    proxy = xml.parse(file).find(".//Proxy[@type='MarchingCorrectors']")
+    return {p.get("name"): [e.get("value") for e in p.findall("Element")] for p in proxy.findall("Property")}
+
+
+def differing(states, one, other):
+    return {name for name in states[one] if states[one][name] != states[other][name]}
+
+
+def check_states(states):
+    applied = states["applied"]
+    wanted = {"FreeSurface": ["1"], "FluidArray": ["ParticleType"], "CubeSizeMode": ["1"], "CubeSize": ["0"], "UseBox": ["1"]}
+    assert {name: applied[name] for name in wanted} == wanted, applied
+    # The box began as the particles' bounds.
+    assert applied["BoxPosition"] == ["0.75", "0", "-0.5"] and applied["BoxLength"][0] == "1.5", applied
+    assert abs(float(applied["BoxLength"][1]) - 1.2) < 1e-6, applied
+    changes = {"CubeSizeFactor", "CubeSizeMode", "BoxPosition"}
+    assert differing(states, "applied", "changed") == changes, differing(states, "applied", "changed")
+    assert not differing(states, "applied", "undone") and not differing(states, "changed", "redone")
+    assert states["dot"]["DotProductWith"][4] == "Vorticity" and states["dot"]["SelectInputScalars"][4] == "Velocity"
+    assert differing(states, "dot", "none") == {"DotProductWith"} and states["none"]["DotProductWith"][4] == "(none)"
+
+
+def main(paraview):
+    with tempfile.TemporaryDirectory() as folder:
+        run(paraview, first_apply(folder) + later_applies(folder), folder)
+        check_states({name[:-5]: properties(os.path.join(folder, name))
+                      for name in os.listdir(folder) if name.endswith(".pvsm")})
+    print("the panel works")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,118 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every property of every filter comes back by a trace and by a state, whatever it is set to. In pvpython;
+nothing is computed, as many of these choices together make no sense."""
+import os
+
+from paraview import smtrace
+from paraview.simple import (Delete, FindSource, GetSources, LoadPlugin, LoadState, Plane, RenameSource, SaveState,
+                             XMLPolyDataReader)
+
+
+def properties_of(proxy):
+    iterator = proxy.SMProxy.NewPropertyIterator()
+    iterator.Begin()
+    while not iterator.IsAtEnd():
+        found = iterator.GetProperty()
+        if found.IsA("vtkSMVectorProperty") and not found.GetInformationOnly():
+            yield iterator.GetKey(), found
+        iterator.Next()
+
+
+def values_of(proxy):
+    return {name: [found.GetElement(i) for i in range(found.GetNumberOfElements())]
+            for name, found in properties_of(proxy)}
+
+
+def other_int(found, before):
+    choices = found.FindDomain("vtkSMEnumerationDomain")
+    if choices:
+        return next(value for value in (choices.GetEntryValue(i) for i in range(choices.GetNumberOfEntries()))
+                    if value != before)
+    return 1 - before if found.FindDomain("vtkSMBooleanDomain") else before + (1 if before < 20 else -1)
+
+
+def other_text(found, before):
+    names = found.FindDomain("vtkSMArrayListDomain")
+    if names:
+        return next(name for name in (names.GetString(i) for i in range(names.GetNumberOfStrings())) if name != before)
+    return before + "x"
+
+
+def change(found):
+    """Another value than it has, for all of its elements."""
+    count = found.GetNumberOfElements()
+    if count == 0:  # a list of any length
+        found.SetNumberOfElements(1)
+        found.SetElement(0, other_text(found, "") if found.IsA("vtkSMStringVectorProperty") else 1.5)
+    elif found.IsA("vtkSMStringVectorProperty"):
+        last = count - 1  # of the five that name an array
+        found.SetElement(last, other_text(found, found.GetElement(last)))
+    elif found.IsA("vtkSMIntVectorProperty"):
+        for i in range(count):
+            found.SetElement(i, other_int(found, found.GetElement(i)))
+    else:
+        for i in range(count):
+            found.SetElement(i, 0.8 * found.GetElement(i) + 0.011 * (i + 1))
+
+
+def choose_all(make):
+    """The filter with nothing as it was, and the trace of that."""
+    smtrace.start_trace()
+    proxy = make("traced")
+    before = values_of(proxy)
+    applied = smtrace.PropertiesModified(proxy)  # as the window does around Apply
+    for _, found in properties_of(proxy):
+        change(found)
+    proxy.UpdateVTKObjects()
+    applied.finalize()
+    trace = smtrace.stop_trace()
+    after = values_of(proxy)
+    same = [name for name in after if after[name] == before[name]]
+    assert not same and len(after) > 3, same
+    return proxy, trace, after
+
+
+def check(name, make):
+    proxy, trace, wanted = choose_all(make)
+    lines = trace.splitlines()
+    first = next(i for i, line in enumerate(lines) if f"= {name}(" in line)
+    RenameSource("stored " + name, proxy)
+    names = dict(globals())
+    for (source, _), found in GetSources().items():
+        names[source.lower().replace(".", "")] = found
+    exec("\n".join(lines[first:]), names)  # pylint: disable=exec-used
+    replayed = FindSource("traced")
+    compare(name + ", trace", values_of(replayed), wanted)
+    Delete(replayed)
+
+    path = os.path.join(os.environ["MCOR_TEST_OUTPUT"], f"{name}_{os.getpid()}.pvsm")
+    SaveState(path)
+    RenameSource("before " + name, proxy)
+    LoadState(path)
+    os.remove(path)
+    compare(name + ", state", values_of(FindSource("stored " + name)), wanted)
+    print(f"{name}: {len(wanted)} properties come back", flush=True)
+
+
+def compare(what, found, wanted):
+    lost = {name: (found.get(name), value) for name, value in wanted.items() if found.get(name) != value}
+    assert not lost, (what, lost)
+
+
+def main():
+    LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())
+    data = os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp")
+    reader = XMLPolyDataReader(registrationName="reader", FileName=[data])
+    reader.UpdatePipeline()
+    plane = Plane(registrationName="plane")
+    # pylint: disable=undefined-variable
+    check("SPHIsosurfaceMarchingCorrectors",
+          lambda name: SPHIsosurfaceMarchingCorrectors(registrationName=name, Input=reader))  # noqa: F821
+    check("SPHProbe", lambda name: SPHProbe(registrationName=name, Points=plane, Particles=reader))  # noqa: F821
+    check("SPHDerivatives", lambda name: SPHDerivatives(registrationName=name, Input=reader))  # noqa: F821
+    check("SPHTemporalInterpolator",
+          lambda name: SPHTemporalInterpolator(registrationName=name, Input=reader))  # noqa: F821
+
+
+main()

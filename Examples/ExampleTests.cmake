@@ -43,5 +43,7 @@ if (MCOR_BUILD_PLUGIN)
     mcor_add_example_test(paraview paraview "${with_display}" "${MCOR_PVPYTHON}"
       "${CMAKE_CURRENT_SOURCE_DIR}/paraview_script.py" $<TARGET_FILE:MarchingCorrectors>
       "${out}/paraview.png")
+    mcor_add_example_test(film paraview "${with_display}" "${MCOR_PVPYTHON}"
+      "${CMAKE_CURRENT_SOURCE_DIR}/Gallery/film.py" $<TARGET_FILE:MarchingCorrectors> "${out}")
   endif ()
 endif ()

@@ -48,7 +48,8 @@ mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
 int fuzz_finite(const double* values, int64_t count);
 void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 
-/* fuzz_rooms.c. Sets box, period and walls; then globals, probe and derivatives of the same call. */
+/* fuzz_rooms.c. Sets box, period, walls and cubes; then globals, ranks, probe and derivatives of the same
+ * call. */
 void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
 

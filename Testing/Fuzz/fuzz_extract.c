@@ -328,7 +328,7 @@ static void fuzz_change(unsigned what, fuzz_call* call)
 {
   mcor_input* in = &call->input;
   mcor_options* o = &call->options;
-  switch (what % 20)
+  switch (what % 22)
   {
     case 0:
       call->iso[0] += 0.25;
@@ -391,6 +391,13 @@ static void fuzz_change(unsigned what, fuzz_call* call)
       break;
     case 18:
       in->has_density = !in->has_density;
+      break;
+    case 19:
+      o->cube_size_mode =
+        o->cube_size_mode == MCOR_CUBES_ADAPTIVE ? MCOR_CUBES_UNIFORM : MCOR_CUBES_ADAPTIVE;
+      break;
+    case 20:
+      o->level_limit = o->level_limit ? o->level_limit - 1 : 3;
       break;
     default:
       in->count -= in->count > 0;

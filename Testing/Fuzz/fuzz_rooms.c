@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The rooms beside the phases: box, period, walls, globals, probe, derivatives. */
+/* The rooms beside the phases: box, period, walls, adaptive cubes, globals, ranks, probe, derivatives. */
 
 #include "fuzz.h"
 
@@ -36,6 +36,39 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   }
   o->capping = (rooms & 3) == 2;
   o->wall_share = rooms >> 2 & 1 ? shares[fuzz_byte(bytes) % 8] : 0;
+  if (rooms >> 6 & 1)
+  {
+    const unsigned b = fuzz_byte(bytes);
+    o->cube_size_mode = (mcor_cube_size_mode)(b == 255 ? 2 : 1);
+    o->level_limit = (int)(b % 29) - 2;
+    o->point_keys = b > 250;
+  }
+}
+
+/* Levels that are not allowed are uniform cubes. */
+static void fuzz_one_level(const fuzz_call* call)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  mcor_options options = call->options;
+  mcor_surface surfaces[2];
+  mcor_status status[2];
+  options.seeds = MCOR_COMPLETE; /* adaptive cubes go with nothing else */
+  options.point_keys = options.capping = 0;
+  memset(options.periodic, 0, sizeof options.periodic);
+  for (int uniform = 0; uniform < 2; ++uniform)
+  {
+    options.cube_size_mode = uniform ? MCOR_CUBES_UNIFORM : MCOR_CUBES_ADAPTIVE;
+    options.level_limit = 0;
+    status[uniform] = mcor_extract(context, &call->input, &options, &surfaces[uniform]);
+  }
+  FUZZ_CHECK(status[0] == status[1]);
+  FUZZ_CHECK(surfaces[0].point_count == surfaces[1].point_count);
+  fuzz_check_bits(
+    surfaces[0].points, surfaces[1].points, (size_t)surfaces[0].point_count * 3 * sizeof(double));
+  fuzz_check_bits(surfaces[0].triangles, surfaces[1].triangles,
+    (size_t)surfaces[0].triangle_count * 3 * sizeof(int32_t));
+  mcor_free_surface(&surfaces[0]);
+  mcor_free_surface(&surfaces[1]);
 }
 
 static void fuzz_check_failure(const mcor_context* context, mcor_status status)
@@ -50,16 +83,16 @@ static void fuzz_globals(const fuzz_call* call)
   mcor_context* context = fuzz_context(call, 1);
   mcor_globals globals;
   mcor_surface surfaces[2] = { { 0 } };
-  const mcor_status measured =
-    mcor_measure_globals(context, &call->input, &call->options, &globals);
+  mcor_options options = call->options;
+  options.cube_size_mode = MCOR_CUBES_UNIFORM; /* neither adaptive ones nor caps go with them */
+  options.capping = 0;
+  const mcor_status measured = mcor_measure_globals(context, &call->input, &options, &globals);
   if (measured != MCOR_OK)
   {
     fuzz_check_failure(context, measured);
     FUZZ_CHECK(!globals.components && globals.fluid_particles == 0);
     return;
   }
-  mcor_options options = call->options;
-  options.capping = 0;
   mcor_status status[2];
   for (int given = 0; given < 2; ++given)
   {
@@ -77,6 +110,75 @@ static void fuzz_globals(const fuzz_call* call)
     mcor_free_surface(&surfaces[given]);
   }
   mcor_free_globals(&globals);
+}
+
+/* A rank alone; one of its callbacks fails. */
+typedef struct fuzz_rank
+{
+  int calls, failing;
+} fuzz_rank;
+
+static int fuzz_exchange(fuzz_rank* rank)
+{
+  FUZZ_CHECK(rank->calls <= rank->failing); /* none after the one that failed */
+  return rank->calls++ == rank->failing;
+}
+
+static int fuzz_reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
+{
+  FUZZ_CHECK(values && count > 0 && reduction != MCOR_SUM_OF);
+  return fuzz_exchange(user);
+}
+
+static int fuzz_reduce_counts(void* user, mcor_reduction reduction, int64_t* values, int count)
+{
+  FUZZ_CHECK(values && count > 0 && (unsigned)reduction <= MCOR_SUM_OF);
+  return fuzz_exchange(user);
+}
+
+static int fuzz_gather(void* user, const void* records, int64_t count, size_t width,
+  const void** all, int64_t* all_count)
+{
+  FUZZ_CHECK((records || count == 0) && count >= 0 && width > 0);
+  *all = records;
+  *all_count = count;
+  return fuzz_exchange(user);
+}
+
+/* What a rank alone measures and extracts is what no rank does. */
+static void fuzz_ranks(unsigned failing, const fuzz_call* call)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  fuzz_rank rank = { .failing = failing < 128 ? (int)failing : INT32_MAX };
+  const mcor_ranks ranks = { fuzz_reduce_doubles, fuzz_reduce_counts, fuzz_gather, &rank };
+  mcor_options options = call->options;
+  mcor_globals globals;
+  mcor_surface alone, surface;
+  options.capping = 0;
+  if (options.seeds == MCOR_PAIRS)
+  {
+    options.has_box = 0; /* without ranks there is none */
+  }
+  const mcor_status expected = mcor_extract(context, &call->input, &options, &alone);
+  options.ranks = &ranks;
+  mcor_status status = mcor_measure_globals(context, &call->input, &options, &globals);
+  if (status == MCOR_OK)
+  {
+    options.globals = &globals;
+    status = mcor_extract(context, &call->input, &options, &surface);
+    FUZZ_CHECK(status != MCOR_OK || surface.point_count == alone.point_count);
+    if (status == MCOR_OK)
+    {
+      fuzz_check_bits(surface.points, alone.points, (size_t)alone.point_count * 3 * sizeof(double));
+    }
+    mcor_free_surface(&surface);
+  }
+  const int failed = rank.calls > rank.failing;
+  FUZZ_CHECK(failed ? status == MCOR_CANCELLED
+                    : status == expected || options.cube_size_mode != MCOR_CUBES_UNIFORM);
+  FUZZ_CHECK(status == MCOR_OK || mcor_last_error(context)[0] != '\0');
+  mcor_free_globals(&globals);
+  mcor_free_surface(&alone);
 }
 
 static void fuzz_check_samples(const fuzz_call* call, const mcor_samples* s)
@@ -185,5 +287,13 @@ void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   if (rooms >> 5 & 1)
   {
     fuzz_derive(bytes, call);
+  }
+  if (rooms >> 6 & 1)
+  {
+    fuzz_one_level(call);
+  }
+  if (rooms >> 7 & 1)
+  {
+    fuzz_ranks(fuzz_byte(bytes), call);
   }
 }

@@ -159,8 +159,8 @@ std::vector<double> ToPeriod(const std::string& option, const std::string& text)
   const std::vector<double> period = ToNumbers(option, text);
   if (period.size() != 3 && period.size() != 6)
   {
-    throw UsageError(
-      option + " needs three lengths, or six bounds x0,x1,y0,y1,z0,z1, not '" + text + "'");
+    throw UsageError(option +
+      " needs three lengths, or six bounds x0,x1,y0,y1,z0,z1, or auto, not '" + text + "'");
   }
   const std::size_t step = period.size() / 3;
   for (std::size_t a = 0; a < 3; ++a)
@@ -286,8 +286,13 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.MaxLevel = ToLevel(n, v); } },
     { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
       [](Options& o, Text n, Text v) { o.Box = ToBox(n, v); } },
-    { "--periodic", "LX,LY,LZ|BOUNDS", "particles repeat; lengths (0: open), or x0,x1,y0,y1,z0,z1",
-      [](Options& o, Text n, Text v) { o.Periodic = ToPeriod(n, v); } },
+    { "--periodic", "LX,LY,LZ|BOUNDS|auto",
+      "particles repeat: lengths (0: open), x0,x1,y0,y1,z0,z1, or as field data say",
+      [](Options& o, Text n, Text v)
+      {
+        o.DetectPeriod = v == "auto";
+        o.Periodic = o.DetectPeriod ? std::vector<double>() : ToPeriod(n, v);
+      } },
     { "--capping", "", "close the surface at periodic sides, around what is above the iso value",
       [](Options& o, Text, Text) { o.Capping = true; } },
     { "--seeds", "pairs|complete", "the paper's seeds, or such that nothing is missed (default)",
@@ -444,7 +449,7 @@ void Check(const CommandLineOptions& options)
   {
     throw UsageError("--screenshot writes a .png file, not '" + options.PictureFile + "'");
   }
-  if (options.Capping && options.Periodic.empty())
+  if (options.Capping && options.Periodic.empty() && !options.DetectPeriod)
   {
     throw UsageError("--capping closes the surface at periodic sides; add --periodic");
   }

@@ -50,6 +50,7 @@ struct CommandLineOptions
   int MaxLevel = 24;            ///< of adaptive cubes
   std::vector<double> Box;      ///< x0, x1, y0, y1, z0, z1; empty: all
   bool Capping = false;
+  bool DetectPeriod = false;    ///< --periodic auto
   std::vector<double> Periodic; ///< three lengths, or bounds like those of Box; empty: open
   bool Preview = false;
   double NodeThreshold = 0.1;

@@ -267,6 +267,10 @@ private:
     {
       warnings.push_back(warning);
     }
+    if (i == 0)
+    {
+      AddHintOfPeriod(this->Options, particles, warnings);
+    }
     WriteFilmSurface(this->Surfaces[i], run.Surface, this->Messages);
     FilmStep step = this->Describe(i);
     step.Statistics = StepAsJson(step, run.Statistics, run.WallSeconds);

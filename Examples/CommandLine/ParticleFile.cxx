@@ -6,6 +6,7 @@
 #include "FileFormat.h"
 #include "MessageCapture.h"
 #include "ParticleParts.h"
+#include "PeriodOfData.h"
 #include "ReadingLimits.h"
 #include "SafeText.h"
 
@@ -272,6 +273,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet*
   {
     particles->GetPointData()->AddArray(arrays->GetAbstractArray(i));
   }
+  PassPeriod(data, particles);
   return particles;
 }
 

@@ -5,6 +5,7 @@
 #include "vtkAbstractArray.h"
 #include "vtkAppendPolyData.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -64,5 +65,6 @@ vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPoin
       joined->GetPointData()->AddArray(array);
     }
   }
+  joined->SetFieldData(parts.front()->GetFieldData());
   return joined;
 }

@@ -4,6 +4,7 @@
 
 #include "CommandLineOptions.h"
 #include "MessageCapture.h"
+#include "PeriodOfData.h"
 #include "SafeText.h"
 #include "WallShare.h"
 
@@ -194,12 +195,12 @@ double BeginOfPeriod(double length, double low, double high)
 void SetPeriod(
   vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
 {
-  std::vector<double> bounds = options.Periodic;
+  std::vector<double> bounds = options.DetectPeriod ? DetectPeriod(particles) : options.Periodic;
   if (bounds.size() == 3)
   {
     double extent[6];
     particles->GetBounds(extent);
-    bounds = BoundsOfPeriod(options.Periodic, extent);
+    bounds = BoundsOfPeriod(bounds, extent);
   }
   if (!bounds.empty())
   {
@@ -317,8 +318,11 @@ void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& option
   vtkPointSet* input, vtkSPHDerivatives* derivatives)
 {
   vtkSmartPointer<vtkPointSet> particles = SetUpParticles(filter, options, input, derivatives);
-  filter->SetInputData(particles);
-  SetPeriod(filter, options, particles);
+  vtkNew<vtkPolyData> bare; // VTK would give the surface the particles' field data
+  bare->SetPoints(particles->GetPoints());
+  bare->GetPointData()->ShallowCopy(particles->GetPointData());
+  filter->SetInputData(bare);
+  SetPeriod(filter, options, input);
   filter->SetInterpolateAttributes(options.Attributes);
   SetSolids(filter, options, particles);
   SetContour(filter, options);
@@ -367,4 +371,16 @@ std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages
   }
   all.front() = "the surface is empty" + (all.front().empty() ? "" : ": " + all.front());
   return all;
+}
+
+//------------------------------------------------------------------------------
+void AddHintOfPeriod(
+  const CommandLineOptions& options, vtkPointSet* particles, std::vector<std::string>& warnings)
+{
+  const std::string hint =
+    options.Periodic.empty() && !options.DetectPeriod ? HintOfPeriod(particles) : "";
+  if (!hint.empty())
+  {
+    warnings.push_back(hint);
+  }
 }

@@ -49,6 +49,10 @@ Run Extract(
 /// What the user should know of a run that went well, one sentence each.
 std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages);
 
+/// Where --periodic is not given, and the particles' field data may tell of a period: that.
+void AddHintOfPeriod(
+  const CommandLineOptions& options, vtkPointSet* particles, std::vector<std::string>& warnings);
+
 /// Where periods of these lengths (0: open) begin and end, for particles within `extent`.
 std::vector<double> BoundsOfPeriod(const std::vector<double>& lengths, const double extent[6]);
 

@@ -105,7 +105,8 @@ void MakeSurface(const CommandLineOptions& options, MessageCapture* messages)
                 << std::flush;
     }
   }
-  const std::vector<std::string> warnings = Warnings(surface, messages);
+  std::vector<std::string> warnings = Warnings(surface, messages);
+  AddHintOfPeriod(options, particles, warnings);
   for (const std::string& warning : warnings)
   {
     Say("warning: " + warning);

@@ -598,6 +598,37 @@ class Options(CommandLineTest):
         self.refuse(self.extract(*free, "--periodic", f"{2 * half!r},0,0", "--capping", "--box", "0,1,0,1,0,1"), 1,
                     "Capping does not go with a box")
 
+    def test_period_of_field_data(self):
+        """Said where it is there, used when asked for."""
+        free, length = ["--free-surface", "--iso", "0.5", "--no-attributes"], 10 * files.SPACING
+        plain = self.input.read_text()
+        self.succeed(*free, "--periodic", f"{length!r},{length!r},0")
+        expected = self.output.read_bytes()
+        box = (-length / 2, length / 2, -length / 2, length / 2, 0.0, 1.5 * length)
+        self.assertNotIn("may be a period", self.extract(*free).stderr)
+        for arrays, bounds, same in (
+                ({"BoxSize": [length, length, 0.0]}, None, True),
+                ({"boxsize": [1.5 * length]}, [-0.75 * length, 0.75 * length] * 3, False),
+                ({"PeriodicBounds": box}, list(box), False),
+                ({"box": box, "boundaryType": [1, 0, 2]}, [*box[:2], 0, 0, 0, 0], False)):
+            data = "".join(f'<DataArray type="Float64" Name="{name}" NumberOfTuples="{len(values)}" format="ascii">'
+                           f'{" ".join(map(repr, values))}</DataArray>' for name, values in arrays.items())
+            self.input.write_text(plain.replace("<PolyData>", f"<PolyData><FieldData>{data}</FieldData>"))
+            hint = self.extract(*free)
+            self.assertRegex(hint.stderr, f"warning: the field data array {next(iter(arrays))} may be a period, .*"
+                             "which was not used; --periodic auto takes it")
+            self.assertNotIn("may be a period", self.extract(*free, "--periodic", "0,0,0").stderr)
+            found = self.succeed(*free, "--periodic", "auto")
+            if bounds:
+                self.assertEqual(found["parameters"]["periodic_bounds"], bounds)
+            self.assertEqual(self.output.read_bytes() == expected, same)
+        self.output.unlink()
+        for wrong in ("box", "BoxSize"):
+            self.input.write_text(plain.replace(
+                "<PolyData>", f'<PolyData><FieldData><DataArray type="Float64" Name="{wrong}" NumberOfTuples="6" '
+                'format="ascii">0 1 0 1 0 1</DataArray></FieldData>'))
+            self.refuse(self.extract(*free, "--periodic", "auto"), 1, "field data tell of no period")
+
     def test_boundary_detection(self):
         cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block
         weight = self.succeed(*cut)

@@ -301,10 +301,31 @@ static void more_leaves_than_the_limit(void** state)
   core_free_set(&set);
 }
 
+/* Each level alone is within the limit. Where they are sparse, bricks that have to be divided because of
+ * others are many more than those that particles divide. */
+static void more_leaves_of_all_levels(void** state)
+{
+  mcor_context* context = *state;
+  mcor_options options;
+  mcor_input input;
+  core_set set = core_make_random(90000, 1, 3e-6, 0.03, 3);
+  measure(context, &set, 24, &options, &input);
+  assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
+  CORE_CHECK(strstr(mcor_last_error(context), "leaves"), "%s", mcor_last_error(context));
+  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
+  {
+    assert_in_range(context->tree.split[l].count, 0, 4000000);
+  }
+  assert_null(context->tree.leaves);
+  mcor_release_tree(&context->tree);
+  context->options = NULL;
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(more_bricks_than_numbers),
-    cmocka_unit_test(more_leaves_than_the_limit),
+    cmocka_unit_test(more_leaves_than_the_limit), cmocka_unit_test(more_leaves_of_all_levels),
     cmocka_unit_test(leaves_are_those_of_the_definition), cmocka_unit_test(order_and_limit),
     cmocka_unit_test(regions), cmocka_unit_test(levels_of_particles) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

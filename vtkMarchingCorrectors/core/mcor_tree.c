@@ -71,6 +71,17 @@ static bool mcor_set_add(mcor_brick_set* set, uint64_t key)
   return true;
 }
 
+/* Whether the sets of all levels together make too many leaves. */
+static bool mcor_are_too_many(const mcor_brick_set* levels)
+{
+  size_t count = 0;
+  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
+  {
+    count += levels[l].count;
+  }
+  return count > MCOR_SPLIT_LIMIT;
+}
+
 static void mcor_set_free(mcor_brick_set* set)
 {
   free(set->slots);
@@ -216,7 +227,8 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
         at[a] = x[a][i] / lattice->cube - (double)lattice->origin[a];
       }
       job->failed[slice] =
-        !mcor_split_reached(job, level, at, h[i] * job->reach, &job->split[slice][level]);
+        !mcor_split_reached(job, level, at, h[i] * job->reach, &job->split[slice][level]) ||
+        mcor_are_too_many(job->split[slice]);
     }
   }
 }
@@ -261,7 +273,8 @@ static bool mcor_split_by_particles(
     made = made && !job->failed[s];
     for (int l = 0; l <= tree->top + 1; ++l)
     {
-      made = made && mcor_set_add_all(&tree->split[l], &job->split[s][l]);
+      made = made && mcor_set_add_all(&tree->split[l], &job->split[s][l]) &&
+        !mcor_are_too_many(tree->split);
       mcor_set_free(&job->split[s][l]);
     }
   }
@@ -403,7 +416,7 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   size_t room = 0;
   for (int l = 1; l <= tree->top && made; ++l)
   {
-    made = mcor_split_above(tree, l);
+    made = mcor_split_above(tree, l) && !mcor_are_too_many(tree->split);
   }
   for (int l = 0; l <= tree->top && made; ++l)
   {

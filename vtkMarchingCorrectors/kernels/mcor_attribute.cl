@@ -15,16 +15,16 @@
 
 /* Writes the Shepard means of the attributes at a group of points; iso as for mcor_evaluate.
  * evaluated: that was last called for these points. */
-void mcor_attribute_group(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
-  real iso, mcor_reach* reach, bool evaluated, MCOR_ATTRIBUTE_PARAMS)
+MCOR_ONE_COPY void mcor_attribute_group(const mcor_grid* grid, mcor_query* query,
+  const mcor_points* points, real iso, mcor_reach* reach, bool evaluated, MCOR_ATTRIBUTE_PARAMS)
 {
   realv sums[MCOR_ATTRIBUTE_LIMIT], w;
   for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c)
   {
     sums[c] = 0;
   }
-  mcor_attribute_sums(grid, query, points, iso, reach, evaluated, attribute_count, stride,
-    attributes, sums, &w);
+  mcor_attribute_sums(
+    grid, query, points, iso, reach, evaluated, attribute_count, stride, attributes, sums, &w);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const real weight = MCOR_GET(w, lane);
@@ -65,7 +65,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
 /* Updates each point's nearest fluid particle from those that reach it, or from all within the
  * query's radius and maybe more. Those that do not reach it may be too far away for positions that
  * count from the query's origin: differences are made first. */
-void mcor_attribute_nearer(
+MCOR_ONE_COPY void mcor_attribute_nearer(
   const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {
   mcor_tile tile;

@@ -37,7 +37,7 @@ int mcor_brick_number(MCOR_BLOCK_PARAMS, int x, int y, int z)
 
 /* The same for a brick beside another one, with number `own`: mostly in the same block. x, y, z: -1
  * to 1. */
-int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
+MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
 {
   const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
   return (bx | by | bz) >> 3 == 0
@@ -57,7 +57,7 @@ int mcor_slot_of_number(__global const uint* brick_bits, __global const int* bri
 }
 
 /* Slot of a brick, or -1. */
-int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
+MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
 {
   return mcor_slot_of_number(brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, x, y, z));
 }
@@ -72,7 +72,7 @@ int4 mcor_block_of_key(ulong key, const int blocks_x, const int blocks_y)
 }
 
 /* Brick coordinates of number m. */
-int4 mcor_brick_of_number(
+MCOR_ONE_COPY int4 mcor_brick_of_number(
   __global const ulong* block_keys, const int blocks_x, const int blocks_y, int m)
 {
   const int local_brick = m % MCOR_BLOCK_BRICKS;
@@ -264,7 +264,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
 #endif
 
 /* Gathers a mask of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
-void mcor_brick_masks(
+MCOR_ONE_COPY void mcor_brick_masks(
   __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)
 {
   out[0] = masks[slot];

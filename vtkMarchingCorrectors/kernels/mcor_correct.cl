@@ -45,8 +45,9 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
 
 /* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight; where there
  * are solids, the fluid's part of the weight goes with the gradient. */
-void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int lane, int v,
-  __global real4* offset, __global real* value, __global real4* gradient, __global real* weight)
+MCOR_ONE_COPY void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int lane,
+  int v, __global real4* offset, __global real* value, __global real4* gradient,
+  __global real* weight)
 {
   offset[v] =
     (real4)(MCOR_GET(points->ox, lane), MCOR_GET(points->oy, lane), MCOR_GET(points->oz, lane), 0);
@@ -86,7 +87,7 @@ typedef struct
 #define MCOR_EDGE_SLACK ((real)0.15f)
 
 /* Loads group number `group` of edges: their lower nodes, and ends. */
-void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int group,
+MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int group,
   __global const int4* vertex_edge, __global const real* vertex_ends, mcor_edges* edges,
   mcor_points* points)
 {

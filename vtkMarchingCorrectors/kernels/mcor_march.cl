@@ -73,7 +73,7 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* evalu
 
 /* From node masks of a brick and its upper neighbours: mask c becomes that of each cell's corner c
  * (bits x, y, z). */
-void mcor_cell_corners(ulong* m)
+MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
 {
   for (int i = 0; i < 8; i += 2)
   {
@@ -154,7 +154,7 @@ int mcor_march_case(const ulong* corners, int cell)
 /* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below
  * in the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
  * neighbours. */
-void mcor_march_around(const ulong* m, int axis, ulong* q)
+MCOR_ONE_COPY void mcor_march_around(const ulong* m, int axis, ulong* q)
 {
   q[0] = m[0];
   if (axis == 0)

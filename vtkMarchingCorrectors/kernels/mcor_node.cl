@@ -38,7 +38,7 @@ void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
 
 /* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on. share: of
  * each particle's support. */
-mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float share)
+MCOR_ONE_COPY mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float share)
 {
   const int corner[3] = { brick.x * MCOR_BRICK + (first & 3),
     brick.y * MCOR_BRICK + (first >> 2 & 3), brick.z * MCOR_BRICK + (first >> 4) };

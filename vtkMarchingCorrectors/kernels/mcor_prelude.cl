@@ -27,6 +27,14 @@
  * choose between them. */
 #pragma OPENCL FP_CONTRACT OFF
 
+/* Of functions called in several places, and seldom for one particle: a compiler for CPUs makes a copy for
+ * each call else, in each kernel anew, and its time is the first surface's. */
+#if MCOR_LANES == 1
+#define MCOR_ONE_COPY
+#else
+#define MCOR_ONE_COPY __attribute__((noinline))
+#endif
+
 #define MCOR_CAT_(a, b) a##b
 #define MCOR_CAT(a, b) MCOR_CAT_(a, b)
 
@@ -144,7 +152,7 @@ int mcor_ctz(ulong m)
 }
 
 /* Index of the first of the sorted keys [low, high) that is not below `key`, or `high`. */
-int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
+MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
 {
   while (low < high)
   {
@@ -163,7 +171,7 @@ int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
 
 /* Monotone in x, so that the cells of lo and hi enclose those of everything in between. Every period is
  * divided alike, so that sums, whose order is that of the cells, are the same a period away. */
-int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
+MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
 {
   const fix period = (fix)level->period[axis];
   if (period == 0)

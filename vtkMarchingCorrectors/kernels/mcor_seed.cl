@@ -76,7 +76,7 @@ int mcor_query_side_flags(
 }
 
 /* The query for a cube of nodes, `cubes` long, from the first one of a brick on. */
-mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
+MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
 {
   mcor_query query;
   query.radius = -1;

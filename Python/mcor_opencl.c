@@ -130,6 +130,13 @@ static void mcor_find_platforms(void)
   {
     mcor_add_vendors();
   }
+  /* Of a process that one with a driver of its own has started. */
+  const char* inherited = getenv("MCOR_OPENCL_DRIVER");
+  if (inherited && *inherited)
+  {
+    mcor_own_loaded = 1;
+    mcor_add_driver(inherited);
+  }
 }
 
 void mcor_opencl_set_driver(const char* path)

@@ -150,6 +150,8 @@ def start(wanted=""):
         asked = "pocl" in wanted.lower() and "portable computing" not in _list().lower()
         if lib.mcor_opencl_use_driver(int(asked)):
             _give_pocl_a_linker()
+            # The process that compiles kernels beside this one lists devices as this one does.
+            os.environ["MCOR_OPENCL_DRIVER"] = pocl_library() or ""
 
 
 def _list():

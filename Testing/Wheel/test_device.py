@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -49,6 +50,30 @@ class Test(unittest.TestCase):
                               env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.assertEqual(done.returncode, 0, done.stdout)
         return done.stdout.splitlines()
+
+    def test_second_process(self):
+        """It is started, and compiles for the extra's PoCL."""
+        if (os.cpu_count() or 1) < 2:
+            self.skipTest("it takes two processors")
+        cache, other = Path(self.folder.name) / "pocl", Path(self.folder.name) / "other"
+        *_, package, driver = self.run_it(
+            system=False, POCL_CACHE_DIR=str(cache),
+            after="import os; print(_library.__file__, os.environ['MCOR_OPENCL_DRIVER'], sep='\\n')")
+        self.assertTrue(list(cache.glob("marching-correctors-*.ready")))
+        other.mkdir()
+        folder = Path(package).parent
+        variables = {**os.environ, "OCL_ICD_VENDORS": f"{self.folder.name}/empty", "POCL_CACHE_DIR": str(other),
+                     "MCOR_OPENCL_DRIVER": driver, "PATH": f"{folder / 'linker'}:/nonexistent"}
+        with subprocess.Popen([folder / "marching-correctors-compile"], stdin=subprocess.PIPE,
+                              env=variables) as process:
+            process.stdin.write(b"0\n0 2 0 0\n0 1 0 mcor_march_bits\n")
+            process.stdin.flush()
+            for _ in range(1200):
+                if list(other.rglob("mcor_march_bits.so")):
+                    break
+                time.sleep(0.1)
+            self.assertTrue(list(other.rglob("mcor_march_bits.so")))
+            process.stdin.close()
 
     def test_extra_where_the_system_has_none(self):
         """With no program on the PATH, above all no linker; then a system's device gives the same bits."""

@@ -359,6 +359,8 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Cube Size Mode: " << (this->CubeSizeMode == ADAPTIVE ? "adaptive" : "uniform")
      << "\n";
   os << indent << "Cube Level Limit: " << this->CubeLevelLimit << "\n";
+  os << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles")
+     << "\n";
   os << indent << "Use Box: " << this->UseBox << "\n";
   const auto printSides = [&](const char* name, const double(&sides)[6])
   {

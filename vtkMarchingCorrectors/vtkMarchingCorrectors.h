@@ -73,7 +73,8 @@
  * among them, particles travel to where they are needed, and each process gets the part of the surface
  * in its share of space, to the last bit as one process would make it. "GlobalPointIds" are the numbers
  * that points have there: merged by these, the parts are that surface. Field data are of the whole;
- * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated",
+ * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankWork" and
+ * "RankWorkByParticles" (where work was expected), "RankNodesEvaluated",
  * "RankTriangles" and "RankSeconds", one component for each process. An error of one is an error of all.
  * Composite data have the same number of blocks on all.
  *
@@ -304,6 +305,23 @@ public:
   void SetCubeSizeModeToAdaptive() { this->SetCubeSizeMode(ADAPTIVE); }
   vtkSetClampMacro(CubeLevelLimit, int, 0, 24);
   vtkGetMacro(CubeLevelLimit, int);
+  ///@}
+
+  ///@{
+  /**
+   * How space is divided where processes share a surface, see SetController(): so that each has as
+   * many particles (BY_PARTICLES, the default), or as much work as can be expected (BY_WORK): surface
+   * costs more than what is within the fluid. The surface is the same, to the last bit.
+   */
+  enum PartitionType
+  {
+    BY_PARTICLES = 0,
+    BY_WORK
+  };
+  vtkSetClampMacro(Partition, int, BY_PARTICLES, BY_WORK);
+  vtkGetMacro(Partition, int);
+  void SetPartitionToByParticles() { this->SetPartition(BY_PARTICLES); }
+  void SetPartitionToByWork() { this->SetPartition(BY_WORK); }
   ///@}
 
   ///@{
@@ -623,6 +641,7 @@ protected:
   int SeedMode = COMPLETE;
   int CubeSizeMode = UNIFORM;
   int CubeLevelLimit = 24;
+  int Partition = BY_PARTICLES;
   int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
   vtkTypeBool Trim = 1;

@@ -19,6 +19,7 @@
 #include "vtkSPHRanksPoints.h"
 #include "vtkSPHRanksRoute.h"
 #include "vtkSPHRanksStatistics.h"
+#include "vtkSPHRanksWork.h"
 
 #include <algorithm>
 #include <cmath>
@@ -155,7 +156,13 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   {
     return;
   }
-  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals);
+  vtkSPHRanksBalance balance;
+  if (this->Partition == BY_WORK)
+  {
+    balance.HasWork = true;
+    balance.Work = vtkSPHExpectWork(ranks, mine.Core, options, globals);
+  }
+  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
   const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
   this->FillChoice(choice, near);
   vtkMarchingCorrectorsInput input(choice, near);
@@ -189,7 +196,8 @@ void vtkMarchingCorrectors::FinishTogether(
   const vtkSmartPointer<vtkIdTypeArray> numbers = vtkSPHNumberPoints(ranks, surface, points);
   const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks,
     { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
-      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent() });
+      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work,
+      run.Route.WorkBefore });
   surface.statistics = vtkSPHMergeShares(shares);
   std::int64_t triangles = 0;
   for (const vtkSPHRanksShare& share : shares)

@@ -39,8 +39,10 @@ double ValueOf(const mcor_array& array, vtkIdType i)
   return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
                                     : static_cast<const double*>(array.data)[i];
 }
+}
 
-double ScalarOf(const mcor_input& core, vtkIdType particle)
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsScalarOf(const mcor_input& core, vtkIdType particle)
 {
   const int components = core.scalar.components;
   const vtkIdType first = particle * components;
@@ -56,6 +58,11 @@ double ScalarOf(const mcor_input& core, vtkIdType particle)
   }
   return core.scalar_dot.data ? sum : std::sqrt(sum);
 }
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsPositionOf(const mcor_input& core, vtkIdType particle, int axis)
+{
+  return ValueOf(core.positions, 3 * particle + axis);
 }
 
 //------------------------------------------------------------------------------
@@ -132,7 +139,8 @@ bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2])
       Range& local = ranges.Local();
       for (vtkIdType i = begin; i < end; ++i)
       {
-        const double value = core.solid && core.solid[i] ? none : ScalarOf(core, i);
+        const double value =
+          core.solid && core.solid[i] ? none : vtkMarchingCorrectorsScalarOf(core, i);
         if (std::isfinite(value))
         {
           local = { { std::min(local[0], value), std::max(local[1], value) } };
@@ -160,7 +168,7 @@ std::vector<double> vtkMarchingCorrectorsFluidValues(const mcor_input& core)
     {
       for (vtkIdType i = begin; i < end; ++i)
       {
-        values[static_cast<size_t>(i)] = ScalarOf(core, i);
+        values[static_cast<size_t>(i)] = vtkMarchingCorrectorsScalarOf(core, i);
       }
     });
   size_t count = 0;

@@ -26,6 +26,10 @@ vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std
 /** How often each value occurs in an array of one component; empty if there are more than `most`. */
 std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most);
 
+/** What is contoured at a particle; and where that is along an axis. */
+double vtkMarchingCorrectorsScalarOf(const mcor_input& core, vtkIdType particle);
+double vtkMarchingCorrectorsPositionOf(const mcor_input& core, vtkIdType particle, int axis);
+
 /** The finite values of what is contoured at fluid particles, in no order. */
 std::vector<double> vtkMarchingCorrectorsFluidValues(const mcor_input& core);
 

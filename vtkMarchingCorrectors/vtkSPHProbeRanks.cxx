@@ -184,7 +184,7 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
   options.has_box = 1;
   FindBox(ranks, places, MarginCubes * globals.cube_size, options.box);
   const vtkSPHRanksRoute route =
-    vtkSPHFindRoute(ranks, mine.Core, options, globals, ListPlaces(places));
+    vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, ListPlaces(places) });
   const auto count = static_cast<std::size_t>(ranks.GetCount());
   std::vector<std::vector<vtkIdType>> to(count), home(count);
   for (std::size_t i = 0; i < numbers.size(); ++i)

@@ -82,6 +82,43 @@ public:
     return isIn;
   }
 
+  std::shared_ptr<const vtkSPHRanksPartition> Divide(
+    vtkSPHRanks& ranks, const vtkSPHRanksBalance& balance) const
+  {
+    std::vector<vtkSPHRanksPlace> places = balance.Others;
+    for (std::int64_t i = 0; i < this->Input.count; ++i)
+    {
+      vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, 1 };
+      this->Place(i, place.At);
+      if (this->IsInWhole(place.At))
+      {
+        place.Work = balance.HasWork ? balance.Work[static_cast<std::size_t>(i)] : 1;
+        places.push_back(place);
+      }
+    }
+    return std::make_shared<vtkSPHRanksPartition>(
+      ranks, this->Whole, std::move(places), BrickCubes * this->Globals.cube_size);
+  }
+
+  /** All ranks' particles' work in this rank's box. */
+  std::int64_t SumWork(vtkSPHRanks& ranks, const vtkSPHRanksPartition& partition,
+    const std::vector<std::int64_t>& work) const
+  {
+    std::vector<std::int64_t> sums(static_cast<std::size_t>(ranks.GetCount()), 0);
+    for (std::int64_t i = 0; i < this->Input.count; ++i)
+    {
+      double at[3];
+      this->Place(i, at);
+      if (this->IsInWhole(at))
+      {
+        sums[static_cast<std::size_t>(partition.FindOwner(at))] +=
+          work[static_cast<std::size_t>(i)];
+      }
+    }
+    ranks.Reduce(vtkSPHRanks::SUM, sums.data(), ranks.GetCount());
+    return sums[static_cast<std::size_t>(ranks.GetRank())];
+  }
+
   /** Scaled support radius. */
   double SupportOf(std::int64_t i) const
   {
@@ -175,24 +212,18 @@ public:
 
 //------------------------------------------------------------------------------
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
-  const mcor_options& options, const mcor_globals& globals,
-  const std::vector<vtkSPHRanksPlace>& others)
+  const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {
   const Router router(input, options, globals);
-  std::vector<vtkSPHRanksPlace> places = others;
-  for (std::int64_t i = 0; i < input.count; ++i)
-  {
-    vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, 1 };
-    router.Place(i, place.At);
-    if (router.IsInWhole(place.At))
-    {
-      places.push_back(place);
-    }
-  }
   vtkSPHRanksRoute route;
-  route.Partition = std::make_shared<vtkSPHRanksPartition>(
-    ranks, router.Whole, std::move(places), BrickCubes * globals.cube_size);
+  route.Partition = router.Divide(ranks, balance);
   const vtkSPHRanksPartition& partition = *route.Partition;
+  route.Work = route.WorkBefore = 0;
+  if (balance.HasWork)
+  {
+    route.Work = router.SumWork(ranks, partition, balance.Work);
+    route.WorkBefore = router.SumWork(ranks, *router.Divide(ranks, {}), balance.Work);
+  }
   const std::vector<double> radii = router.FindRadii(ranks, partition);
   const double widest = *std::max_element(radii.begin(), radii.end());
   const auto count = static_cast<std::size_t>(ranks.GetCount());

@@ -24,15 +24,24 @@ struct vtkSPHRanksRoute
   std::int64_t OwnedParticles;            ///< those in its box
   std::int64_t Particles;                 ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
+  std::int64_t Work;       ///< expected in its box; 0 where that was not asked for
+  std::int64_t WorkBefore; ///< the same, if boxes had as many particles each
+};
+
+/** What is divided evenly. */
+struct vtkSPHRanksBalance
+{
+  bool HasWork = false;                 ///< on all ranks alike; else particles are
+  std::vector<std::int64_t> Work;       ///< of each particle
+  std::vector<vtkSPHRanksPlace> Others; ///< of this rank's, beside the particles
 };
 
 /**
- * Divides space by particles, and finds for each particle the ranks whose boxes it reaches, by its own
- * smoothing length. `input` are this rank's particles, `globals` those of all. `others`: what else,
- * of this rank's, is to be divided evenly. Collective.
+ * Divides space evenly, and finds for each particle the ranks whose boxes it reaches, by its own
+ * smoothing length. `input` are this rank's particles, `globals` those of all. Collective.
  */
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals,
-  const std::vector<vtkSPHRanksPlace>& others = {});
+  const vtkSPHRanksBalance& balance = vtkSPHRanksBalance());
 
 #endif

@@ -282,6 +282,11 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) {
         o.Cubes = ToChoice(n, v, { "uniform", "adaptive" });
       } },
+    { "--partition", "HOW",
+      "processes of mpirun have as many particles each, or as much work (default particles)",
+      [](Options& o, Text n, Text v) {
+        o.Partition = ToChoice(n, v, { "particles", "work" });
+      } },
     { "--max-level", "N", "adaptive cubes are up to 2^N times as large, 0 to 24 (default 24)",
       [](Options& o, Text n, Text v) { o.MaxLevel = ToLevel(n, v); } },
     { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",

@@ -35,8 +35,8 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected",
   "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax",
   "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
-  "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated", "RankTriangles",
-  "RankSeconds" };
+  "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankWorkByParticles",
+  "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

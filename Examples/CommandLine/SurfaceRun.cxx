@@ -135,6 +135,8 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
   filter->SetCubeSizeMode(
     options.Cubes == "adaptive" ? vtkMarchingCorrectors::ADAPTIVE : vtkMarchingCorrectors::UNIFORM);
   filter->SetCubeLevelLimit(options.MaxLevel);
+  filter->SetPartition(options.Partition == "work" ? vtkMarchingCorrectors::BY_WORK
+                                                   : vtkMarchingCorrectors::BY_PARTICLES);
   filter->SetUseBox(!options.Box.empty());
   if (!options.Box.empty())
   {

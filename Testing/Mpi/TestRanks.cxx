@@ -102,6 +102,12 @@ const std::vector<Case> Cases = {
       f->UseBoxOn();
       f->SetBox(0.0, 3.0, 0.0, 0.96, 0.0, 0.96);
     } },
+  { "by work", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourSpeed(f);
+      f->SetPartitionToByWork();
+    } },
   { "pairs", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
     {

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRanksWork.h"
+
+#include "vtkMarchingCorrectorsValues.h"
+#include "vtkSPHRanks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+/** Cells of the coarse grid. */
+constexpr double CellLimit = 1 << 18;
+
+/** Their edge in median smoothing lengths, where there are not too many of them. */
+constexpr double CellLengths = 2.0;
+
+/** What a cube of the surface costs: so many times what a particle does. */
+constexpr double CubeWork = 40.0;
+
+/** A cell has far fewer particles than another: less than one in so many. */
+constexpr std::int64_t FarFewer = 4;
+
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+class CoarseGrid
+{
+public:
+  CoarseGrid(const mcor_input& input, const mcor_options& options, const mcor_globals& globals)
+    : Input(input)
+    , Options(options)
+    , Globals(globals)
+  {
+    this->Edge = CellLengths * globals.smoothing_length_median;
+    double cells = 0.0;
+    for (this->Edge = std::max(this->Edge, globals.cube_size); cells == 0.0 || cells > CellLimit;
+         this->Edge *= cells > CellLimit ? 1.25 : 1.0)
+    {
+      cells = 1.0;
+      for (int a = 0; a < 3; ++a)
+      {
+        cells *= std::floor((globals.fluid_high[a] - globals.fluid_low[a]) / this->Edge) + 1.0;
+      }
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Size[a] =
+        static_cast<int>((globals.fluid_high[a] - globals.fluid_low[a]) / this->Edge) + 1;
+    }
+    const auto count = static_cast<std::size_t>(this->Size[0]) *
+      static_cast<std::size_t>(this->Size[1]) * static_cast<std::size_t>(this->Size[2]);
+    this->Counts.assign(count, 0);
+    this->Low.assign(count, Infinity);
+    this->High.assign(count, Infinity); // negated
+  }
+
+  /** Tells the cells of this rank's particles, then of all ranks'. */
+  void Fill(vtkSPHRanks& ranks)
+  {
+    const bool hasValues = this->Options.field != MCOR_WEIGHT_SUM;
+    for (std::int64_t i = 0; i < this->Input.count; ++i)
+    {
+      if (!this->Input.solid || !this->Input.solid[i])
+      {
+        const std::size_t cell = this->Find(i);
+        ++this->Counts[cell];
+        const double value = hasValues ? vtkMarchingCorrectorsScalarOf(this->Input, i) : 0.0;
+        this->Low[cell] = std::min(this->Low[cell], value);
+        this->High[cell] = std::min(this->High[cell], -value);
+      }
+    }
+    const int count = static_cast<int>(this->Counts.size());
+    ranks.Reduce(vtkSPHRanks::SUM, this->Counts.data(), count);
+    if (hasValues)
+    {
+      ranks.Reduce(vtkSPHRanks::LEAST, this->Low.data(), count);
+      ranks.Reduce(vtkSPHRanks::LEAST, this->High.data(), count);
+    }
+  }
+
+  /** What each particle of a cell stands for. */
+  std::vector<std::int64_t> Share() const
+  {
+    const double across = this->Edge / this->Globals.cube_size;
+    std::vector<std::int64_t> shares(this->Counts.size(), 1);
+    std::size_t cell = 0;
+    for (int z = 0; z < this->Size[2]; ++z)
+    {
+      for (int y = 0; y < this->Size[1]; ++y)
+      {
+        for (int x = 0; x < this->Size[0]; ++x, ++cell)
+        {
+          if (this->Counts[cell] > 0)
+          {
+            const int at[3] = { x, y, z };
+            const double work = this->CountSurfaces(cell, at) * CubeWork * across * across;
+            shares[cell] += static_cast<std::int64_t>(
+              std::min(work / static_cast<double>(this->Counts[cell]), 1e9));
+          }
+        }
+      }
+    }
+    return shares;
+  }
+
+  std::size_t Find(std::int64_t i) const
+  {
+    std::size_t cell = 0;
+    for (int a = 2; a >= 0; --a)
+    {
+      const double at =
+        (vtkMarchingCorrectorsPositionOf(this->Input, i, a) - this->Globals.fluid_low[a]) /
+        this->Edge;
+      const double within = std::min(std::max(std::floor(at), 0.0), this->Size[a] - 1.0);
+      cell = cell * static_cast<std::size_t>(this->Size[a]) + static_cast<std::size_t>(within);
+    }
+    return cell;
+  }
+
+private:
+  /** How many surfaces pass through a cell, as far as it and the six around it tell. */
+  int CountSurfaces(std::size_t cell, const int at[3]) const
+  {
+    double low = this->Low[cell], high = -this->High[cell];
+    bool isAtEnd = false;
+    std::size_t stride = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      for (int step = -1; step <= 1; step += 2)
+      {
+        const bool isIn = at[a] + step >= 0 && at[a] + step < this->Size[a];
+        const std::size_t other = step < 0 ? cell - stride : cell + stride;
+        isAtEnd = isAtEnd || !isIn || FarFewer * this->Counts[other] < this->Counts[cell];
+        low = isIn ? std::min(low, this->Low[other]) : low;
+        high = isIn ? std::max(high, -this->High[other]) : high;
+      }
+      stride *= static_cast<std::size_t>(this->Size[a]);
+    }
+    if (this->Options.field == MCOR_WEIGHT_SUM)
+    {
+      return isAtEnd ? this->Options.iso_count : 0;
+    }
+    return static_cast<int>(
+      std::count_if(this->Options.iso_values, this->Options.iso_values + this->Options.iso_count,
+        [low, high](double iso) { return low <= iso && iso <= high; }));
+  }
+
+  const mcor_input& Input;
+  const mcor_options& Options;
+  const mcor_globals& Globals;
+  double Edge;
+  int Size[3];
+  std::vector<std::int64_t> Counts;
+  std::vector<double> Low, High;
+};
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals)
+{
+  CoarseGrid grid(input, options, globals);
+  grid.Fill(ranks);
+  const std::vector<std::int64_t> shares = grid.Share();
+  std::vector<std::int64_t> work(static_cast<std::size_t>(input.count), 1);
+  for (std::int64_t i = 0; i < input.count; ++i)
+  {
+    if (!input.solid || !input.solid[i])
+    {
+      work[static_cast<std::size_t>(i)] = shares[grid.Find(i)];
+    }
+  }
+  return work;
+}

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: how much work a surface will be, before it is made.
+ */
+#ifndef vtkSPHRanksWork_h
+#define vtkSPHRanksWork_h
+
+#include "mcor.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkSPHRanks;
+
+/**
+ * Of each of this rank's particles, the work that it stands for: 1, and where the surface is expected a
+ * share of what that costs. The surface is expected in cells of a coarse grid, whose number does not
+ * grow with the particles, around which values are on both sides of an iso value; the free surface in
+ * those beside which there are far fewer particles. The same to the last bit however particles are
+ * strewn over ranks. Collective.
+ */
+std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals);
+
+#endif

@@ -179,9 +179,11 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   mcor_surface surface = {};
   const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
     &surface, mcor_free_surface);
-  if (this->CallCoreTogether(ranks, input, boxed,
-        [&](mcor_context* context)
-        { return mcor_extract(context, &input.Core, &boxed, &surface); }))
+  if (this->CallCoreTogether(
+        ranks, input, boxed,
+        [&](mcor_context* context) { return mcor_extract(context, &input.Core, &boxed, &surface); },
+        [&route](const double at[3], double reach, std::vector<int>& found)
+        { route.FindReached(at, reach, found); }))
   {
     this->FinishTogether(ranks, { input, options, route, surface, counts[0] }, output);
   }

@@ -392,9 +392,10 @@ bool vtkSPHAlgorithm::CallCore(
 #if MCOR_HAS_RANKS
 //------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& particles,
-  mcor_options& options, const std::function<int(mcor_context*)>& call)
+  mcor_options& options, const std::function<int(mcor_context*)>& call,
+  const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
 {
-  vtkSPHRanksCalls calls(ranks);
+  vtkSPHRanksCalls calls(ranks, near);
   options.ranks = calls.Get();
   std::string message;
   const int status = this->RunCore(particles, options, call, message);

@@ -357,10 +357,13 @@ protected:
   bool IsShared() const;
 
   /**
-   * CallCore() on all ranks together: where it fails on one of them, all say so.
+   * CallCore() on all ranks together: where it fails on one of them, all say so. `near` lists the
+   * ranks that have to do with what is within `reach` of a place; empty: all.
    */
   bool CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& particles, mcor_options& options,
-    const std::function<int(mcor_context*)>& call);
+    const std::function<int(mcor_context*)>& call,
+    const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near =
+      nullptr);
 
   void FillChoice(vtkSPHParticlesChoice& choice) const;
   void FillOptions(mcor_options& options) const;

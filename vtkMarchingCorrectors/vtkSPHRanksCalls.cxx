@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksCalls.h"
 
+#include <utility>
+
 namespace
 {
 vtkSPHRanks::Operation OperationOf(mcor_reduction reduction)
@@ -13,13 +15,15 @@ vtkSPHRanks::Operation OperationOf(mcor_reduction reduction)
 }
 
 //------------------------------------------------------------------------------
-vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks)
+vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near)
   : Ranks(ranks)
+  , Near(std::move(near))
 {
   this->Core.user = this;
   this->Core.reduce_doubles = ReduceDoubles;
   this->Core.reduce_counts = ReduceCounts;
   this->Core.gather = Gather;
+  this->Core.pass = this->Near ? Pass : nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -78,13 +82,48 @@ int vtkSPHRanksCalls::Gather(void* user, const void* records, std::int64_t count
   }
   const auto* first = static_cast<const char*>(records);
   const std::size_t size = static_cast<std::size_t>(count) * width;
-  self->Gathered.clear();
-  for (const vtkSPHRanks::Bytes& theirs :
-    self->Ranks.Gather(vtkSPHRanks::Bytes(first, first + (first ? size : 0))))
+  return self->Deliver(self->Ranks.Gather(vtkSPHRanks::Bytes(first, first + (first ? size : 0))),
+    width, all, allCount);
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, std::size_t width,
+  const double* places, double reach, const void** all, std::int64_t* allCount)
+{
+  auto* self = static_cast<vtkSPHRanksCalls*>(user);
+  if (!self->AllGoOn(true))
   {
-    self->Gathered.insert(self->Gathered.end(), theirs.begin(), theirs.end());
+    return 1;
   }
-  *all = self->Gathered.data();
-  *allCount = static_cast<std::int64_t>(self->Gathered.size() / width);
+  std::vector<vtkSPHRanks::Bytes> messages(static_cast<std::size_t>(self->Ranks.GetCount()));
+  const auto* record = static_cast<const char*>(records);
+  std::vector<int> found;
+  for (std::int64_t i = 0; i < count; ++i, record += width)
+  {
+    self->Near(places + 3 * i, reach, found);
+    found.push_back(self->Ranks.GetRank());
+    for (const int rank : found)
+    {
+      if (rank != self->Ranks.GetRank() || &rank == &found.back())
+      {
+        vtkSPHRanks::Bytes& message = messages[static_cast<std::size_t>(rank)];
+        message.insert(message.end(), record, record + width);
+      }
+    }
+  }
+  return self->Deliver(self->Ranks.Exchange(std::move(messages)), width, all, allCount);
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHRanksCalls::Deliver(const std::vector<vtkSPHRanks::Bytes>& received, std::size_t width,
+  const void** all, std::int64_t* allCount)
+{
+  this->Gathered.clear();
+  for (const vtkSPHRanks::Bytes& theirs : received)
+  {
+    this->Gathered.insert(this->Gathered.end(), theirs.begin(), theirs.end());
+  }
+  *all = this->Gathered.data();
+  *allCount = static_cast<std::int64_t>(this->Gathered.size() / width);
   return 0;
 }

@@ -10,10 +10,17 @@
 #include "mcor.h"
 #include "vtkSPHRanks.h"
 
+#include <functional>
+#include <vector>
+
 class vtkSPHRanksCalls
 {
 public:
-  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks);
+  /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
+  using Finder = std::function<void(const double at[3], double reach, std::vector<int>& found)>;
+
+  /** `near`: empty where all are near. */
+  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near = nullptr);
 
   /** For mcor_options, during one call of the core. */
   const mcor_ranks* Get() const { return &this->Core; }
@@ -34,7 +41,13 @@ private:
   static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
     const void** all, std::int64_t* allCount);
 
+  static int Pass(void* user, const void* records, std::int64_t count, std::size_t width,
+    const double* places, double reach, const void** all, std::int64_t* allCount);
+  int Deliver(const std::vector<vtkSPHRanks::Bytes>& received, std::size_t width, const void** all,
+    std::int64_t* allCount);
+
   vtkSPHRanks& Ranks;
+  const Finder Near;
   mcor_ranks Core = {};
   bool Stopped = false;
   vtkSPHRanks::Bytes Gathered;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace
 using Bytes = vtkSPHRanks::Bytes;
 using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 
-constexpr std::size_t Samples = 64; // of each rank, for each rank
+/** Of all ranks' keys, for each range that a rank sorts: ranges are even up to about an eighth. */
+constexpr std::int64_t Samples = 64;
 
 template <typename T>
 Bytes Pack(const T* first, const T* last)
@@ -34,22 +36,28 @@ std::vector<T> Unpack(const Bytes& bytes)
 std::vector<Key> FindEnds(vtkSPHRanks& ranks, const std::vector<Key>& keys)
 {
   const auto count = static_cast<std::size_t>(ranks.GetCount());
+  const auto own = static_cast<std::int64_t>(keys.size());
+  std::int64_t all = own;
+  ranks.Reduce(vtkSPHRanks::SUM, &all, 1);
+  const auto wanted =
+    static_cast<std::size_t>(std::ceil(static_cast<double>(Samples * ranks.GetCount()) *
+      static_cast<double>(own) / static_cast<double>(std::max<std::int64_t>(all, 1))));
   std::vector<Key> samples;
-  for (std::size_t i = 0; i < Samples * count && !keys.empty(); ++i)
+  for (std::size_t i = 0; i < wanted; ++i)
   {
-    samples.push_back(keys[i * keys.size() / (Samples * count)]);
+    samples.push_back(keys[i * keys.size() / wanted]);
   }
-  std::vector<Key> all;
+  std::vector<Key> sampled;
   for (const Bytes& bytes : ranks.Gather(Pack(samples.data(), samples.data() + samples.size())))
   {
     const std::vector<Key> theirs = Unpack<Key>(bytes);
-    all.insert(all.end(), theirs.begin(), theirs.end());
+    sampled.insert(sampled.end(), theirs.begin(), theirs.end());
   }
-  std::sort(all.begin(), all.end());
+  std::sort(sampled.begin(), sampled.end());
   std::vector<Key> ends;
-  for (std::size_t rank = 1; rank < count && !all.empty(); ++rank)
+  for (std::size_t rank = 1; rank < count && !sampled.empty(); ++rank)
   {
-    ends.push_back(all[rank * all.size() / count]);
+    ends.push_back(sampled[rank * sampled.size() / count]);
   }
   return ends;
 }

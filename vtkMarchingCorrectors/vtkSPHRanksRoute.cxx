@@ -26,6 +26,43 @@ double ValueOf(const mcor_array& array, std::int64_t i)
                                     : static_cast<const double*>(array.data)[i];
 }
 
+std::size_t Side(int axis)
+{
+  return static_cast<std::size_t>(2 * axis);
+}
+
+/** The ranks whose boxes are within `reach` of a place or an image of it. */
+void FindBoxes(const vtkSPHRanksPartition& partition, const double period[3], const double at[3],
+  double reach, std::vector<int>& found)
+{
+  int last[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    // The core refuses supports of more than two periods.
+    const double periods = period[a] > 0.0 ? std::ceil(reach / period[a]) : 0.0;
+    last[a] = static_cast<int>(std::min(periods, 3.0));
+  }
+  found.clear();
+  for (int z = -last[2]; z <= last[2]; ++z)
+  {
+    for (int y = -last[1]; y <= last[1]; ++y)
+    {
+      for (int x = -last[0]; x <= last[0]; ++x)
+      {
+        const int image[3] = { x, y, z };
+        vtkSPHRanksBox box;
+        for (int a = 0; a < 3; ++a)
+        {
+          const double place = at[a] + image[a] * period[a];
+          box[Side(a)] = place - reach;
+          box[Side(a) + 1] = place + reach;
+        }
+        partition.FindOverlaps(box, found);
+      }
+    }
+  }
+}
+
 class Router
 {
 public:
@@ -55,8 +92,6 @@ public:
       this->Whole[Side(a) + 1] = high;
     }
   }
-
-  static std::size_t Side(int axis) { return static_cast<std::size_t>(2 * axis); }
 
   /** Where a particle is, within the first period. */
   void Place(std::int64_t i, double at[3]) const
@@ -132,33 +167,7 @@ public:
   void FindReached(const vtkSPHRanksPartition& partition, const double at[3], double radius,
     std::vector<int>& found) const
   {
-    const double reach = radius + MarginCubes * this->Globals.cube_size;
-    int last[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      // The core refuses supports of more than two periods.
-      const double periods = this->Period[a] > 0.0 ? std::ceil(reach / this->Period[a]) : 0.0;
-      last[a] = static_cast<int>(std::min(periods, 3.0));
-    }
-    found.clear();
-    for (int z = -last[2]; z <= last[2]; ++z)
-    {
-      for (int y = -last[1]; y <= last[1]; ++y)
-      {
-        for (int x = -last[0]; x <= last[0]; ++x)
-        {
-          const int image[3] = { x, y, z };
-          vtkSPHRanksBox box;
-          for (int a = 0; a < 3; ++a)
-          {
-            const double place = at[a] + image[a] * this->Period[a];
-            box[Side(a)] = place - reach;
-            box[Side(a) + 1] = place + reach;
-          }
-          partition.FindOverlaps(box, found);
-        }
-      }
-    }
+    FindBoxes(partition, this->Period, at, radius + MarginCubes * this->Globals.cube_size, found);
   }
 
   /**
@@ -211,12 +220,19 @@ public:
 }
 
 //------------------------------------------------------------------------------
+void vtkSPHRanksRoute::FindReached(const double at[3], double reach, std::vector<int>& found) const
+{
+  FindBoxes(*this->Partition, this->Period, at, reach, found);
+}
+
+//------------------------------------------------------------------------------
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {
   const Router router(input, options, globals);
   vtkSPHRanksRoute route;
   route.Partition = router.Divide(ranks, balance);
+  std::copy(router.Period, router.Period + 3, route.Period);
   const vtkSPHRanksPartition& partition = *route.Partition;
   route.Work = route.WorkBefore = 0;
   if (balance.HasWork)

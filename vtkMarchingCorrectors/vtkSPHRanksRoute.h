@@ -19,11 +19,15 @@ class vtkSPHRanks;
 /** To whom this rank's particles go, and what this rank will have. */
 struct vtkSPHRanksRoute
 {
+  /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
+  void FindReached(const double at[3], double reach, std::vector<int>& found) const;
+
   std::vector<std::vector<vtkIdType>> To; ///< indices of the particles that each rank gets
   double Box[6];                          ///< this rank's, as in mcor_options; may hold nothing
   std::int64_t OwnedParticles;            ///< those in its box
   std::int64_t Particles;                 ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
+  double Period[3];        ///< 0: open
   std::int64_t Work;       ///< expected in its box; 0 where that was not asked for
   std::int64_t WorkBefore; ///< the same, if boxes had as many particles each
 };

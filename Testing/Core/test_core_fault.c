@@ -118,7 +118,7 @@ static int gather(void* user, const void* records, int64_t count, size_t width, 
   return callbacks++ == fail_callback;
 }
 
-static const mcor_ranks alone = { reduce_doubles, reduce_counts, gather, NULL };
+static const mcor_ranks alone = { reduce_doubles, reduce_counts, gather, NULL, NULL };
 
 /* What a rank does: measures with all others, then extracts its box, and cells grow from box to box. */
 static mcor_status extract_as_rank(

@@ -229,6 +229,11 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
+    /* The same of records that matter near their places alone, [count][3] in L: of all ranks' records at
+     * least those within `reach` of this rank's box, along each axis, or of images of it; those of this
+     * rank, too. May be NULL: gather is called instead. */
+    int (*pass)(void* user, const void* records, int64_t count, size_t width, const double* places,
+      double reach, const void** all, int64_t* all_count);
   } mcor_ranks;
 
   typedef struct mcor_options

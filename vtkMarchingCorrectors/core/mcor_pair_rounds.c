@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The cells of pairs [III-C] grow across the sides of boxes, and of periods, in rounds: when a box has
- * grown to its end, cells near its sides that are new are told to all boxes, which go on from those in
+ * grown to its end, cells near its sides that are new are told to the boxes there, which go on from those in
  * them and in the ring around them, until none is new anywhere. Then each box has, of its cells and its
  * ring, those that one run over all would have examined: a step of growth begins in a used cell, whose
  * box has right values at its nodes, and ends in a cell of that box or of its ring. */
@@ -188,6 +188,25 @@ static mcor_status mcor_hear_cells(
   return status;
 }
 
+/* Tells other boxes, and hears from them, of new cells. */
+static mcor_status mcor_tell_cells(
+  mcor_context* context, const mcor_cell_list* list, const void** all, int64_t* count)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  double* places = malloc(((size_t)list->count + 1) * 3 * sizeof *places);
+  MCOR_RETURN_IF(!places, context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld cells ran out.",
+    (long long)list->count);
+  for (int64_t i = 0; i < 3 * list->count; ++i)
+  {
+    places[i] = ((double)list->cells[i / 3].at[i % 3] + 0.5) * lattice->cube;
+  }
+  /* Boxes' sides are rounded to cells. */
+  const mcor_status status = mcor_pass(context, list->cells, list->count, sizeof *list->cells,
+    places, (MCOR_BOX_RING + 1) * lattice->cube, all, count);
+  free(places);
+  return status;
+}
+
 mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
 {
   mcor_cell_list list = { 0 };
@@ -201,7 +220,7 @@ mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
   mcor_status status = mcor_list_new_cells(context, &list);
   if (status == MCOR_OK)
   {
-    status = mcor_gather(context, list.cells, list.count, sizeof *list.cells, &all, &count);
+    status = mcor_tell_cells(context, &list, &all, &count);
   }
   if (status == MCOR_OK && context->grid.count > 0)
   {

@@ -15,6 +15,10 @@ mcor_status mcor_reduce_counts(
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count);
 
+/* Of all ranks' records at least those within `reach` of where this one's box is; see mcor_ranks. */
+mcor_status mcor_pass(mcor_context* context, const void* records, int64_t count, size_t width,
+  const double* places, double reach, const void** all, int64_t* all_count);
+
 /* The least and the greatest over ranks, one number. */
 mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value);
 mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value);

@@ -34,10 +34,10 @@ mcor_common_packages() {
     xvfb xauth libgl1-mesa-dri
 }
 
-# python3-venv: for the wheel's tests, which fetch the rest from PyPI.
+# python3-venv: for the wheel's tests, which fetch the rest from PyPI. gdb: for the stacks of what stands still.
 # Mesa's OpenCL on the CPU compiles as GPUs' drivers do. The simulator of a device: that of Debian 12 is known to do; elsewhere its test is left out.
 mcor_test_packages() {
-  echo libcmocka-dev mesa-opencl-icd python3-venv mpi-default-bin
+  echo libcmocka-dev mesa-opencl-icd python3-venv mpi-default-bin gdb
   if [ "$(. /etc/os-release && echo "${VERSION_ID:-0}")" -eq 12 ]; then echo oclgrind; fi
 }
 

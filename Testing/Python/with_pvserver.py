@@ -9,6 +9,10 @@ The client finds HOST:PORT in MCOR_TEST_SERVER. What the server writes goes to a
 something fails: a pipe that nobody reads would fill up and stop the server. After SECONDS both are
 ended, with their stacks shown where gdb is there; then this waits for ctest, which is to count it as a
 test whose time ran out: see TIMEOUT_AFTER_MATCH.
+
+What to look for in the stacks: ParaView handles SIGTERM and crashes by writing its own stack, for which it
+calls malloc(). A signal that comes within malloc() or free() waits for its own lock then, for ever: a
+crash, or "timeout" without -k, looks like a standstill. The signal's place is below "signal handler called".
 """
 import os
 import shutil

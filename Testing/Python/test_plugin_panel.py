@@ -103,10 +103,14 @@ def later_applies(folder):
     ]
 
 
+SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange")  # how names begin of what the panel shows
+
+
 def properties(file):
-    """Of the filter in a saved state: a list of values each."""
+    """What a user may set of the filter in a saved state: a list of values each."""
     proxy = xml.parse(file).find(".//Proxy[@type='MarchingCorrectors']")
-    return {p.get("name"): [e.get("value") for e in p.findall("Element")] for p in proxy.findall("Property")}
+    return {p.get("name"): [e.get("value") for e in p.findall("Element")] for p in proxy.findall("Property")
+            if not p.get("name").startswith(SHOWN)}
 
 
 def differing(states, one, other):

@@ -349,10 +349,34 @@ static void test_odd_points(void** state)
   core_free_set(&set);
 }
 
+/* A weight of exactly the threshold is enough. */
+static void test_threshold_itself(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(3, 0.2, 5, core_slope);
+  const double at[3] = { 0.3, -0.2, 0.1 };
+  const mcor_input input = core_input(&set);
+  const mcor_array points = core_array(at, 3);
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  mcor_samples samples;
+  CORE_OK(context, mcor_probe(context, &input, &options, &points, 1, &samples));
+  const double weight = samples.weight_sum[0];
+  mcor_free_samples(&samples);
+  for (int above = 0; above < 2; ++above)
+  {
+    options.node_threshold = above ? nextafter(weight, 9) : weight;
+    CORE_OK(context, mcor_probe(context, &input, &options, &points, 1, &samples));
+    assert_int_equal(samples.valid[0], !above);
+    mcor_free_samples(&samples);
+  }
+  core_free_set(&set);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_against_oracle),
-    cmocka_unit_test(test_wide_range_against_oracle),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_threshold_itself),
+    cmocka_unit_test(test_against_oracle), cmocka_unit_test(test_wide_range_against_oracle),
     cmocka_unit_test(test_bits_do_not_depend_on_other_points),
     cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

@@ -271,25 +271,9 @@ static mcor_status mcor_check_scalar(
                                 : MCOR_OK;
 }
 
-mcor_status mcor_check_input(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+static mcor_status mcor_check_particles(mcor_context* context, const mcor_input* input)
 {
-  MCOR_TRY(mcor_check_options(context, options));
-  MCOR_TRY(mcor_check_period(context, options));
-  MCOR_TRY(mcor_check_capping(context, options));
-  MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
-    context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
-    input->attributes ? "" : ", but their list is NULL");
-  MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
-    MCOR_OUT_OF_CAPACITY, "There are %lld particles; %d is the limit.", (long long)input->count,
-    MCOR_PARTICLE_LIMIT);
-  if (input->count == 0)
-  {
-    return MCOR_OK;
-  }
   const int64_t n = input->count;
-  MCOR_RETURN_IF(
-    !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
   mcor_array positions = input->positions;
   positions.components = 3;
   MCOR_TRY(mcor_check_array(context, &positions, NULL, "position", n, 3, false));
@@ -312,6 +296,32 @@ mcor_status mcor_check_input(
     {
       MCOR_TRY(mcor_check_array(context, &input->density, NULL, "density", n, 1, true));
     }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_check_input(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  MCOR_TRY(mcor_check_options(context, options));
+  MCOR_TRY(mcor_check_period(context, options));
+  MCOR_TRY(mcor_check_capping(context, options));
+  MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
+    context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
+    input->attributes ? "" : ", but their list is NULL");
+  MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
+    MCOR_OUT_OF_CAPACITY, "There are %lld particles; %d is the limit.", (long long)input->count,
+    MCOR_PARTICLE_LIMIT);
+  if (input->count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_RETURN_IF(
+    !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
+  /* Those of a search grid that holds have been checked before. */
+  if (!context->grid_valid || !mcor_same_particles(input, &context->last_input))
+  {
+    MCOR_TRY(mcor_check_particles(context, input));
   }
   MCOR_TRY(mcor_check_scalar(context, input, options));
   for (int a = 0; a < input->attribute_count; ++a)

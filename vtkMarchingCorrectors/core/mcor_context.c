@@ -112,6 +112,20 @@ static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
     (a->data || a->constant == b->constant);
 }
 
+bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
+{
+  return input->particles_version != 0 && input->particles_version == last->particles_version &&
+    input->count == last->count &&
+    mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
+    input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
+    input->estimate_smoothing_length == last->estimate_smoothing_length &&
+    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
+    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
+    mcor_same_array(&input->density, &last->density) &&
+    mcor_same_array(&input->volume, &last->volume) &&
+    (input->solid == NULL) == (last->solid == NULL);
+}
+
 /* Whether the same particles and images reach the box, and as much is needed of them. */
 static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
 {
@@ -131,16 +145,7 @@ static void mcor_check_reuse(
 {
   const mcor_input* last = &context->last_input;
   const mcor_options* o = &context->last_options;
-  const bool particles = input->particles_version != 0 &&
-    input->particles_version == last->particles_version && input->count == last->count &&
-    mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
-    input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
-    input->estimate_smoothing_length == last->estimate_smoothing_length &&
-    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
-    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
-    mcor_same_array(&input->density, &last->density) &&
-    mcor_same_array(&input->volume, &last->volume) &&
-    (input->solid == NULL) == (last->solid == NULL);
+  const bool particles = mcor_same_particles(input, last);
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&

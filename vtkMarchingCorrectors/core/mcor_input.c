@@ -9,9 +9,28 @@
 #include <math.h>
 #include <string.h>
 
+/* Compilers vectorise these where they know the stride. */
+static inline void mcor_read_floats(const float* data, int64_t stride, int count, double* out)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    out[i] = (double)data[i * stride];
+  }
+}
+
+static inline void mcor_read_doubles(const double* data, int64_t stride, int count, double* out)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    out[i] = data[i * stride];
+  }
+}
+
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out)
 {
   const int64_t stride = mcor_components(array), begin = first * stride + component;
+  const float* floats = array->data;
+  const double* doubles = array->data;
   if (!array->data)
   {
     for (int i = 0; i < count; ++i)
@@ -21,19 +40,19 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
   }
   else if (array->type == MCOR_FLOAT64)
   {
-    const double* data = (const double*)array->data + begin;
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] = data[i * stride];
-    }
+    mcor_read_doubles(doubles + begin, stride, count, out);
+  }
+  else if (stride == 1)
+  {
+    mcor_read_floats(floats + begin, 1, count, out);
+  }
+  else if (stride == 3)
+  {
+    mcor_read_floats(floats + begin, 3, count, out);
   }
   else
   {
-    const float* data = (const float*)array->data + begin;
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] = (double)data[i * stride];
-    }
+    mcor_read_floats(floats + begin, stride, count, out);
   }
 }
 

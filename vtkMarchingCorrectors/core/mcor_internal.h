@@ -371,6 +371,9 @@ mcor_status mcor_report_launch(mcor_context* context);
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 
+/* mcor_context.c. Whether the caller's version stands for the same particles as in the last call. */
+bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
+
 /* mcor_check.c, mcor_measure.c */
 mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);

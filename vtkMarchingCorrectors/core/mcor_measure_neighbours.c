@@ -28,10 +28,12 @@ struct mcor_watch
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
 };
 
-static int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
+/* Written to be vectorised. */
+static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
 {
   const double cell = (x - watch->low[axis]) * watch->cells_per_length[axis];
-  return cell > 0 ? (cell < MCOR_WATCH_CELLS ? (int)cell : MCOR_WATCH_CELLS - 1) : 0;
+  const double above = cell > 0 ? cell : 0;
+  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
 }
 
 static mcor_status mcor_choose_watched(
@@ -110,17 +112,20 @@ static void mcor_watch_particle(mcor_watch* watch, int slice, uint32_t reached, 
 
 void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
 {
+  int cell[MCOR_CHUNK] = { 0 };
+  for (int a = 2; a >= 0; --a)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      cell[i] = cell[i] * MCOR_WATCH_CELLS + mcor_watch_cell(watch, a, x[a][i]);
+    }
+  }
   for (int i = 0; i < count; ++i)
   {
-    const double at[3] = { x[0][i], x[1][i], x[2][i] };
-    int cell = 0;
-    for (int a = 2; a >= 0; --a)
+    if (watch->reached[cell[i]])
     {
-      cell = cell * MCOR_WATCH_CELLS + mcor_watch_cell(watch, a, at[a]);
-    }
-    if (watch->reached[cell])
-    {
-      mcor_watch_particle(watch, slice, watch->reached[cell], at);
+      const double at[3] = { x[0][i], x[1][i], x[2][i] };
+      mcor_watch_particle(watch, slice, watch->reached[cell[i]], at);
     }
   }
 }

@@ -44,53 +44,105 @@ typedef struct mcor_probe_job
   double threshold;
 } mcor_probe_job;
 
-/* Component c of those on the device at point i of the batch, which is the caller's point `to`. */
-static void mcor_put_sample(const mcor_probe_job* job, int64_t i, int c, double weight, int64_t to)
+/* A part of the batch's points: their weights, and where they go. */
+typedef struct mcor_probe_chunk
+{
+  int64_t first;
+  int count;
+  double weight[MCOR_CHUNK];
+  int64_t to[MCOR_CHUNK];
+  bool valid[MCOR_CHUNK];
+} mcor_probe_chunk;
+
+static void mcor_put_weights(const mcor_probe_job* job, mcor_probe_chunk* chunk)
+{
+  const mcor_probe_run* run = job->run;
+  const mcor_context* context = run->context;
+  const cl_int* order = (const cl_int*)job->views.order + chunk->first;
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const int64_t to = run->first + order[i];
+    const double weight = mcor_get_real(context, job->views.weight, chunk->first + i);
+    const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
+    chunk->weight[i] = weight;
+    chunk->to[i] = to;
+    chunk->valid[i] = valid;
+    run->samples->weight_sum[to] = weight;
+    run->samples->valid[to] = valid;
+    for (int a = 0; a < 3 && run->samples->weight_gradient; ++a)
+    {
+      run->samples->weight_gradient[3 * to + a] =
+        mcor_get_real(context, job->views.weight_gradient, 3 * (chunk->first + i) + a) /
+        context->lattice.cube;
+    }
+  }
+}
+
+/* Component c of those on the device; the scale, a power of 2, divides exactly. */
+static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
 {
   const mcor_context* context = job->run->context;
   const mcor_attributes* attributes = &context->attributes;
   const mcor_component* component = &attributes->varying[attributes->first + c];
-  const mcor_samples* samples = job->run->samples;
   const int width = mcor_components(&job->run->input->attributes[component->attribute]);
-  const int64_t at = i * attributes->count + c, element = to * width + component->component;
+  const double shift = component->shift, unscale = 1 / component->scale;
   const bool is_sum = job->run->is_sum;
-  const double sum = mcor_get_real(context, job->views.sums, at);
-  const double mean = sum / weight;
-  samples->values[component->attribute][element] = is_sum
-    ? sum / component->scale + component->shift * weight
-    : mean / component->scale + component->shift;
-  for (int a = 0; a < 3 && samples->gradients; ++a)
+  double* values = job->run->samples->values[component->attribute] + component->component;
+  for (int i = 0; i < chunk->count; ++i)
   {
+    if (chunk->valid[i])
+    {
+      const double sum =
+        mcor_get_real(context, job->views.sums, (chunk->first + i) * attributes->count + c);
+      const double weight = chunk->weight[i];
+      values[chunk->to[i] * width] =
+        is_sum ? sum * unscale + shift * weight : sum / weight * unscale + shift;
+    }
+  }
+}
+
+/* Its gradient. */
+static void mcor_put_gradients(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
+{
+  const mcor_context* context = job->run->context;
+  const mcor_attributes* attributes = &context->attributes;
+  const mcor_component* component = &attributes->varying[attributes->first + c];
+  const int width = mcor_components(&job->run->input->attributes[component->attribute]);
+  double* gradients = job->run->samples->gradients[component->attribute];
+  for (int i = 0; i < 3 * chunk->count; ++i)
+  {
+    const int p = i / 3, a = i % 3;
+    const int64_t point = chunk->first + p, at = point * attributes->count + c;
+    const double weight = chunk->weight[p];
+    const double mean = mcor_get_real(context, job->views.sums, at) / weight;
     const double slope = mcor_get_real(context, job->views.gradients, 3 * at + a);
-    const double weight_slope = mcor_get_real(context, job->views.weight_gradient, 3 * i + a);
-    samples->gradients[component->attribute][3 * element + a] =
-      (is_sum ? slope / component->scale + component->shift * weight_slope
-              : (slope - mean * weight_slope) / weight / component->scale) /
-      context->lattice.cube;
+    const double weight_slope = mcor_get_real(context, job->views.weight_gradient, 3 * point + a);
+    if (chunk->valid[p])
+    {
+      gradients[3 * (chunk->to[p] * width + component->component) + a] =
+        (job->run->is_sum ? slope / component->scale + component->shift * weight_slope
+                          : (slope - mean * weight_slope) / weight / component->scale) /
+        context->lattice.cube;
+    }
   }
 }
 
 static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_probe_job* job = data;
-  const mcor_probe_run* run = job->run;
-  const mcor_context* context = run->context;
-  const cl_int* order = job->views.order;
-  for (int64_t i = first; i < last; ++i)
+  mcor_probe_chunk chunk;
+  for (chunk.first = first; chunk.first < last; chunk.first += MCOR_CHUNK)
   {
-    const int64_t to = run->first + order[i];
-    const double weight = mcor_get_real(context, job->views.weight, i);
-    const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
-    run->samples->weight_sum[to] = weight;
-    run->samples->valid[to] = valid;
-    for (int a = 0; a < 3 && run->samples->weight_gradient; ++a)
+    const int64_t rest = last - chunk.first;
+    chunk.count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    mcor_put_weights(job, &chunk);
+    for (int c = 0; c < job->run->context->attributes.count; ++c)
     {
-      run->samples->weight_gradient[3 * to + a] =
-        mcor_get_real(context, job->views.weight_gradient, 3 * i + a) / context->lattice.cube;
-    }
-    for (int c = 0; c < context->attributes.count && valid; ++c)
-    {
-      mcor_put_sample(job, i, c, weight, to);
+      mcor_put_values(job, &chunk, c);
+      if (job->run->samples->gradients)
+      {
+        mcor_put_gradients(job, &chunk, c);
+      }
     }
   }
   (void)slice;

@@ -63,61 +63,81 @@ void mcor_bound_by_box(mcor_context* context, const mcor_options* options)
   context->box.of_points = true;
 }
 
-/* Whether point i of the caller's is where particles may reach it; then its node and offset. */
-static bool mcor_locate_point(
-  const mcor_probe_run* run, int64_t i, int64_t node[3], double offset[3])
+/* A batch's points on their way to the device, and what each slice of them found. */
+typedef struct mcor_point_job
+{
+  const mcor_probe_run* run;
+  bool single;         /* precision */
+  void *node, *offset; /* views */
+  int inside[MCOR_SLICES];
+  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
+} mcor_point_job;
+
+/* Where points [first, first + count) of the batch are, from the lattice's origin, in cubes. */
+static void mcor_read_points(
+  const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
 {
   const mcor_lattice* lattice = &run->context->lattice;
   mcor_array points = *run->points;
   points.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    const double x = mcor_array_at(&points, i, a) / lattice->cube - (double)lattice->origin[a];
-    if (!(x >= (double)lattice->first[a] && x <= (double)lattice->last[a]))
+    const double origin = (double)lattice->origin[a];
+    mcor_read_array(&points, run->first + first, count, a, at[a]);
+    for (int i = 0; i < count; ++i)
     {
-      return false;
+      at[a][i] = at[a][i] / lattice->cube - origin;
     }
-    node[a] = (int64_t)x;
-    offset[a] = x - (double)node[a];
   }
-  return true;
 }
 
-/* A batch's points on their way to the device, and what each slice of them found. */
-typedef struct mcor_point_job
+/* The node and the offset of a point; node -1 where no particle may reach it. Returns whether one may. */
+static bool mcor_put_point(
+  const mcor_point_job* job, int64_t i, const double at[3][MCOR_CHUNK], int in_chunk)
 {
-  const mcor_probe_run* run;
-  void *node, *offset; /* views */
-  int inside[MCOR_SLICES];
-  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
-} mcor_point_job;
+  const mcor_lattice* lattice = &job->run->context->lattice;
+  bool located = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double x = at[a][in_chunk];
+    located = located && x >= (double)lattice->first[a] && x <= (double)lattice->last[a];
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const double x = located ? at[a][in_chunk] : -1;
+    const cl_int node = (cl_int)x;
+    ((cl_int*)job->node)[4 * i + a] = node;
+    if (job->single)
+    {
+      ((float*)job->offset)[4 * i + a] = (float)(x - node);
+    }
+    else
+    {
+      ((double*)job->offset)[4 * i + a] = x - node;
+    }
+  }
+  return located;
+}
 
 static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_point_job* job = data;
-  const mcor_probe_run* run = job->run;
-  const bool single = run->context->cl.real_size == sizeof(float);
   cl_int low[3] = { CL_INT_MAX, CL_INT_MAX, CL_INT_MAX }, high[3] = { 0 };
+  double at[3][MCOR_CHUNK];
   int inside = 0;
-  for (int64_t i = first; i < last; ++i)
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    int64_t node[3] = { -1, -1, -1 };
-    double offset[3] = { 0 };
-    const bool located = mcor_locate_point(run, run->first + i, node, offset);
-    inside += located;
-    for (int a = 0; a < 3; ++a)
+    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    mcor_read_points(job->run, begin, count, at);
+    for (int i = 0; i < count; ++i)
     {
-      const cl_int n = located ? (cl_int)node[a] : -1;
-      ((cl_int*)job->node)[4 * i + a] = n;
-      low[a] = located && n < low[a] ? n : low[a];
-      high[a] = n > high[a] ? n : high[a];
-      if (single)
+      const bool located = mcor_put_point(job, begin + i, (const double(*)[MCOR_CHUNK])at, i);
+      const cl_int* node = (const cl_int*)job->node + 4 * (begin + i);
+      inside += located;
+      for (int a = 0; a < 3; ++a)
       {
-        ((float*)job->offset)[4 * i + a] = (float)offset[a];
-      }
-      else
-      {
-        ((double*)job->offset)[4 * i + a] = offset[a];
+        low[a] = located && node[a] < low[a] ? node[a] : low[a];
+        high[a] = node[a] > high[a] ? node[a] : high[a];
       }
     }
   }
@@ -151,7 +171,7 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
 {
   mcor_context* context = run->context;
   const size_t n = (size_t)(last - first), real = context->cl.real_size;
-  mcor_point_job job = { .run = run };
+  mcor_point_job job = { .run = run, .single = real == sizeof(float) };
   MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
   mcor_status status =

@@ -313,19 +313,37 @@ static void mcor_store_stage_chunk(const mcor_context* context, const mcor_input
   memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
 }
 
+/* Marks the particles of a chunk that cannot reach anything, by one look at each coordinate: most of
+ * those that the exact look at images would find. */
+static void mcor_find_far(const mcor_reach_box* reach, const mcor_stage_chunk* chunk, uint8_t* far)
+{
+  memset(far, 0, (size_t)chunk->count);
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = reach->low[a] - reach->radius - 1, high = reach->high[a] + reach->radius + 1;
+    for (int i = 0; i < chunk->count && reach->period[a] == 0; ++i)
+    {
+      const double at = chunk->x[a][i] * reach->unit, support = chunk->h[i] * reach->support;
+      far[i] |= (at + support < low) | (at - support > high);
+    }
+  }
+}
+
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
   int64_t used = 0;
   mcor_stage_chunk chunk;
+  uint8_t far[MCOR_CHUNK];
   for (int64_t begin = first; begin < last && job->reach; begin += MCOR_CHUNK)
   {
     chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
     mcor_read_stage_places(job->context, job->input, begin, job->reach, &chunk);
+    mcor_find_far(job->reach, &chunk, far);
     for (int i = 0; i < chunk.count; ++i)
     {
       mcor_images images;
-      const int count = mcor_images_of(job, &chunk, i, &images);
+      const int count = far[i] ? 0 : mcor_images_of(job, &chunk, i, &images);
       job->images[begin + i] = count > 0;
       used += count;
     }
@@ -394,19 +412,37 @@ static void mcor_stage_images(
   mcor_stage_chunk_at(job, slice, &out, to);
 }
 
+/* Particles that are read along with those that are staged rather than jumped over. */
+#define MCOR_STAGE_GAP 8
+
+/* The next run of particles to be read at once, from *begin on; returns its length, at the end 0. */
+static int mcor_next_run(const mcor_stage_job* job, int64_t* begin, int64_t last)
+{
+  const uint8_t* images = job->images;
+  if (!images)
+  {
+    return last - *begin < MCOR_CHUNK ? (int)(last - *begin) : MCOR_CHUNK;
+  }
+  const uint8_t* next = *begin < last ? memchr(images + *begin, 1, (size_t)(last - *begin)) : NULL;
+  *begin = next ? next - images : last;
+  int count = 0;
+  for (int i = 0; i < MCOR_CHUNK && *begin + i < last && i - count < MCOR_STAGE_GAP; ++i)
+  {
+    count = images[*begin + i] ? i + 1 : count;
+  }
+  return count;
+}
+
 static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
   int64_t to = job->to[slice];
   mcor_stage_chunk chunk;
   job->heavy[slice] = -1;
-  for (int64_t begin = first; begin < last && job->heavy[slice] < 0; begin += MCOR_CHUNK)
+  int64_t begin = first;
+  while (job->heavy[slice] < 0 && (chunk.count = mcor_next_run(job, &begin, last)) > 0)
   {
-    chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-    if (job->reach && !memchr(job->images + begin, 1, (size_t)chunk.count))
-    {
-      continue;
-    }
+    const int read = chunk.count;
     mcor_read_stage_chunk(job->context, job->input, begin, job->staging, job->reach, &chunk);
     if (job->input->solid || job->reach)
     {
@@ -416,6 +452,7 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
     {
       mcor_stage_chunk_at(job, slice, &chunk, &to);
     }
+    begin += read;
   }
 }
 

@@ -103,29 +103,49 @@ typedef struct
   real of[MCOR_ATTRIBUTE_LIMIT][MCOR_TILE_SIZE + 16];
 } mcor_cluster_values;
 
-/* Sets the weights of the listed particles at a group's points, and adds them, and the first `step`
+/* Where a group's points are from particle i of a tile. */
+void mcor_cluster_from(
+  const mcor_tile* tile, int i, const mcor_points* points, const realv at[3], realv d[3])
+{
+  mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
+}
+
+/* Adds the weights of the listed particles at a group's points, and the first `step`
  * arrays times them, in one loop: each sum alone would wait for its last addition. `step` is a
- * constant. */
+ * constant. keep: the weights are asked for. */
 __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   const mcor_points* points, const realv at[3], const mcor_cluster_values* values, const int* list,
-  int count, const int step, realv* weight, realv* weight_sum, realv* sums)
+  int count, const int step, bool keep, realv* weight, realv* weight_sum, realv* sums)
 {
   realv d[3], along[3], slope, w = *weight_sum, s[MCOR_ATTRIBUTE_STEP];
   for (int c = 0; c < step; ++c)
   {
     s[c] = sums[c];
   }
-  for (int k = 0; k < count; ++k)
+  for (int begin = 0; begin < count; begin += MCOR_STEP)
   {
-    const int i = list[k];
-    mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
-    const mcor_length length = mcor_length_of(d);
-    weight[k] =
-      tile->weight[i] * mcor_weight_gradient(d, &length, (realv)(tile->inv_h[i]), &slope, along);
-    w += weight[k];
-    for (int c = 0; c < step; ++c)
+    mcor_length length[MCOR_STEP];
+    const int end = min(begin + MCOR_STEP, count);
+    for (int k = begin; k < end; ++k)
     {
-      s[c] = MCOR_FMA(weight[k], values->of[c][i], s[c]);
+      mcor_cluster_from(tile, list[k], points, at, d);
+      length[k - begin] = mcor_length_of(d);
+    }
+    for (int k = begin; k < end; ++k)
+    {
+      const int i = list[k];
+      mcor_cluster_from(tile, i, points, at, d); /* again: to keep it takes longer */
+      const realv v = tile->weight[i] *
+        mcor_weight_gradient(d, length + (k - begin), (realv)(tile->inv_h[i]), &slope, along);
+      w += v;
+      for (int c = 0; c < step; ++c)
+      {
+        s[c] = MCOR_FMA(v, values->of[c][i], s[c]);
+      }
+      if (keep)
+      {
+        weight[k] = v;
+      }
     }
   }
   *weight_sum = w;
@@ -145,11 +165,12 @@ void mcor_cluster_add(const mcor_grid* grid, const mcor_query* query, const mcor
   mcor_points_relative(grid, query, points, at);
   const int count = mcor_cluster_list(tile, points, at, list);
   const int step = arrays < MCOR_ATTRIBUTE_STEP ? min(arrays, 1) : MCOR_ATTRIBUTE_STEP;
-  step == 0 ? mcor_cluster_begin(tile, points, at, values, list, count, 0, weight, weight_sum, sums)
-    : step == 1
-    ? mcor_cluster_begin(tile, points, at, values, list, count, 1, weight, weight_sum, sums)
-    : mcor_cluster_begin(
-        tile, points, at, values, list, count, MCOR_ATTRIBUTE_STEP, weight, weight_sum, sums);
+#define MCOR_CLUSTER_BEGIN(step)                                                                   \
+  mcor_cluster_begin(                                                                              \
+    tile, points, at, values, list, count, step, arrays > step, weight, weight_sum, sums)
+  step == 0     ? MCOR_CLUSTER_BEGIN(0)
+    : step == 1 ? MCOR_CLUSTER_BEGIN(1)
+                : MCOR_CLUSTER_BEGIN(MCOR_ATTRIBUTE_STEP);
   for (int c = step; c < arrays; ++c)
   {
     realv s = sums[c];

@@ -126,8 +126,8 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     ? MCOR_BOUNDARY_EIGENVALUE
     : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->Trim ? this->VertexThreshold : 0.0;
-  options.wall_share =
-    this->EndAtSolids && (this->Trim || this->FreeSurface) ? this->WallShare : 0.0;
+  const double share = this->WallShare == 0.0 ? MCOR_WALL_SHARE_MEASURED : this->WallShare;
+  options.wall_share = this->EndAtSolids && (this->Trim || this->FreeSurface) ? share : 0.0;
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;

@@ -461,9 +461,11 @@ public:
 
   ///@{
   /**
-   * For SOLIDS_WALL, above 0 and below 1. 0.5 by default: where solids weigh more than the fluid,
-   * about half way between the wall's and the fluid's particles. More is farther into the wall: about
-   * 0.85 is on particles that lie on the wall's surface in one layer.
+   * For SOLIDS_WALL, below 1. 0, the default: measured, as the solids' share at those solids that face the
+   * fluid, in the median, so that the surface of a scalar ends there; the free surface, which keeps in
+   * front of them, takes 0.5. With 0.5 it ends where solids weigh more than the fluid, about half way
+   * between the wall's and the fluid's particles. More is farther into the wall. The output field data
+   * has the one in use.
    */
   vtkSetMacro(WallShare, double);
   vtkGetMacro(WallShare, double);
@@ -649,7 +651,7 @@ protected:
   int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;
   bool EndAtSolids = false;
-  double WallShare = 0.5;
+  double WallShare = 0.0;
 
   vtkTypeBool ComputeNormals = 1;
   vtkTypeBool ComputeGradients = 0;

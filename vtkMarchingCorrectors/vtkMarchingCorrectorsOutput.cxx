@@ -313,7 +313,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   {
     vtkSPHAddReal(fieldData, "FluidValue", { this->Input.Choice.FluidValue });
     vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
-    vtkSPHAddReal(fieldData, "WallShare", { o.wall_share });
+    vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
   }
   vtkSPHAddText(fieldData, "Kernel", mcor_sph_kernel_name(o.sph_kernel));
   vtkSPHAddText(fieldData, "SeedMode", o.seeds == MCOR_PAIRS ? "pairs" : "complete");

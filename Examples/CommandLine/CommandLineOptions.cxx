@@ -264,7 +264,7 @@ const std::vector<Option>& AllOptions()
         o.Solids = ToChoice(n, v, { "weight", "ignore", "wall" });
       } },
     { "--wall-share", "S|measured",
-      "with --solids wall: their share of the weight there (default 0.5), or that at the walls",
+      "with --solids wall: their share of the weight there (default: as measured at the walls)",
       [](Options& o, Text n, Text v) { o.WallShare = ToShare(n, v); } },
 
     { "", "", "The method", {} },
@@ -461,10 +461,6 @@ void Check(const CommandLineOptions& options)
   if (options.FreeSurface && !options.Scalar.empty())
   {
     throw UsageError("--free-surface contours the weight sum; leave out --scalar");
-  }
-  if (options.FreeSurface && options.WallShare == 0.0)
-  {
-    throw UsageError("--wall-share measured is for a scalar; with --free-surface give a number");
   }
   if (!options.FreeSurface && options.Scalar.empty())
   {

@@ -36,7 +36,7 @@ struct CommandLineOptions
   double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
   double CoefH = 1.0;
   std::string Solids = "weight";
-  double WallShare = 0.5; ///< 0: measured
+  double WallShare = 0.0; ///< 0: measured
 
   std::string Kernel = "cubic";
   std::string Field = "shepard";

@@ -206,9 +206,8 @@ void WriteSetting(JsonText& json, const CommandLineOptions& options, vtkFieldDat
     json.Value("solids", options.Solids);
     if (options.Solids == "wall")
     {
-      vtkDataArray* measured = run->GetArray("WallShare");
-      const bool isMeasured = options.WallShare == 0.0 && measured;
-      json.Value("wall_share", isMeasured ? measured->GetComponent(0, 0) : options.WallShare);
+      vtkDataArray* used = run->GetArray("WallShare");
+      json.Value("wall_share", used ? used->GetComponent(0, 0) : options.WallShare);
     }
     json.End();
   }

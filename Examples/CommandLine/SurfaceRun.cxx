@@ -6,7 +6,6 @@
 #include "MessageCapture.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
-#include "WallShare.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkMarchingCorrectors.h"
@@ -77,14 +76,12 @@ void SetParticles(
   filter->SetHScaleFactor(options.HScale);
 }
 
-void SetSolids(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
+void SetSolids(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
 {
   filter->SetSolids(options.Solids == "wall" ? vtkMarchingCorrectors::SOLIDS_WALL
       : options.Solids == "ignore"           ? vtkMarchingCorrectors::SOLIDS_IGNORE
                                              : vtkMarchingCorrectors::SOLIDS_WEIGHT);
-  const bool measured = options.Solids == "wall" && options.WallShare == 0.0;
-  filter->SetWallShare(measured ? MeasureWallShare(options, particles) : options.WallShare);
+  filter->SetWallShare(options.WallShare);
 }
 
 void SetDevice(vtkSPHAlgorithm* filter, const CommandLineOptions& options)
@@ -326,7 +323,7 @@ void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& option
   filter->SetInputData(bare);
   SetPeriod(filter, options, input);
   filter->SetInterpolateAttributes(options.Attributes);
-  SetSolids(filter, options, particles);
+  SetSolids(filter, options);
   SetContour(filter, options);
   SetMethod(filter, options);
 }

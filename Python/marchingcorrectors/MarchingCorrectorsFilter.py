@@ -48,7 +48,7 @@ PROPERTIES = {
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
-    "WallShare": (0.5, "real"), "UseBox": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
+    "WallShare": (0.0, "real"), "UseBox": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
     "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
     "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
     "ComputeCorrectionLength": (0, "flag"), "ComputeResidual": (0, "flag"), "ComputeBoundaryFlag": (0, "flag"),
@@ -325,7 +325,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options.periodic[:], options.capping = choice.PeriodicBounds, choice.Capping
         options.node_threshold = choice.NodeThreshold
         options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
-        options.wall_share = choice.WallShare if choice.EndAtSolids and (choice.Trim or choice.FreeSurface) else 0.0
+        ends = choice.EndAtSolids and (choice.Trim or choice.FreeSurface)
+        options.wall_share = 0.0 if not ends else choice.WallShare or -1.0  # measured
         options.preview, options.tolerance = choice.Preview, choice.Tolerance
         options.iteration_limit = choice.IterationLimit
         options.memory_limit = choice.DeviceMemoryLimit << 20

@@ -142,7 +142,7 @@ def build_field_data(data, surface, particles, arguments):
     add_text(data, "Device", s["device"])
     add_text(data, "Platform", s["platform"])
     add_statistics(data, s, surface, arguments.options)
-    add_parameters(data, particles, arguments)
+    add_parameters(data, particles, arguments, s["wall_share"])
 
 
 def add_statistics(data, s, surface, options):
@@ -186,7 +186,7 @@ def add_quantity(data, name, given, array):
         add_real(data, name, array.constant)
 
 
-def add_parameters(data, particles, arguments):
+def add_parameters(data, particles, arguments, wall_share):
     o, core, choice = arguments.options, arguments.input, particles.choice
     array = numpy_to_vtk(np.ctypeslib.as_array(o.iso_values, (o.iso_count,)) if o.iso_count else np.empty(0),
                          deep=True)
@@ -204,7 +204,7 @@ def add_parameters(data, particles, arguments):
     if particles.fluid is not None:
         add_real(data, "FluidValue", choice.FluidValue)
         add_count(data, "IgnoreSolids", core.ignore_solids)
-        add_real(data, "WallShare", o.wall_share)
+        add_real(data, "WallShare", wall_share)
     add_text(data, "Kernel", lib.mcor_sph_kernel_name(o.sph_kernel).decode())
     add_text(data, "SeedMode", ("complete", "pairs")[o.seeds])
     add_text(data, "Topology", ("table", "field")[o.topology])

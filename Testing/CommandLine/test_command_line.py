@@ -67,7 +67,6 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--boundary", "x"], "--boundary is one of weight, eigenvalue, not 'x'"),
             ([*good, *ISO, "--solids", "x"], "--solids is one of weight, ignore, wall, not 'x'"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
-            ([*good, "--free-surface", "--wall-share=measured"], "with --free-surface give a number"),
             ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
             ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
@@ -511,7 +510,7 @@ class Options(CommandLineTest):
         self.assertEqual(found["statistics"]["triangles"], expected["statistics"]["triangles"])
 
     def test_surface_ends_at_walls(self):
-        wall = self.succeed(*ISO, "--fluid", "Kind=0", "--solids", "wall")
+        wall = self.succeed(*ISO, "--fluid", "Kind=0", "--solids", "wall", "--wall-share", "0.5")
         half_way = self.output.read_bytes()
         self.assertEqual(wall["fluid"]["solids"], "wall")
         self.assertEqual(wall["fluid"]["wall_share"], 0.5)
@@ -525,11 +524,14 @@ class Options(CommandLineTest):
         self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall", given)
         self.assertEqual(self.output.read_bytes(), at_walls)
         self.assertNotEqual(at_walls, half_way)
+        self.succeed(*ISO, "--fluid", "Kind=0", "--solids=wall")  # the default
+        self.assertEqual(self.output.read_bytes(), at_walls)
         triangles = wall["statistics"]["triangles"]
         self.assertLess(triangles, weight["statistics"]["triangles"])
         self.assertLess(triangles, farther["statistics"]["triangles"])
         closed = self.succeed("--free-surface", "--fluid", "Kind=0")
         opened = self.succeed("--free-surface", "--fluid", "Kind=0", "--solids", "wall")
+        self.assertEqual(opened["fluid"]["wall_share"], 0.5)
         self.assertEqual(closed["statistics"]["trim_vertices"], 0)
         self.assertGreater(opened["statistics"]["trim_vertices"], 50)
 

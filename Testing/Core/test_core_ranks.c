@@ -110,6 +110,7 @@ static mcor_options measure_options(const measure_case* what)
   static const double iso = 0.5;
   mcor_options options = core_options(&iso);
   options.field = (mcor_field)what->field;
+  options.wall_share = MCOR_WALL_SHARE_MEASURED;
   return options;
 }
 
@@ -162,6 +163,7 @@ static void check_globals(mcor_context* context, const core_set* set, const meas
   mcor_globals expected;
   CORE_OK(context, mcor_measure_globals(context, &input, &options, &expected));
   assert_true(expected.neighbours_median > 10 && expected.spacing_median > 0);
+  assert_true(expected.wall_share > 0);
   assert_int_equal(what->estimate, expected.smoothing_length > 0);
   for (size_t s = 0; s < SPLITS; ++s)
   {

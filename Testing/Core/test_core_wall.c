@@ -6,6 +6,7 @@
 #include "core_fixture.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct wall_case
@@ -211,9 +212,113 @@ static void test_without_solids(void** state)
   core_free_set(&set);
 }
 
+typedef struct wall_weight
+{
+  double share, fluid;
+} wall_weight;
+
+static int compare_shares(const void* a, const void* b)
+{
+  const double s = ((const wall_weight*)a)->share, t = ((const wall_weight*)b)->share;
+  return (s > t) - (s < t);
+}
+
+/* The solids' share at the solids, the median by the fluid's weight there. */
+static double find_share(const core_set* set, oracle_kernel kernel)
+{
+  oracle_particles particles = core_oracle(set);
+  oracle_field field;
+  wall_weight at[1000];
+  int count = 0;
+  double sum = 0, counted = 0;
+  assert_true(oracle_create_field(&field, &particles, kernel, ORACLE_SHEPARD, 1));
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    oracle_sample sample;
+    oracle_evaluate(&field, NULL, set->position + 3 * j, &sample);
+    if (set->solid[j] && sample.weight > 0)
+    {
+      at[count++] = (wall_weight){ 1 - sample.weight / sample.trim_weight, sample.weight };
+      sum += sample.weight;
+    }
+  }
+  oracle_free_field(&field);
+  assert_in_range(count, 20, 256); /* all of them are looked at */
+  qsort(at, (size_t)count, sizeof at[0], compare_shares);
+  int i = 0;
+  for (; counted < 0.5 * sum; ++i)
+  {
+    counted += at[i].fluid;
+  }
+  return at[i - 1].share;
+}
+
+/* The share that is measured is that at the solids next to the fluid, and gives what it gives by hand; it
+ * is the same where the search grid was made for another share, and with global values. */
+static void test_measured(void** state)
+{
+  core_set set = make_tank();
+  const double iso = 0;
+  for (int kernel = 0; kernel < MCOR_SPH_KERNEL_COUNT; ++kernel)
+  {
+    const wall_case at = { .share = 0.3, .kernel = (mcor_sph_kernel)kernel };
+    mcor_input input = core_input(&set);
+    input.particles_version = input.scalar_version = 1 + (uint64_t)kernel;
+    mcor_options options = make_options(&at, &iso);
+    mcor_surface other = core_extract(*state, &input, &options);
+    options.wall_share = MCOR_WALL_SHARE_MEASURED;
+    mcor_surface measured = core_extract(*state, &input, &options);
+    const double share = measured.statistics.wall_share;
+    const double expected = find_share(&set, (oracle_kernel)kernel);
+    CORE_CHECK(
+      fabs(share - expected) < 1e-6, "kernel %d: share %.9g, not %.9g", kernel, share, expected);
+    mcor_globals globals;
+    CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
+    assert_true(globals.wall_share == share);
+    options.globals = &globals;
+    mcor_surface of_globals = core_extract(*state, &input, &options);
+    options.globals = NULL;
+    options.wall_share = share;
+    mcor_surface given = core_extract(*state, &input, &options);
+    CORE_CHECK(core_hash(&given) == core_hash(&measured) &&
+        core_hash(&of_globals) == core_hash(&measured) && core_hash(&other) != core_hash(&measured),
+      "kernel %d: the surface is another one", kernel);
+    mcor_surface* const all[] = { &other, &measured, &of_globals, &given };
+    for (int i = 0; i < 4; ++i)
+    {
+      mcor_free_surface(all[i]);
+    }
+    mcor_free_globals(&globals);
+  }
+  core_free_set(&set);
+}
+
+/* The free surface takes one half; global values must have been measured for it. */
+static void test_measured_elsewhere(void** state)
+{
+  core_set set = make_tank();
+  const double iso = 0.5;
+  const wall_case at = { .share = MCOR_WALL_SHARE_MEASURED, .field = MCOR_WEIGHT_SUM };
+  const mcor_input input = core_input(&set);
+  mcor_options options = make_options(&at, &iso);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_true(surface.statistics.wall_share == 0.5);
+  mcor_free_surface(&surface);
+  options.wall_share = 0.5;
+  mcor_globals globals;
+  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
+  options.wall_share = MCOR_WALL_SHARE_MEASURED;
+  options.globals = &globals;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(*state), "no wall share"));
+  mcor_free_globals(&globals);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_exact), cmocka_unit_test(test_forms),
-    cmocka_unit_test(test_iso_values), cmocka_unit_test(test_without_solids) };
+    cmocka_unit_test(test_iso_values), cmocka_unit_test(test_without_solids),
+    cmocka_unit_test(test_measured), cmocka_unit_test(test_measured_elsewhere) };
   return cmocka_run_group_tests_name("wall", tests, core_set_up, core_tear_down);
 }

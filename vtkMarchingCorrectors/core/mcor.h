@@ -203,9 +203,16 @@ extern "C"
     /* As in mcor_statistics; and the positions of fluid particles, L. */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double fluid_low[3], fluid_high[3];
+    double wall_share; /* where the options ask for it */
     int component_count;
     mcor_global_component* components; /* [component_count], of all attributes in their order */
   } mcor_globals;
+
+/* A wall share that is measured: the solids' share of the weight at some solids themselves, the median,
+ * each one counting as much as the fluid weighs there. A surface of the scalar then ends, in the median, on
+ * the solids that face the fluid, whether they are one layer or more, and how far away the fluid keeps.
+ * The free surface keeps in front of that layer: there it is 0.5. */
+#define MCOR_WALL_SHARE_MEASURED (-1)
 
   typedef enum mcor_reduction
   {
@@ -256,7 +263,8 @@ extern "C"
                               * is lower; default 0.5 */
     double wall_share;    /* above 0: the surface, the free surface too, also ends where the solids'
                         * share of the weight, unless they are ignored, becomes greater than this;
-                        * 0.5: where they weigh more than the fluid. 0, the default: nowhere */
+                        * 0.5: where they weigh more than the fluid. 0, the default: nowhere.
+                        * MCOR_WALL_SHARE_MEASURED: see there */
     int preview;          /* nonzero: vertices by linear interpolation, no correction */
     double tolerance;     /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
@@ -340,6 +348,7 @@ extern "C"
      * share of the support that their volumes fill, as far as they are as large as the particle's,
      * 0 where volumes are computed. */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
+    double wall_share;             /* in use; 0: the surface does not end at solids */
     double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
     double cube_size;              /* unit L */
     double scalar_min, scalar_max; /* over fluid particles */

@@ -170,6 +170,7 @@ mcor_status mcor_prepare(
   {
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
+  MCOR_TRY(mcor_measure_wall(context, input));
   mcor_place_box(context, options);
   context->grid.has_solids = context->measure.solid_count > 0 && uses_solids;
   const mcor_build build = { .sph_kernel = options->sph_kernel,

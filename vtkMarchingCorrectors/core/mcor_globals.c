@@ -28,6 +28,7 @@ void mcor_take_globals(mcor_context* context, const mcor_globals* globals)
   m->neighbours = globals->neighbours_median;
   m->spacing = globals->spacing_median;
   m->filled = globals->filled_median;
+  m->wall_share = globals->wall_share;
   memcpy(m->x_low, globals->fluid_low, sizeof m->x_low);
   memcpy(m->x_high, globals->fluid_high, sizeof m->x_high);
 }
@@ -51,6 +52,7 @@ static void mcor_give_globals(const mcor_measure* m, mcor_globals* globals)
   globals->neighbours_median = m->neighbours;
   globals->spacing_median = m->spacing;
   globals->filled_median = m->filled;
+  globals->wall_share = m->wall_share;
   memcpy(globals->fluid_low, m->x_low, sizeof m->x_low);
   memcpy(globals->fluid_high, m->x_high, sizeof m->x_high);
 }
@@ -136,6 +138,7 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));
   MCOR_RETURN_IF(particles == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
   MCOR_TRY(mcor_measure_input(context, input, options));
+  MCOR_TRY(mcor_measure_wall(context, input));
   mcor_give_globals(&context->measure, globals);
   globals->mass_max = input->has_mass ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
@@ -207,8 +210,9 @@ bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
     a->solid_particles == b->solid_particles &&
     a->smoothing_length_min == b->smoothing_length_min && a->support_min == b->support_min &&
     a->support_max == b->support_max && a->smoothing_length == b->smoothing_length &&
-    a->mass_max == b->mass_max && a->scalar_min == b->scalar_min &&
-    a->scalar_max == b->scalar_max && a->scalar_shift == b->scalar_shift;
+    a->mass_max == b->mass_max && a->wall_share == b->wall_share &&
+    a->scalar_min == b->scalar_min && a->scalar_max == b->scalar_max &&
+    a->scalar_shift == b->scalar_shift;
   for (int i = 0; i < 3; ++i)
   {
     same = same && a->low[i] == b->low[i] && a->high[i] == b->high[i];

@@ -86,9 +86,17 @@ typedef struct mcor_samples_found
   mcor_sample sample[MCOR_SAMPLES];
 } mcor_samples_found;
 
+typedef enum mcor_sampled
+{
+  MCOR_ALL_PARTICLES,
+  MCOR_FLUID_PARTICLES,
+  MCOR_SOLID_PARTICLES
+} mcor_sampled;
+
 /* mcor_measure_sample.c. Of all ranks' particles; chosen->most is given. */
 mcor_status mcor_choose_samples(
-  mcor_context* context, const mcor_input* input, bool fluid, mcor_samples_found* chosen);
+  mcor_context* context, const mcor_input* input, mcor_sampled which, mcor_samples_found* chosen);
+
 
 /* One for all particles, from their spacing. */
 mcor_status mcor_estimate_smoothing_length(

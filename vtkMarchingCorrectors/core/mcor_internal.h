@@ -48,6 +48,7 @@ typedef struct mcor_measure
   double neighbours, spacing, filled, h_median; /* see mcor_end_watch */
   double x_low[3], x_high[3];                   /* of the positions of fluid particles */
   double cube;
+  double wall_share; /* where it was asked for; 0: not yet */
 } mcor_measure;
 
 /* The virtual grid: world position = (origin + fixed / 2^fix_bits) * cube. */
@@ -338,7 +339,14 @@ static inline int mcor_batches(const mcor_context* context, int count)
 /* The free surface needs solids only to end at them. */
 static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options* options)
 {
-  return !input->ignore_solids && (options->field != MCOR_WEIGHT_SUM || options->wall_share > 0);
+  return !input->ignore_solids && (options->field != MCOR_WEIGHT_SUM || options->wall_share != 0);
+}
+
+/* The wall share in use. */
+static inline double mcor_wall_share(const mcor_context* context)
+{
+  const double share = context->options->wall_share;
+  return share < 0 ? context->measure.wall_share : share;
 }
 
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
@@ -379,6 +387,9 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
+
+/* mcor_measure_wall.c. The wall share, where the options ask for it and it is not yet measured. */
+mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input);
 
 /* mcor_globals.c */
 void mcor_take_globals(mcor_context* context, const mcor_globals* globals);

@@ -40,7 +40,7 @@ static mcor_status mcor_choose_watched(
   mcor_context* context, const mcor_input* input, mcor_watch* watch)
 {
   mcor_samples_found chosen = { .most = MCOR_WATCHED };
-  MCOR_TRY(mcor_choose_samples(context, input, true, &chosen));
+  MCOR_TRY(mcor_choose_samples(context, input, MCOR_FLUID_PARTICLES, &chosen));
   for (int s = 0; s < chosen.count; ++s)
   {
     const mcor_sample* sample = &chosen.sample[s];

@@ -54,7 +54,7 @@ typedef struct mcor_sampling
 {
   const mcor_context* context;
   const mcor_input* input;
-  bool fluid;
+  mcor_sampled which;
   mcor_samples_found* found; /* [MCOR_SLICES] */
 } mcor_sampling;
 
@@ -76,7 +76,7 @@ static void mcor_sample_particle(
   {
     return;
   }
-  if (job->fluid)
+  if (job->which == MCOR_FLUID_PARTICLES)
   {
     mcor_read_smoothing_length(job->context, job->input, i, 1, &sample.h);
     sample.volume = mcor_given_volume(job->input, i);
@@ -87,7 +87,8 @@ static void mcor_sample_particle(
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_sampling* job = data;
-  const uint8_t* solid = job->fluid ? job->input->solid : NULL;
+  const uint8_t* solid = job->input->solid;
+  const bool any = job->which == MCOR_ALL_PARTICLES, solids = job->which == MCOR_SOLID_PARTICLES;
   mcor_array positions = job->input->positions;
   positions.components = 3;
   double x[3][MCOR_CHUNK];
@@ -100,7 +101,7 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
     }
     for (int i = 0; i < count; ++i)
     {
-      if (!solid || !solid[begin + i])
+      if (any || (solid && solid[begin + i]) == solids)
       {
         const double at[3] = { x[0][i], x[1][i], x[2][i] };
         mcor_sample_particle(job, &job->found[slice], begin + i, at);
@@ -135,9 +136,9 @@ static mcor_status mcor_merge_samples(mcor_context* context, mcor_samples_found*
 }
 
 mcor_status mcor_choose_samples(
-  mcor_context* context, const mcor_input* input, bool fluid, mcor_samples_found* chosen)
+  mcor_context* context, const mcor_input* input, mcor_sampled which, mcor_samples_found* chosen)
 {
-  mcor_sampling job = { .context = context, .input = input, .fluid = fluid };
+  mcor_sampling job = { .context = context, .input = input, .which = which };
   job.found = malloc(MCOR_SLICES * sizeof *job.found);
   MCOR_RETURN_IF(!job.found, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   for (int s = 0; s < MCOR_SLICES; ++s)

@@ -156,7 +156,7 @@ static mcor_status mcor_find_spacing(
   int64_t neighbours[MCOR_SAMPLES];
   job->samples.most = MCOR_SAMPLES;
   MCOR_TRY(mcor_scale_positions(context, input, job));
-  MCOR_TRY(mcor_choose_samples(context, input, false, &job->samples));
+  MCOR_TRY(mcor_choose_samples(context, input, MCOR_ALL_PARTICLES, &job->samples));
   const int count = job->samples.count;
   mcor_parallel_for(count, 1, mcor_near_slice, job);
   MCOR_TRY(mcor_find_farthest(context, job, spacing, neighbours));

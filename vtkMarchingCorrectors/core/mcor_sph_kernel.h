@@ -18,68 +18,77 @@
   ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3, 0.00265258238486492226, 0) /* 1 / (120 pi) */             \
   ENTRY(MCOR_WENDLAND_C2, wendland, 2, 0.41778172561622525639, 0)   /* 21 / (16 pi) */
 
-#ifdef __OPENCL_VERSION__
+#ifdef MCOR_W_ON_HOST
+#include <math.h>
+typedef double real, realv;
+#define MCOR_FMA fma
+#define MCOR_OF_Q static inline realv
+#else
+#define MCOR_OF_Q realv
+#endif
+
+#if defined(__OPENCL_VERSION__) || defined(MCOR_W_ON_HOST)
 
 /* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps it has the value of one side. */
 
 /* With a = 2 - q and b = 1 - q where positive, 1/4 a^3 - b^3; as a - b = 1 where b is not 0, this
  * is a c + b^2 with c = 1/4 a^2 - b^2, and its derivative is -3 c. */
-realv mcor_w_cubic(realv q)
+MCOR_OF_Q mcor_w_cubic(realv q)
 {
   const realv d = (real)2 - q;
   const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0), b2 = b * b;
   return MCOR_FMA(a, MCOR_FMA((real)0.25, a * a, -b2), b2);
 }
 
-realv mcor_dw_cubic(realv q)
+MCOR_OF_Q mcor_dw_cubic(realv q)
 {
   const realv d = (real)2 - q;
   const realv a = fmax(d, (realv)0), b = fmax(d - (real)1, (realv)0);
   return (real)-3 * MCOR_FMA((real)0.25, a * a, -(b * b));
 }
 
-realv mcor_ddw_cubic(realv q)
+MCOR_OF_Q mcor_ddw_cubic(realv q)
 {
   return MCOR_FMA((real)-6, fmax((real)1 - q, (realv)0), (real)1.5 * fmax((real)2 - q, (realv)0));
 }
 
 /* 3/16 q^2 - 3/4 q + 3/4 = 3/16 (2 - q)^2; the 3/16 is in the norm. */
-realv mcor_w_quadratic(realv q)
+MCOR_OF_Q mcor_w_quadratic(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0);
   return a * a;
 }
 
-realv mcor_dw_quadratic(realv q)
+MCOR_OF_Q mcor_dw_quadratic(realv q)
 {
   return (real)-2 * fmax((real)2 - q, (realv)0);
 }
 
-realv mcor_ddw_quadratic(realv q)
+MCOR_OF_Q mcor_ddw_quadratic(realv q)
 {
   return q < (real)2 ? (realv)2 : (realv)0;
 }
 
 /* Per axis; 1 - 5/2 q^2 + 3/2 q^3 = 1/2 (2-q)^2 (1-q) - (1-q)^2 (1-2q). */
-realv mcor_w_mprime4(realv q)
+MCOR_OF_Q mcor_w_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
   return MCOR_FMA((real)0.5 * a * a, (real)1 - q, -(b * b * MCOR_FMA((real)-2, q, (real)1)));
 }
 
-realv mcor_dw_mprime4(realv q)
+MCOR_OF_Q mcor_dw_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);
   return (real)2 * b * MCOR_FMA((real)-2, q, b + (real)1) - a * MCOR_FMA((real)0.5, a, (real)1 - q);
 }
 
-realv mcor_ddw_mprime4(realv q)
+MCOR_OF_Q mcor_ddw_mprime4(realv q)
 {
   const realv outer = MCOR_FMA((real)-3, q, (real)5), inner = MCOR_FMA((real)9, q, (real)-5);
   return q < (real)1 ? inner : q < (real)2 ? outer : (realv)0;
 }
 
-realv mcor_w_quintic(realv q)
+MCOR_OF_Q mcor_w_quintic(realv q)
 {
   const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
               c = fmax((real)1 - q, (realv)0);
@@ -87,7 +96,7 @@ realv mcor_w_quintic(realv q)
   return MCOR_FMA((real)15 * c2 * c2, c, MCOR_FMA((real)-6 * b2 * b2, b, a2 * a2 * a));
 }
 
-realv mcor_dw_quintic(realv q)
+MCOR_OF_Q mcor_dw_quintic(realv q)
 {
   const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
               c = fmax((real)1 - q, (realv)0);
@@ -95,26 +104,26 @@ realv mcor_dw_quintic(realv q)
   return (real)-5 * MCOR_FMA((real)15 * c2, c2, MCOR_FMA((real)-6 * b2, b2, a2 * a2));
 }
 
-realv mcor_ddw_quintic(realv q)
+MCOR_OF_Q mcor_ddw_quintic(realv q)
 {
   const realv a = fmax((real)3 - q, (realv)0), b = fmax((real)2 - q, (realv)0),
               c = fmax((real)1 - q, (realv)0);
   return (real)20 * (a * a * a - (real)6 * b * b * b + (real)15 * c * c * c);
 }
 
-realv mcor_w_wendland(realv q)
+MCOR_OF_Q mcor_w_wendland(realv q)
 {
   const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a;
   return a2 * a2 * MCOR_FMA((real)2, q, (real)1);
 }
 
-realv mcor_dw_wendland(realv q)
+MCOR_OF_Q mcor_dw_wendland(realv q)
 {
   const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0);
   return (real)-5 * q * a * a * a;
 }
 
-realv mcor_ddw_wendland(realv q)
+MCOR_OF_Q mcor_ddw_wendland(realv q)
 {
   const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0);
   return (real)2.5 * a * a * ((real)3 * q - (real)2 * a);

@@ -70,6 +70,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   {
     s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
   }
+  s->wall_share = m->solid_count > 0 && context->uses_solids ? mcor_wall_share(context) : 0;
   s->cube_size = lattice->cube;
   s->scalar_min = m->scalar_min;
   s->scalar_max = m->scalar_max;

@@ -164,7 +164,7 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
   const bool eigenvalue = o->boundary_detection == MCOR_BOUNDARY_EIGENVALUE;
-  const bool wall = o->wall_share > 0 && n->solid_particles > 0 && !s->input->ignore_solids;
+  const bool wall = n->wall_share > 0 && n->solid_particles > 0 && !s->input->ignore_solids;
   char share[100] = "";
   if (n->triangles_before_trimming == 0 && o->iso_count > 0)
   {
@@ -177,7 +177,7 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   if (wall)
   {
     snprintf(share, sizeof share, "the solids' share of the weight above the wall share %g",
-      o->wall_share);
+      n->wall_share);
   }
   if (o->field == MCOR_WEIGHT_SUM)
   {

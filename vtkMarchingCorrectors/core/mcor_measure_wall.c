@@ -1,0 +1,249 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* At which share of the weight a surface ends on the layer of solids that faces the fluid: the solids'
+ * share at some solids themselves, in the median, each one counting as much as the fluid weighs there, so
+ * that those that no fluid reaches do not count. Weights are added as whole numbers: so the result
+ * depends neither on the order of the particles, nor on who of several ranks has which. */
+
+#define MCOR_W_ON_HOST
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_ranks.h"
+#include "mcor_sph_kernel.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A weight of 1, as a whole number; and what one particle adds at most, so that no sum overflows. */
+#define MCOR_WHOLE_WEIGHT 1073741824.0
+#define MCOR_MOST_WEIGHT 4.0
+
+#define MCOR_FREE_WALL_SHARE 0.5
+
+typedef struct mcor_wall_sample
+{
+  double x[3], share;
+  int64_t fluid, solid; /* whole weights */
+} mcor_wall_sample;
+
+typedef struct mcor_wall
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  int count, axis;  /* of the samples; they are sorted along it, -1: not */
+  double period[3]; /* 0: open */
+  double reach;     /* the largest support radius */
+  double mass_max;
+  mcor_wall_sample sample[MCOR_SAMPLES];
+  int64_t (*weights)[MCOR_SAMPLES][2]; /* [MCOR_SLICES], of fluid, of solids */
+} mcor_wall;
+
+/* W / norm h^3 at an offset. */
+static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double inv_h)
+{
+#define MCOR_ENTRY(enumerator, name, support, norm, is_tensor)                                     \
+  case enumerator:                                                                                 \
+    return is_tensor ? mcor_w_##name(fabs(d[0]) * inv_h) * mcor_w_##name(fabs(d[1]) * inv_h) *     \
+        mcor_w_##name(fabs(d[2]) * inv_h)                                                          \
+                     : mcor_w_##name(sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
+  switch (kernel)
+  {
+    MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY)
+    default:
+      return 0;
+  }
+#undef MCOR_ENTRY
+}
+
+/* Volumes of particles. Of those that are yet to be computed the masses stand for them: shares do not
+ * depend on the unit. */
+static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
+{
+  const mcor_input* input = wall->input;
+  const double mass = input->has_mass ? mcor_array_at(&input->mass, i, 0) : 1;
+  return input->has_volume                  ? mcor_array_at(&input->volume, i, 0)
+    : input->has_mass && input->has_density ? mass / mcor_array_at(&input->density, i, 0)
+                                            : mass / wall->mass_max * h * h * h;
+}
+
+/* The first sample that is not before x along the axis. */
+static int mcor_wall_first(const mcor_wall* wall, double x)
+{
+  int low = 0, high = wall->axis >= 0 ? wall->count : 0;
+  while (low < high)
+  {
+    const int middle = (low + high) / 2;
+    const bool before = wall->sample[middle].x[wall->axis] < x;
+    low = before ? middle + 1 : low;
+    high = before ? high : middle;
+  }
+  return low;
+}
+
+static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[3], double h)
+{
+  const mcor_options* options = wall->context->options;
+  const bool solid = wall->input->solid && wall->input->solid[i];
+  const double scaled = h * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0;
+  double weight = 0;
+  for (int s = mcor_wall_first(wall, along - wall->reach); s < wall->count; ++s)
+  {
+    double d[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      d[a] = wall->sample[s].x[a] - x[a];
+      d[a] -= wall->period[a] > 0 ? wall->period[a] * floor(d[a] / wall->period[a] + 0.5) : 0;
+    }
+    if (wall->axis >= 0 && d[wall->axis] > wall->reach)
+    {
+      break;
+    }
+    const double w = mcor_wall_kernel(options->sph_kernel, d, 1 / scaled);
+    if (w != 0)
+    {
+      weight = weight != 0 ? weight
+                           : mcor_wall_volume(wall, i, h) * mcor_kernel_norm(options->sph_kernel) /
+          (scaled * scaled * scaled);
+      const double most = fmin(fmax(weight * w, -MCOR_MOST_WEIGHT), MCOR_MOST_WEIGHT);
+      wall->weights[slice][s][solid] += llrint(most * MCOR_WHOLE_WEIGHT);
+    }
+  }
+}
+
+static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_wall* wall = data;
+  mcor_array positions = wall->input->positions;
+  positions.components = 3;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_read_array(&positions, begin, count, a, x[a]);
+    }
+    mcor_read_smoothing_length(wall->context, wall->input, begin, count, h);
+    for (int i = 0; i < count; ++i)
+    {
+      const double at[3] = { x[0][i], x[1][i], x[2][i] };
+      mcor_wall_add(wall, slice, begin + i, at, h[i]);
+    }
+  }
+}
+
+static int mcor_compare_shares(const void* a, const void* b)
+{
+  const mcor_wall_sample *s = a, *t = b;
+  return s->share != t->share ? (s->share < t->share ? -1 : 1)
+                              : (s->fluid > t->fluid) - (s->fluid < t->fluid);
+}
+
+/* Sorted, the share at which half of the fluid's weight is counted. */
+static double mcor_median_share(mcor_wall* wall)
+{
+  int count = 0;
+  double sum = 0, counted = 0;
+  for (int s = 0; s < wall->count; ++s)
+  {
+    mcor_wall_sample* sample = &wall->sample[s];
+    const double fluid = (double)sample->fluid, solid = (double)sample->solid;
+    sample->share = solid / (fluid + solid);
+    if (fluid > 0 && solid > 0)
+    {
+      sum += fluid;
+      wall->sample[count++] = *sample;
+    }
+  }
+  qsort(wall->sample, (size_t)count, sizeof wall->sample[0], mcor_compare_shares);
+  for (int s = 0; s < count; ++s)
+  {
+    counted += (double)wall->sample[s].fluid;
+    if (counted >= 0.5 * sum)
+    {
+      return fmin(fmax(wall->sample[s].share, 0.01), 0.99);
+    }
+  }
+  return MCOR_FREE_WALL_SHARE; /* no fluid is near */
+}
+
+/* Takes the samples in their order along an axis without a period; -1 where there is none. */
+static mcor_status mcor_place_samples(mcor_context* context, mcor_wall* wall)
+{
+  mcor_samples_found found = { .most = MCOR_SAMPLES };
+  MCOR_TRY(mcor_choose_samples(context, wall->input, MCOR_SOLID_PARTICLES, &found));
+  wall->axis = -1;
+  for (int a = 2; a >= 0; --a)
+  {
+    const double* period = context->options->periodic + 2 * a;
+    wall->period[a] = period[1] - period[0];
+    wall->axis = wall->period[a] > 0 ? wall->axis : a;
+  }
+  for (int i = 0; i < found.count; ++i)
+  {
+    const double* x = found.sample[i].x;
+    int to = wall->count++;
+    for (; to > 0 && wall->axis >= 0 && wall->sample[to - 1].x[wall->axis] > x[wall->axis]; --to)
+    {
+      wall->sample[to] = wall->sample[to - 1];
+    }
+    memcpy(wall->sample[to].x, x, sizeof wall->sample[to].x);
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
+{
+  const mcor_input* input = wall->input;
+  MCOR_TRY(mcor_place_samples(context, wall));
+  wall->mass_max = input->has_mass ? mcor_largest(&input->mass, NULL, input->count, 0) : 1;
+  MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
+  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_wall_slice, wall);
+  int64_t weights[MCOR_SAMPLES][2] = { { 0 } };
+  for (int n = 0; n < slices * wall->count; ++n)
+  {
+    const int slice = n / wall->count, s = n % wall->count;
+    weights[s][0] += wall->weights[slice][s][0];
+    weights[s][1] += wall->weights[slice][s][1];
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, weights[0], 2 * wall->count));
+  for (int s = 0; s < wall->count; ++s)
+  {
+    wall->sample[s].fluid = weights[s][0];
+    wall->sample[s].solid = weights[s][1];
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
+{
+  mcor_measure* m = &context->measure;
+  if (context->options->wall_share >= 0 || m->wall_share > 0 || m->solid_count == 0 ||
+    !context->uses_solids)
+  {
+    return MCOR_OK;
+  }
+  MCOR_RETURN_IF(context->options->globals, context, MCOR_INVALID_ARGUMENT,
+    "The global values have no wall share. Measure them with the same options.");
+  if (context->options->field == MCOR_WEIGHT_SUM)
+  {
+    m->wall_share = MCOR_FREE_WALL_SHARE;
+    return MCOR_OK;
+  }
+  mcor_wall* wall = calloc(1, sizeof *wall);
+  int64_t(*weights)[MCOR_SAMPLES][2] = calloc(MCOR_SLICES, sizeof *weights);
+  mcor_status status =
+    wall && weights ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  if (status == MCOR_OK)
+  {
+    *wall = (mcor_wall){ .context = context, .input = input, .reach = m->support_max };
+    wall->weights = weights;
+    status = mcor_weigh_samples(context, wall);
+    m->wall_share = status == MCOR_OK ? mcor_median_share(wall) : 0;
+  }
+  free(weights);
+  free(wall);
+  return status;
+}

@@ -145,12 +145,23 @@ static int fuzz_gather(void* user, const void* records, int64_t count, size_t wi
   return fuzz_exchange(user);
 }
 
+static int fuzz_pass(void* user, const void* records, int64_t count, size_t width,
+  const double* places, double reach, const void** all, int64_t* all_count)
+{
+  FUZZ_CHECK((places || count == 0) && reach >= 0);
+  return fuzz_gather(user, records, count, width, all, all_count);
+}
+
 /* What a rank alone measures and extracts is what no rank does. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
   fuzz_rank rank = { .failing = failing < 128 ? (int)failing : INT32_MAX };
-  const mcor_ranks ranks = { fuzz_reduce_doubles, fuzz_reduce_counts, fuzz_gather, &rank };
+  const mcor_ranks ranks = { .reduce_doubles = fuzz_reduce_doubles,
+    .reduce_counts = fuzz_reduce_counts,
+    .gather = fuzz_gather,
+    .pass = failing % 2 == 0 ? fuzz_pass : NULL,
+    .user = &rank };
   mcor_options options = call->options;
   mcor_globals globals;
   mcor_surface alone, surface;

@@ -120,10 +120,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   this->FillChoice(choice, own);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput mine(choice, own);
-  std::string message = options.cube_size_mode == MCOR_CUBES_ADAPTIVE
-    ? "Processes share surfaces of uniform cubes alone. Use these, or one process."
-    : mine.Collect() ? ""
-                     : mine.Error;
+  std::string message = mine.Collect() ? "" : mine.Error;
   this->SetUsedNames(&mine);
   if (!ranks.Agree(message))
   {

@@ -10,9 +10,6 @@
 
 namespace
 {
-/** The core needs particles that reach a box by this, see mcor_options.globals. */
-constexpr double MarginCubes = 3.0;
-
 /** Along an edge; cuts need not lie on bricks, but those that do cost least. */
 constexpr double BrickCubes = 4.0;
 
@@ -72,7 +69,9 @@ public:
     , Globals(globals)
   {
     const double factor = mcor_support_factor(options.sph_kernel);
+    this->Factor = options.h_scale * factor;
     this->Support = options.h_scale * (input.smoothing_length_is_support_radius ? 1.0 : factor);
+    this->LeastMargin = mcor_reach_margin(&options, &globals, 0.0);
     this->ComputesVolumes = !input.has_volume && !(input.has_mass && input.has_density);
     for (int a = 0; a < 3; ++a)
     {
@@ -158,16 +157,23 @@ public:
   double SupportOf(std::int64_t i) const
   {
     return this->Input.estimate_smoothing_length
-      ? this->Globals.smoothing_length * this->Options.h_scale *
-        mcor_support_factor(this->Options.sph_kernel)
+      ? this->Globals.smoothing_length * this->Factor
       : ValueOf(this->Input.smoothing_length, i) * this->Support;
+  }
+
+  /** The scaled support radius, and by how much more a large particle matters than a small one. */
+  double ReachOf(std::int64_t i) const
+  {
+    const double support = this->SupportOf(i);
+    return support - this->LeastMargin +
+      mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
   }
 
   /** The ranks that a particle at this place, or an image of it, reaches by `radius`. */
   void FindReached(const vtkSPHRanksPartition& partition, const double at[3], double radius,
     std::vector<int>& found) const
   {
-    FindBoxes(partition, this->Period, at, radius + MarginCubes * this->Globals.cube_size, found);
+    FindBoxes(partition, this->Period, at, radius + this->LeastMargin, found);
   }
 
   /**
@@ -185,12 +191,12 @@ public:
       {
         double at[3];
         this->Place(i, at);
-        const double support = this->SupportOf(i);
-        this->FindReached(partition, at, support, found);
+        const double reach = this->ReachOf(i);
+        this->FindReached(partition, at, reach, found);
         for (const int rank : found)
         {
           double& radius = radii[static_cast<std::size_t>(rank)];
-          radius = std::max(radius, support);
+          radius = std::max(radius, reach);
         }
       }
       ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
@@ -201,7 +207,7 @@ public:
       : 0.0;
     for (double& radius : radii)
     {
-      const double cubes = MarginCubes * this->Globals.cube_size;
+      const double cubes = this->LeastMargin;
       const double volumes = this->ComputesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
       const double nearest = o.nearest_particle ? radius + cubes : 0.0;
       radius = std::max({ radius > 0.0 ? volumes : 0.0, radius > 0.0 ? nearest : 0.0, pairs });
@@ -212,7 +218,9 @@ public:
   const mcor_input& Input;
   const mcor_options& Options;
   const mcor_globals& Globals;
-  double Support;
+  double Support; ///< scaled support radius / what the input's array holds
+  double Factor;  ///< scaled support radius / smoothing length
+  double LeastMargin;
   bool ComputesVolumes;
   double First[3], Period[3];
   vtkSPHRanksBox Whole;
@@ -255,15 +263,15 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
     {
       ++totals[static_cast<std::size_t>(owner)];
     }
-    const double support = router.SupportOf(i);
-    router.FindReached(partition, at, std::max(support, widest), found);
+    const double reach = router.ReachOf(i);
+    router.FindReached(partition, at, std::max(reach, widest), found);
     for (const int rank : found)
     {
       const auto to = static_cast<std::size_t>(rank);
       std::vector<int> own;
-      if (rank != owner && radii[to] < widest && support < widest)
+      if (rank != owner && radii[to] < widest && reach < widest)
       {
-        router.FindReached(partition, at, std::max(support, radii[to]), own);
+        router.FindReached(partition, at, std::max(reach, radii[to]), own);
         if (std::find(own.begin(), own.end(), rank) == own.end())
         {
           continue;

@@ -106,6 +106,33 @@ core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(co
   return set;
 }
 
+core_set core_make_graded(double ratio, double step)
+{
+  core_set set = core_make_set(60000);
+  uint64_t seed = 5;
+  int64_t n = 0;
+  for (double r = 1; r < ratio; r *= 1 + 0.9 * step)
+  {
+    const int of_shell = (int)(4 * M_PI / (step * step));
+    for (int i = 0; i < of_shell; ++i)
+    {
+      const double z = 1 - (2 * i + 1.0) / of_shell, s = sqrt(1 - z * z), w = 2.399963 * i;
+      const double p[3] = { r * (s * cos(w) + 0.05 * step * random_unit(&seed)), r * s * sin(w),
+        r * z };
+      if (p[0] < 0.4 * r)
+      {
+        assert_true(n < set.count);
+        memcpy(set.position + 3 * n, p, sizeof p);
+        set.smoothing_length[n] = 1.2 * step * r;
+        set.volume[n] = pow(step * r, 3);
+        set.scalar[n++] = z + 0.2 * p[1] / r;
+      }
+    }
+  }
+  set.count = n;
+  return set;
+}
+
 core_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed)
 {
   core_set set = core_make_set(count);

@@ -64,6 +64,10 @@ void core_free_set(core_set* set);
 /* n^3 particles with spacing 1 around the origin, displaced by up to `jitter`, smoothing
  * length 1.3, volume 1, scalar = value(x). */
 core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(const double x[3]));
+/* A shell of particles around a hole whose size goes with the distance from the hole's middle, from 1
+ * to `ratio`; scalar: height. A wedge of it is left out. */
+core_set core_make_graded(double ratio, double step);
+
 /* Particles anywhere in a cube of edge `size`; smoothing lengths in [h_min, h_max], log-uniform;
  * scalars in [-1, 1]. */
 core_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed);

@@ -5,201 +5,11 @@
  * last bit of all that it carries. Triangles are compared with their corners' coordinates and arrays,
  * as points have other numbers in each. */
 
-#include "core_fixture.h"
+#include "core_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Triangles of some surfaces: the bytes of their corners, one after the other. */
-typedef struct box_triangles
-{
-  int64_t count;
-  size_t width; /* bytes of a triangle */
-  unsigned char* bytes;
-} box_triangles;
-
-static size_t g_width;
-
-static int compare_triangles(const void* a, const void* b)
-{
-  return memcmp(a, b, g_width);
-}
-
-/* Appends an element of an array that is there; returns where the next one goes. */
-static unsigned char* put(unsigned char* to, const void* array, int64_t i, size_t width)
-{
-  if (array)
-  {
-    memcpy(to, (const char*)array + (size_t)i * width, width);
-    return to + width;
-  }
-  return to;
-}
-
-static unsigned char* put_point(
-  unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i)
-{
-  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
-  mcor_list_surface_arrays(s, arrays);
-  for (int a = 0; a < MCOR_SURFACE_ARRAYS; ++a)
-  {
-    to = put(to, *arrays[a].array, i, arrays[a].width);
-  }
-  for (int a = 0; a < s->attribute_count; ++a)
-  {
-    to = put(to, s->attributes[a], i, (size_t)input->attributes[a].components * sizeof(double));
-  }
-  return to;
-}
-
-static void add_surface(box_triangles* triangles, const mcor_input* input, mcor_surface* s)
-{
-  unsigned char point[1024];
-  if (s->triangle_count == 0)
-  {
-    return;
-  }
-  triangles->width = 3 * (size_t)(put_point(point, input, s, 0) - point);
-  const size_t count = (size_t)(triangles->count + s->triangle_count);
-  triangles->bytes = realloc(triangles->bytes, count * triangles->width);
-  assert_non_null(triangles->bytes);
-  unsigned char* to = triangles->bytes + (size_t)triangles->count * triangles->width;
-  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
-  {
-    to = put_point(to, input, s, s->triangles[i]);
-  }
-  triangles->count += s->triangle_count;
-}
-
-static void sort_triangles(box_triangles* triangles)
-{
-  g_width = triangles->width;
-  if (triangles->count > 0)
-  {
-    qsort(triangles->bytes, (size_t)triangles->count, triangles->width, compare_triangles);
-  }
-}
-
-/* Points that no triangle uses, or triangles without a point, are nobody's. */
-static void check_points(const mcor_surface* s)
-{
-  uint8_t* used = calloc((size_t)s->point_count + 1, 1);
-  assert_non_null(used);
-  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
-  {
-    assert_in_range(s->triangles[i], 0, s->point_count - 1);
-    used[s->triangles[i]] = 1;
-  }
-  for (int64_t i = 0; i < s->point_count; ++i)
-  {
-    assert_int_equal(used[i], 1);
-  }
-  free(used);
-}
-
-/* Each point has a key of its own, and they ascend. Boxes' points have those of the whole surface, as
- * they are compared along with all else. */
-static void check_keys(const mcor_surface* s)
-{
-  for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)
-  {
-    const uint64_t *a = s->point_keys + MCOR_POINT_KEY * (i - 1), *b = a + MCOR_POINT_KEY;
-    const int at = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
-    CORE_CHECK(a[at] < b[at], "keys of points %lld and the next", (long long)(i - 1));
-  }
-}
-
-/* Planes that cut the lattice; ends are at infinity. */
-typedef struct box_cut
-{
-  const char* name;
-  int count[3];
-  double at[3][3];
-} box_cut;
-
-/* The sets below lie around the origin, 10 or so in each direction. */
-static const box_cut cuts[] = {
-  { "2 boxes", { 1, 0, 0 }, { { 0.37 } } },
-  { "3, one thinner than a support", { 0, 0, 2 }, { { 0 }, { 0 }, { 1.1, 1.9 } } },
-  { "3, one thinner than a cube", { 0, 2, 0 }, { { 0 }, { -0.3, -0.25 } } },
-  { "8 boxes", { 1, 1, 1 }, { { -1.3 }, { 0.65 * 2 }, { 2.01 } } },
-  { "empty ones", { 2, 1, 0 }, { { -1000, 0.1 }, { 500 } } },
-};
-
-static void set_box(mcor_options* options, const box_cut* cut, const int at[3])
-{
-  options->has_box = 1;
-  for (int a = 0; a < 3; ++a)
-  {
-    options->box[2 * a] = at[a] == 0 ? -INFINITY : cut->at[a][at[a] - 1];
-    options->box[2 * a + 1] = at[a] == cut->count[a] ? INFINITY : cut->at[a][at[a]];
-  }
-}
-
-/* The whole surface, and what its boxes' statistics must add up to. */
-typedef struct box_whole
-{
-  box_triangles triangles;
-  mcor_statistics statistics;
-} box_whole;
-
-static void check_cut(mcor_context* context, const char* name, const mcor_input* input,
-  const mcor_options* options, const box_cut* cut, const box_whole* whole)
-{
-  box_triangles all = { 0 };
-  int64_t cells = 0, triangles = 0, virtual_cells = 0;
-  const int boxes = (cut->count[0] + 1) * (cut->count[1] + 1) * (cut->count[2] + 1);
-  for (int i = 0; i < boxes; ++i)
-  {
-    const int n = cut->count[0] + 1, m = cut->count[1] + 1;
-    const int at[3] = { i % n, i / n % m, i / n / m };
-    mcor_options own = *options;
-    set_box(&own, cut, at);
-    mcor_surface part = core_extract(context, input, &own);
-    check_points(&part);
-    check_keys(&part);
-    add_surface(&all, input, &part);
-    cells += part.statistics.cells_used;
-    triangles += part.statistics.triangles_before_trimming;
-    virtual_cells += part.statistics.virtual_cells;
-    mcor_free_surface(&part);
-  }
-  sort_triangles(&all);
-  CORE_CHECK(all.count == whole->triangles.count, "%s, %s: %lld triangles, not %lld", name,
-    cut->name, (long long)all.count, (long long)whole->triangles.count);
-  int64_t other = 0;
-  for (int64_t i = 0; i < all.count; ++i)
-  {
-    other += memcmp(all.bytes + (size_t)i * all.width,
-               whole->triangles.bytes + (size_t)i * all.width, all.width) != 0;
-  }
-  CORE_CHECK(other == 0, "%s, %s: %lld of %lld triangles differ", name, cut->name, (long long)other,
-    (long long)all.count);
-  assert_int_equal(cells, whole->statistics.cells_used);
-  assert_int_equal(triangles, whole->statistics.triangles_before_trimming);
-  assert_int_equal(virtual_cells, whole->statistics.virtual_cells);
-  free(all.bytes);
-}
-
-static void check_cuts(
-  mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
-{
-  box_whole whole = { 0 };
-  mcor_surface surface = core_extract(context, input, options);
-  CORE_CHECK(surface.triangle_count > 500, "%s: only %lld triangles", name,
-    (long long)surface.triangle_count);
-  check_keys(&surface);
-  add_surface(&whole.triangles, input, &surface);
-  sort_triangles(&whole.triangles);
-  whole.statistics = surface.statistics;
-  mcor_free_surface(&surface);
-  for (size_t i = 0; i < sizeof cuts / sizeof cuts[0]; ++i)
-  {
-    check_cut(context, name, input, options, cuts + i, &whole);
-  }
-  free(whole.triangles.bytes);
-}
 
 /* A block whose smoothing lengths differ by a factor of 2, with solids. */
 static core_set make_block(void)
@@ -215,13 +25,6 @@ static core_set make_block(void)
   return set;
 }
 
-static void ask_for_all(mcor_options* options)
-{
-  options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
-  options->boundary_flag = options->nearest_particle = options->iso_value = 1;
-  options->point_keys = 1;
-}
-
 static void trimmed_surfaces(void** state)
 {
   const double iso[2] = { -8, -30 };
@@ -234,17 +37,17 @@ static void trimmed_surfaces(void** state)
   options.iso_count = 2;
   input.attributes = attributes;
   input.attribute_count = 2;
-  ask_for_all(&options);
-  check_cuts(*state, "two values, solids", &input, &options);
+  core_ask_for_all(&options);
+  core_check_cuts(*state, "two values, solids", &input, &options);
   options.wall_share = 0.4;
   options.triangle_normals = 1;
   input.has_volume = 0;
-  check_cuts(*state, "normals from triangles, computed volumes", &input, &options);
+  core_check_cuts(*state, "normals from triangles, computed volumes", &input, &options);
   options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
   options.boundary_eigenvalue = 1;
   options.vertex_threshold = 0.3;
   options.preview = 1;
-  check_cuts(*state, "eigenvalue, preview", &input, &options);
+  core_check_cuts(*state, "eigenvalue, preview", &input, &options);
   core_free_set(&set);
 }
 
@@ -263,14 +66,14 @@ static void rough_surfaces(void** state)
   options.h_scale = 0.5;
   options.node_threshold = 0.9;
   options.vertex_threshold = 0.92;
-  ask_for_all(&options);
+  core_ask_for_all(&options);
   options.triangle_normals = 1;
-  check_cuts(*state, "noise", &input, &options);
+  core_check_cuts(*state, "noise", &input, &options);
   options.seeds = MCOR_PAIRS;
-  check_cuts(*state, "pairs", &input, &options);
+  core_check_cuts(*state, "pairs", &input, &options);
   options.seeds = MCOR_COMPLETE;
   options.topology = MCOR_TOPOLOGY_FIELD;
-  check_cuts(*state, "topology", &input, &options);
+  core_check_cuts(*state, "topology", &input, &options);
   core_free_set(&set);
 }
 
@@ -281,10 +84,10 @@ static void other_fields(void** state)
   mcor_input input = core_input(&set);
   input.has_volume = 0;
   mcor_options options = core_options(&half);
-  ask_for_all(&options);
+  core_ask_for_all(&options);
   options.cube_size = 0.3;
   options.field = MCOR_WEIGHT_SUM;
-  check_cuts(*state, "free surface", &input, &options);
+  core_check_cuts(*state, "free surface", &input, &options);
   core_free_set(&set);
   set = make_block();
   input = core_input(&set);
@@ -292,37 +95,11 @@ static void other_fields(void** state)
   input.has_mass = 1;
   input.mass = core_array(set.volume, 1);
   options = core_options(&iso);
-  ask_for_all(&options);
+  core_ask_for_all(&options);
   options.sph_kernel = MCOR_M_PRIME_4;
   options.field = MCOR_SUM;
-  check_cuts(*state, "sum with the tensor kernel", &input, &options);
+  core_check_cuts(*state, "sum with the tensor kernel", &input, &options);
   core_free_set(&set);
-}
-
-/* Particles of the set not farther than `margin` from the box, in another order. */
-static core_set take_near(const core_set* set, const double box[6], double margin)
-{
-  core_set near = core_make_set(set->count);
-  near.has_solids = set->has_solids;
-  near.count = 0;
-  for (int64_t i = set->count - 1; i >= 0; --i)
-  {
-    const double* x = set->position + 3 * i;
-    int in = 1;
-    for (int a = 0; a < 3; ++a)
-    {
-      in = in && x[a] > box[2 * a] - margin && x[a] < box[2 * a + 1] + margin;
-    }
-    if (in)
-    {
-      memcpy(near.position + 3 * near.count, x, 3 * sizeof *x);
-      near.smoothing_length[near.count] = set->smoothing_length[i];
-      near.volume[near.count] = set->volume[i];
-      near.scalar[near.count] = set->scalar[i];
-      near.solid[near.count++] = set->solid[i];
-    }
-  }
-  return near;
 }
 
 /* Masses alone, so that volumes are computed, and solids; the particles' x is uneven enough for a
@@ -355,14 +132,14 @@ static void given_globals(void** state)
   mcor_array attributes[3];
   mcor_input input = input_of(&set, attributes);
   mcor_options options = core_options(&iso);
-  ask_for_all(&options);
+  core_ask_for_all(&options);
   options.nearest_particle = 0; /* would be numbers of other inputs */
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_int_equal(globals.component_count, 5);
   mcor_surface surface = core_extract(*state, &input, &options);
-  box_triangles whole = { 0 }, all = { 0 };
-  add_surface(&whole, &input, &surface);
+  core_triangles whole = { 0 }, all = { 0 };
+  core_add_surface(&whole, &input, &surface);
   mcor_free_surface(&surface);
   options.globals = &globals;
   const int none[3] = { 0, 0, 0 };
@@ -370,23 +147,23 @@ static void given_globals(void** state)
   for (int i = 0; i < 8; ++i)
   {
     const int at[3] = { i & 1, i >> 1 & 1, i >> 2 };
-    set_box(&options, cuts + 3, at);
-    core_set near = take_near(&set, options.box, 8.5);
+    core_set_box(&options, core_cuts + 3, at);
+    core_set near = core_take_near(&set, options.box, 8.5);
     fewest = near.count < fewest ? near.count : fewest;
     input = input_of(&near, attributes);
     surface = core_extract(*state, &input, &options);
-    add_surface(&all, &input, &surface);
+    core_add_surface(&all, &input, &surface);
     mcor_free_surface(&surface);
     core_free_set(&near);
   }
   assert_in_range(fewest, 1, set.count - 100);
-  sort_triangles(&whole);
-  sort_triangles(&all);
+  core_sort_triangles(&whole);
+  core_sort_triangles(&all);
   assert_int_equal(all.count, whole.count);
   assert_memory_equal(all.bytes, whole.bytes, (size_t)all.count * all.width);
   input = input_of(&set, attributes);
   input.attribute_count = 2;
-  set_box(&options, cuts + 3, none);
+  core_set_box(&options, core_cuts + 3, none);
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   assert_non_null(
     strstr(mcor_last_error(*state), "of 5 components of attributes; the input has 4"));

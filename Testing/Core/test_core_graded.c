@@ -10,35 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A shell of particles around a hole whose size goes with the distance from the hole's middle, from 1
- * to `ratio`; scalar: height. A wedge of it is left out. */
-static core_set make_graded(double ratio, double step)
-{
-  core_set set = core_make_set(60000);
-  uint64_t seed = 5;
-  int64_t n = 0;
-  for (double r = 1; r < ratio; r *= 1 + 0.9 * step)
-  {
-    const int of_shell = (int)(4 * M_PI / (step * step));
-    for (int i = 0; i < of_shell; ++i)
-    {
-      const double z = 1 - (2 * i + 1.0) / of_shell, s = sqrt(1 - z * z), w = 2.399963 * i;
-      const double p[3] = { r * (s * cos(w) + 0.05 * step * random_unit(&seed)), r * s * sin(w),
-        r * z };
-      if (p[0] < 0.4 * r)
-      {
-        assert_true(n < set.count);
-        memcpy(set.position + 3 * n, p, sizeof p);
-        set.smoothing_length[n] = 1.2 * step * r;
-        set.volume[n] = pow(step * r, 3);
-        set.scalar[n++] = z + 0.2 * p[1] / r;
-      }
-    }
-  }
-  set.count = n;
-  return set;
-}
-
 static mcor_options graded_options(const double* iso, mcor_field field)
 {
   mcor_options options = core_options(iso);
@@ -68,7 +39,7 @@ static void closed_across_levels(void** state)
   const double ratios[] = { 10, 200 };
   for (int i = 0; i < 2; ++i)
   {
-    core_set set = make_graded(ratios[i], 0.3);
+    core_set set = core_make_graded(ratios[i], 0.3);
     const mcor_input input = core_input(&set);
     const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
     mcor_surface surface = core_extract(*state, &input, &options);
@@ -86,7 +57,7 @@ static void closed_across_levels(void** state)
 static void trimmed(void** state)
 {
   static const double isos[2] = { 0.1, 0.3 };
-  core_set set = make_graded(30, 0.3);
+  core_set set = core_make_graded(30, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = graded_options(isos, MCOR_SHEPARD);
   options.iso_count = 2;
@@ -114,7 +85,7 @@ static void one_level_is_uniform(void** state)
 {
   static const double iso = 0;
   core_set set = core_make_block(9, 0.3, 3, core_ball);
-  core_set graded = make_graded(8, 0.4);
+  core_set graded = core_make_graded(8, 0.4);
   const mcor_input input = core_input(&set), other = core_input(&graded);
   mcor_options options = graded_options(&iso, MCOR_SHEPARD);
   mcor_surface adaptive = core_extract(*state, &input, &options);
@@ -138,7 +109,7 @@ static void one_level_is_uniform(void** state)
 static void roots_of_the_finest_lattice(void** state)
 {
   static const double half = 0.5;
-  core_set set = make_graded(6, 0.4);
+  core_set set = core_make_graded(6, 0.4);
   const mcor_input input = core_input(&set);
   const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
   mcor_surface surface = core_extract(*state, &input, &options);
@@ -160,7 +131,7 @@ static void roots_of_the_finest_lattice(void** state)
 static void order_form_and_reuse(void** state)
 {
   static const double half = 0.5, isos[2] = { 0.3, 0.1 };
-  core_set set = make_graded(12, 0.4);
+  core_set set = core_make_graded(12, 0.4);
   int64_t* order = core_make_order(set.count, 9);
   core_set shuffled = core_permute(&set, order);
   mcor_input input = core_input_to_keep(&set);
@@ -230,7 +201,7 @@ static void far_apart(void** state)
 static void boxes_make_the_whole(void** state)
 {
   static const double iso = 0.2;
-  core_set set = make_graded(12, 0.4);
+  core_set set = core_make_graded(12, 0.4);
   const mcor_input input = core_input(&set);
   mcor_options options = graded_options(&iso, MCOR_SHEPARD);
   mcor_surface whole = core_extract(*state, &input, &options);
@@ -266,7 +237,7 @@ static void too_many_leaves(void** state)
 {
   static const double half = 0.5;
   mcor_context* context = *state;
-  core_set set = make_graded(12, 0.4);
+  core_set set = core_make_graded(12, 0.4);
   const mcor_input input = core_input(&set);
   mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
   options.cube_size_factor = 0.002;

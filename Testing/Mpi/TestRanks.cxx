@@ -128,6 +128,21 @@ const std::vector<Case> Cases = {
       f->SetSolids(vtkMarchingCorrectors::SOLIDS_WALL);
       f->SetCubeSizeFactor(1.0);
     } },
+  { "adaptive cubes", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourDamBreak(f);
+      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      f->SetCubeSizeFactor(0.5);
+      f->SetCubeSizeModeToAdaptive();
+    } },
+  { "adaptive cubes, free surface, computed volumes", "evrard_collapse_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->SetCubeSizeFactor(1.0);
+      f->SetCubeSizeModeToAdaptive();
+    } },
   { "smoothing lengths that differ", "dam_break_45k",
     [](vtkMarchingCorrectors* f)
     {

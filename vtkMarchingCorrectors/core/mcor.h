@@ -206,6 +206,9 @@ extern "C"
     double wall_share; /* where the options ask for it */
     int component_count;
     mcor_global_component* components; /* [component_count], of all attributes in their order */
+    /* Adaptive cubes: which bricks of the lattice are divided, ascending numbers; NULL: of one level. */
+    int64_t split_count;
+    uint64_t* splits; /* [split_count] */
   } mcor_globals;
 
 /* A wall share that is measured: the solids' share of the weight at some solids themselves, the median,
@@ -295,7 +298,7 @@ extern "C"
     int capping;
 
     /* NULL: measured over the input. Else of all particles, of which the input holds some: at least
-     * those that reach the box by 3 cubes or less, with computed volumes also all within the
+     * those whose supports miss the box by no more than mcor_reach_margin, with computed volumes also all within the
      * (unscaled) support of these, with MCOR_PAIRS also all within the (unscaled) smoothing length of
      * the box, and of these. The surface is, to the last bit, that from all of them. Borrowed
      * until return. See mcor_measure_globals. For mcor_probe and mcor_derive these are of
@@ -477,6 +480,10 @@ extern "C"
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
+  /* By how much the support of a particle may miss a box, L, and the particle yet be needed there: see
+   * mcor_options.globals. */
+  double mcor_reach_margin(
+    const mcor_options* options, const mcor_globals* globals, double smoothing_length);
 
   /* The same for calls of mcor_probe and mcor_derive. */
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,

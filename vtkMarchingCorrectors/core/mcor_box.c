@@ -24,6 +24,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_stage.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>
@@ -32,6 +33,14 @@
 
 /* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
 #define MCOR_BOX_MARGIN 1.25
+
+/* A particle that misses a box by more, in cubes, is not needed there. */
+#define MCOR_GLOBALS_MARGIN 3
+
+/* The same of adaptive cubes, of the particle's level, and more: a particle reaches no cells larger than
+ * these. Of a cell whose centre is in the box, and the ring, nodes are two cells away from it at
+ * most; trimming may move a vertex by 3/4 of one, to where cells are half as large. */
+#define MCOR_LEVEL_MARGIN 6
 
 /* The same of a probe's points: what rounding moves particles by. */
 #define MCOR_POINTS_MARGIN 0.25
@@ -46,12 +55,32 @@
 
 /* A cell is owned where its centre is in the box: so the side of a box may lie on the lattice's
  * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
+
+/* The same for cells of all levels, whose centres are at whole numbers of halves. Without end where the
+ * box is not: large cells stick out of the lattice. */
+static void mcor_place_halves(mcor_context* context, const mcor_options* options, int axis)
+{
+  mcor_box* box = &context->box;
+  const mcor_lattice* lattice = &context->lattice;
+  const bool periodic = lattice->period[axis] > 0;
+  const int first = periodic ? lattice->period_first[axis] : (int)lattice->first[axis];
+  const int last = periodic ? first + lattice->period[axis] : (int)lattice->last[axis];
+  for (int s = 0; s < 2; ++s)
+  {
+    const int side = s == 0 ? box->first[axis] : box->last[axis], end = s == 0 ? first : last;
+    const double at = options->has_box ? ceil(2 * (options->box[2 * axis + s] / lattice->cube)) : 0;
+    box->halves[3 * s + axis] = side != end ? (int)(at - 2 * (double)lattice->origin[axis])
+      : periodic                            ? 2 * end
+      : s == 0                              ? -(1 << 30)
+                                            : 1 << 30;
+  }
+}
+
 void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
   mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
-  const bool everywhere =
-    lattice->top > 0 || (mcor_uses_pairs(context) && !options->ranks && !box->of_points);
+  const bool everywhere = mcor_uses_pairs(context) && !options->ranks && !box->of_points;
   box->is_part = box->is_empty = false;
   for (int a = 0; a < 3; ++a)
   {
@@ -72,6 +101,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
+    mcor_place_halves(context, options, a);
     box->begin[a] = everywhere ? (int)first : box->first[a];
     box->end[a] = everywhere ? (int)last : box->last[a];
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
@@ -187,6 +217,25 @@ int mcor_list_images(
   return count;
 }
 
+double mcor_reach_of(const mcor_reach_box* box, double h)
+{
+  const double support = h * box->support;
+  return box->top > 0
+    ? support + ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(h, box->h_min, box->top))
+    : support;
+}
+
+double mcor_reach_margin(
+  const mcor_options* options, const mcor_globals* globals, double smoothing_length)
+{
+  const double h_min = globals->smoothing_length_min, h_max = globals->smoothing_length_max;
+  const int limit = options->cube_size_mode == MCOR_CUBES_ADAPTIVE ? options->level_limit : 0;
+  const bool graded = mcor_tree_level_of(h_max, h_min, limit) > 0;
+  return globals->cube_size *
+    (graded ? ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(smoothing_length, h_min, limit))
+            : MCOR_GLOBALS_MARGIN);
+}
+
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
 {
   const double period = ldexp(box->period[axis], box->fix_bits);
@@ -221,7 +270,7 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
     }
     for (int i = 0; i < count; ++i)
     {
-      const double support = h[i] * job->box->support;
+      const double support = mcor_reach_of(job->box, h[i]);
       double at[3];
       mcor_images images;
       for (int a = 0; a < 3; ++a)
@@ -269,6 +318,8 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   const mcor_box* box = &context->box;
   *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits,
     .unit = ldexp(1, -context->lattice.fix_bits),
+    .h_min = context->measure.h_min,
+    .top = context->lattice.top,
     .is_empty = box->is_empty };
   if (!mcor_is_limited(context))
   {

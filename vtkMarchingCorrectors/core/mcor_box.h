@@ -23,6 +23,8 @@ typedef struct mcor_reach_box
   double support;         /* support radius / smoothing length */
   double radius;          /* as if no support radius were less */
   double unit;            /* 2^-fix_bits */
+  double h_min;           /* of adaptive cubes, with their highest level: see mcor_reach_of */
+  int top;
   int period[3], first[3], fix_bits;
   bool is_empty; /* none matters */
 } mcor_reach_box;
@@ -32,6 +34,9 @@ typedef struct mcor_images
 {
   int first[3], last[3];
 } mcor_images;
+
+/* How near to the box a particle matters. */
+double mcor_reach_of(const mcor_reach_box* box, double h);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* False where all particles are needed. */

@@ -43,10 +43,8 @@ static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options
     options->periodic[2] < options->periodic[3] || options->periodic[4] < options->periodic[5];
   const char* other = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM
     ? "pairs as seeds"
-    : periodic            ? "a period"
-    : options->globals    ? "given global values"
-    : options->point_keys ? "keys of points"
-                          : NULL;
+    : periodic ? "a period"
+               : NULL;
   MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && other, context,
     MCOR_INVALID_ARGUMENT, "Adaptive cubes do not go with %s. Use uniform cubes.", other);
   return MCOR_OK;

@@ -5,6 +5,7 @@
 
 #include "mcor_input.h"
 #include "mcor_ranks.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -146,6 +147,7 @@ static mcor_status mcor_measure_all(
   {
     MCOR_TRY(mcor_find_median(context, input, &globals->scalar_shift));
   }
+  MCOR_TRY(mcor_measure_splits(context, input, globals));
   return mcor_measure_components(context, input, globals);
 }
 
@@ -192,13 +194,27 @@ void mcor_free_globals(mcor_globals* globals)
   if (globals)
   {
     free(globals->components);
+    free(globals->splits);
     *globals = (mcor_globals){ 0 };
   }
+}
+
+/* A number that other split bricks do not have. */
+static uint64_t mcor_hash_splits(const mcor_globals* globals)
+{
+  uint64_t hash = (uint64_t)globals->split_count;
+  for (int64_t i = 0; i < globals->split_count; ++i)
+  {
+    hash = (hash ^ globals->splits[i]) * UINT64_C(0x9E3779B97F4A7C15);
+    hash ^= hash >> 29;
+  }
+  return hash;
 }
 
 void mcor_keep_globals(mcor_context* context, const mcor_globals* globals)
 {
   context->last_globals = globals ? *globals : (mcor_globals){ 0 };
+  context->last_splits = globals ? mcor_hash_splits(globals) : 0;
 }
 
 /* Whether they are as in the last call; components matter to nothing that is kept. */
@@ -213,6 +229,7 @@ bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
     a->mass_max == b->mass_max && a->wall_share == b->wall_share &&
     a->scalar_min == b->scalar_min && a->scalar_max == b->scalar_max &&
     a->scalar_shift == b->scalar_shift;
+  same = same && context->last_splits == (globals ? mcor_hash_splits(globals) : 0);
   for (int i = 0; i < 3; ++i)
   {
     same = same && a->low[i] == b->low[i] && a->high[i] == b->high[i];

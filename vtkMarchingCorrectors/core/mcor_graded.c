@@ -10,6 +10,7 @@
  * in cells of that level (mcor_view_level). */
 
 #include "mcor_graded.h"
+#include "mcor_graded_box.h"
 #include "mcor_graded_seed.h"
 #include "mcor_tree.h"
 
@@ -212,7 +213,12 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   if (!context->tree.leaves)
   {
     MCOR_TRY(mcor_make_tree(context, input));
-    MCOR_TRY(mcor_write_tree(context));
+    MCOR_TRY(context->tree.leaf_count > 0 ? mcor_write_tree(context) : MCOR_OK);
+  }
+  context->graded.count = 0;
+  if (context->tree.leaf_count == 0) /* none is in the box */
+  {
+    return MCOR_OK;
   }
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
@@ -225,7 +231,6 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   }
   MCOR_RELEASE(context, &found.value, &found.weight);
   MCOR_TRY(status);
-  context->statistics->seed_cells += 64 * (int64_t)context->graded.count;
   MCOR_TRY(mcor_evaluate_slots(context, iso));
   return mcor_complete_leaves(context, iso);
 }
@@ -246,13 +251,15 @@ static mcor_status mcor_count_leaves(mcor_context* context)
   const size_t n = (size_t)count, s = (size_t)slots;
   MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->used, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_limit_leaves(context));
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&graded->flat)));
+    MCOR_BUFFER(&graded->mixed),
+    MCOR_BUFFER(context->box.is_part ? &context->box.clipped : &mesh->used),
+    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&graded->flat)));
   return MCOR_LAUNCH(context, "mcor_graded_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
     MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
 }
@@ -264,43 +271,18 @@ static mcor_status mcor_read_int(
   return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
 }
 
-/* Kernel arguments of MCOR_LEAF_BOX_PARAMS. */
-#define MCOR_LEAF_BOX_ARGS(c, b)                                                                   \
-  MCOR_INT((c)->box.is_part), MCOR_INT((b)[0]), MCOR_INT((b)[1]), MCOR_INT((b)[2]),                \
-    MCOR_INT((b)[3]), MCOR_INT((b)[4]), MCOR_INT((b)[5]), MCOR_BUFFER(&(c)->graded.cells)
-
-/* The box, in halves of the finest cubes from the lattice's origin. */
-static void mcor_place_leaf_box(const mcor_context* context, int box[6])
-{
-  const mcor_options* options = context->options;
-  for (int i = 0; i < 6; ++i)
-  {
-    const int axis = i % 3;
-    const double side = options->has_box ? options->box[2 * axis + i / 3] : 0;
-    const double at =
-      ceil(2 * (side / context->lattice.cube)) - 2 * (double)context->lattice.origin[axis];
-    box[i] = (int)fmin(fmax(at, -(1 << 30)), 1 << 30);
-  }
-}
-
 /* Where the vertices of each level begin, and how many cells and triangles it has. */
 static mcor_status mcor_count_by_level(mcor_context* context)
 {
   mcor_graded* graded = &context->graded;
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->statistics;
-  mcor_buffer* clipped = &context->box.clipped;
-  int caps, used, box[6];
+  int caps, used;
   MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
-  mcor_place_leaf_box(context, box);
-  MCOR_TRY(mcor_reserve(context, clipped, (size_t)graded->count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_clip", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_BOX_ARGS(context, box), MCOR_INT(graded->count), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(clipped)));
-  MCOR_TRY(mcor_count_bits(context, clipped, clipped, graded->count, &used));
+  MCOR_TRY(mcor_count_owned(context, &used));
   s->flat_caps += caps;
   s->cells_used += used;
-  s->seed_cells_not_intersected += 64 * (int64_t)graded->count - used;
+  s->seed_cells_not_intersected -= used;
   cl_int cells[2] = { 0, 0 };
   for (int l = 0; l <= context->tree.top; ++l)
   {
@@ -329,11 +311,9 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
   mcor_buffer* owned = &context->box.owned;
-  int box[6];
-  mcor_place_leaf_box(context, box);
   MCOR_TRY(mcor_reserve(context, owned, context->box.is_part ? triangles : 1));
   return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context, box), MCOR_BUFFER(owned),
+    MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context), MCOR_BUFFER(owned),
     MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }

@@ -149,7 +149,8 @@ typedef struct mcor_brick_set
 /* Leaves of adaptive cubes; see mcor_tree.h. */
 typedef struct mcor_tree
 {
-  int top;                                    /* highest level of leaves */
+  int top;                        /* highest level of leaves */
+  int period[3], period_first[3]; /* as in mcor_lattice */
   mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 2]; /* up to one above */
   uint64_t key_limit;
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
@@ -241,6 +242,7 @@ typedef struct mcor_box
 {
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
+  int halves[6]; /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
   int begin[3], end[3]; /* the same of those whose particles are on the device */
@@ -276,7 +278,8 @@ struct mcor_context
   double largest_weight;     /* no particle has a greater V / (scaled h)^3 */
   bool nodes_valid;          /* bricks hold node values of the current scalar */
   mcor_input last_input;     /* what grid and value were made from */
-  mcor_globals last_globals; /* given; 0 where none were; its components are not kept */
+  mcor_globals last_globals; /* given; 0 where none were; its arrays are not kept */
+  uint64_t last_splits;      /* of their split bricks, a hash */
   mcor_options last_options;
   bool grid_valid, value_valid;
   const mcor_options* options; /* of the call under way; NULL between calls */

@@ -4,7 +4,8 @@
 /* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
  * makes, and ascending in the order of the whole surface's points. */
 
-#include "mcor_internal.h"
+#include "mcor_graded.h"
+#include "mcor_tree.h"
 
 #include <stdlib.h>
 
@@ -44,21 +45,32 @@ static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4],
   return (block << 15 | inner) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
 }
 
+/* The same of adaptive cubes: by the key of the brick of its level, then by node and axis. Fits, see
+ * MCOR_TREE_KEY_BITS. */
+static uint64_t mcor_graded_edge_key(const mcor_tree* tree, const cl_int node[4], int copy)
+{
+  const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
+  const uint64_t key = mcor_tree_key(&tree->rungs[node[3] >> MCOR_LEVEL_SHIFT], brick);
+  const int inner = node[0] % MCOR_BRICK + MCOR_BRICK * (node[1] % MCOR_BRICK) +
+    MCOR_BRICK * MCOR_BRICK * (node[2] % MCOR_BRICK);
+  return (key << 6 | (uint64_t)inner) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
+}
+
 /* A pinched edge has two vertices, one after the other. */
-static uint64_t mcor_march_key(const mcor_lattice* lattice, const cl_int* nodes, int64_t v)
+static uint64_t mcor_march_key(const mcor_context* context, const cl_int* nodes, int64_t v)
 {
   const cl_int *node = nodes + 4 * v, *before = node - 4;
   const bool copy = v > 0 && node[0] == before[0] && node[1] == before[1] && node[2] == before[2] &&
     node[3] == before[3];
-  return mcor_edge_key(lattice, node, copy);
+  return mcor_is_graded(context) ? mcor_graded_edge_key(&context->tree, node, copy)
+                                 : mcor_edge_key(&context->lattice, node, copy);
 }
 
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
   int64_t v, uint64_t key[MCOR_POINT_KEY])
 {
   const int64_t cut = v - context->mesh.march_count;
-  const mcor_lattice* lattice = &context->lattice;
   key[0] = 2 * (uint64_t)context->iso_number + (cut >= 0);
-  key[1] = mcor_march_key(lattice, nodes, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));
-  key[2] = cut < 0 ? 0 : mcor_march_key(lattice, nodes, (int64_t)(cuts[cut] & UINT32_MAX));
+  key[1] = mcor_march_key(context, nodes, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));
+  key[2] = cut < 0 ? 0 : mcor_march_key(context, nodes, (int64_t)(cuts[cut] & UINT32_MAX));
 }

@@ -255,7 +255,7 @@ static int mcor_images_of(
   {
     at[a] = chunk->x[a][i] * job->reach->unit;
   }
-  return mcor_list_images(job->reach, at, chunk->h[i] * job->reach->support, images);
+  return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, chunk->h[i]), images);
 }
 
 /* How many digits shorter than fixed-point numbers the positions of particles with a support are, see

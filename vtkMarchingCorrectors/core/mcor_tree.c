@@ -3,90 +3,22 @@
 
 /* Adaptive cubes: the leaves. A brick is split where a particle of a lower level reaches it: each
  * particle splits those of the level above its own that it reaches, and a split brick those of the
- * next level that touch it. So all around it are leaves no more than a level above its parts. */
+ * next level that touch it. So all around it are leaves no more than a level above its parts.
+ *
+ * Which bricks are split is global: all particles decide, of all ranks (mcor_measure_splits), and around
+ * a period, which is a whole number of bricks of all levels: a brick is known by its image in the
+ * first period. Leaves are listed in the box alone. */
 
 #include "mcor_tree.h"
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_ranks.h"
 #include "mcor_sph_kernel.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- Sets of bricks ---- */
-
-static size_t mcor_set_place(const mcor_brick_set* set, uint64_t key)
-{
-  size_t at = (size_t)((key * UINT64_C(0x9E3779B97F4A7C15)) >> 20) & (set->capacity - 1);
-  while (set->slots[at] != MCOR_NO_BRICK && set->slots[at] != key)
-  {
-    at = (at + 1) & (set->capacity - 1);
-  }
-  return at;
-}
-
-static bool mcor_set_has(const mcor_brick_set* set, uint64_t key)
-{
-  return set->capacity > 0 && set->slots[mcor_set_place(set, key)] == key;
-}
-
-static bool mcor_set_grow(mcor_brick_set* set)
-{
-  const mcor_brick_set old = *set;
-  const size_t capacity = old.capacity ? 2 * old.capacity : 1024;
-  uint64_t* slots = malloc(capacity * sizeof *slots);
-  if (!slots)
-  {
-    return false;
-  }
-  memset(slots, 0xff, capacity * sizeof *slots);
-  *set = (mcor_brick_set){ slots, capacity, old.count };
-  for (size_t i = 0; i < old.capacity; ++i)
-  {
-    if (old.slots[i] != MCOR_NO_BRICK)
-    {
-      slots[mcor_set_place(set, old.slots[i])] = old.slots[i];
-    }
-  }
-  free(old.slots);
-  return true;
-}
-
-/* More leaves than this are not made. Of the parts of each split brick, 8, all but those that are split
- * are leaves: seven more for each brick at least. */
-#define MCOR_LEAF_LIMIT (INT32_MAX / 64)
-#define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
-
-/* False where memory ran out, or there would be too many leaves: before the sets take much of either. */
-static bool mcor_set_add(mcor_brick_set* set, uint64_t key)
-{
-  if (set->count > MCOR_SPLIT_LIMIT || (2 * set->count >= set->capacity && !mcor_set_grow(set)))
-  {
-    return false;
-  }
-  const size_t at = mcor_set_place(set, key);
-  set->count += set->slots[at] != key;
-  set->slots[at] = key;
-  return true;
-}
-
-/* Whether the sets of all levels together make too many leaves. */
-static bool mcor_are_too_many(const mcor_brick_set* levels)
-{
-  size_t count = 0;
-  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
-  {
-    count += levels[l].count;
-  }
-  return count > MCOR_SPLIT_LIMIT;
-}
-
-static void mcor_set_free(mcor_brick_set* set)
-{
-  free(set->slots);
-  *set = (mcor_brick_set){ 0 };
-}
 
 /* ---- Levels ---- */
 
@@ -111,12 +43,15 @@ int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
 #define MCOR_BRICK_LIMIT 0x1p63
 
 /* Numbers the bricks of all levels up to the one above the highest leaves'. The lattice is a whole number
- * of these. False where there are too many for numbers. */
-static bool mcor_number_bricks(const mcor_lattice* lattice, mcor_tree* tree)
+ * of these. */
+static mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
+  const mcor_lattice* lattice = &context->lattice;
   uint64_t base = 0;
   double most = 1; /* bricks of all levels, nearly */
   tree->top = lattice->top;
+  memcpy(tree->period, lattice->period, sizeof tree->period);
+  memcpy(tree->period_first, lattice->period_first, sizeof tree->period_first);
   for (int l = 0; l <= tree->top + 1; ++l)
   {
     mcor_rung* rung = &tree->rungs[l];
@@ -128,21 +63,48 @@ static bool mcor_number_bricks(const mcor_lattice* lattice, mcor_tree* tree)
       bricks *= (uint64_t)rung->n[a];
       most *= l == 0 ? rung->n[a] : 1;
     }
-    if (most > MCOR_BRICK_LIMIT)
-    {
-      return false;
-    }
+    MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+      "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
+      "remove "
+      "particles whose smoothing length is far from that of the others.",
+      lattice->top + 1);
     rung->base = base;
     rung->unused = 0;
     base += bricks;
   }
   tree->key_limit = base;
-  return true;
+  return MCOR_OK;
+}
+
+/* The key of a brick, with a period of its image there; false: it is off the lattice. */
+static bool mcor_find_brick(const mcor_tree* tree, int level, const int brick[3], uint64_t* key)
+{
+  const mcor_rung* rung = &tree->rungs[level];
+  bool within = true;
+  int b[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const int edge = MCOR_BRICK << level, period = tree->period[a] / edge;
+    const int first = tree->period_first[a] / edge, from = brick[a] - first;
+    b[a] = period > 0 ? (from % period + period) % period + first : brick[a];
+    within = within && b[a] >= 0 && b[a] < rung->n[a];
+  }
+  *key = within ? mcor_tree_key(rung, b) : MCOR_NO_BRICK;
+  return within;
 }
 
 bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
 {
-  return level > 0 && mcor_set_has(&tree->split[level], mcor_tree_key(&tree->rungs[level], brick));
+  uint64_t key;
+  return level > 0 && mcor_find_brick(tree, level, brick, &key) &&
+    mcor_set_has(&tree->split[level], key);
+}
+
+/* False where memory ran out. */
+static bool mcor_split(const mcor_tree* tree, int level, const int brick[3], mcor_brick_set* set)
+{
+  uint64_t key;
+  return !mcor_find_brick(tree, level, brick, &key) || mcor_set_add(set, key);
 }
 
 /* ---- Split bricks ---- */
@@ -170,13 +132,12 @@ static double mcor_interval_distance2(double x, int brick, double edge)
 static bool mcor_split_reached(
   const mcor_tree_job* job, int level, const double x[3], double reach, mcor_brick_set* set)
 {
-  const mcor_rung* rung = &job->tree->rungs[level];
   const double edge = ldexp(MCOR_BRICK, level);
   int first[3], last[3], b[3];
   for (int a = 0; a < 3; ++a)
   {
-    first[a] = (int)fmax(ceil((x[a] - reach) / edge) - 1, 0);
-    last[a] = (int)fmin(floor((x[a] + reach) / edge), rung->n[a] - 1);
+    first[a] = (int)ceil((x[a] - reach) / edge) - 1;
+    last[a] = (int)floor((x[a] + reach) / edge);
   }
   for (b[2] = first[2]; b[2] <= last[2]; ++b[2])
   {
@@ -187,7 +148,7 @@ static bool mcor_split_reached(
       for (b[0] = first[0]; b[0] <= last[0]; ++b[0])
       {
         const double x2 = job->is_cube ? 0 : mcor_interval_distance2(x[0], b[0], edge);
-        if (x2 + y2 + z2 <= reach * reach && !mcor_set_add(set, mcor_tree_key(rung, b)))
+        if (x2 + y2 + z2 <= reach * reach && !mcor_split(job->tree, level, b, set))
         {
           return false;
         }
@@ -225,22 +186,14 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
       for (int a = 0; a < 3; ++a)
       {
         at[a] = x[a][i] / lattice->cube - (double)lattice->origin[a];
+        const double from = at[a] - lattice->period_first[a], period = lattice->period[a];
+        at[a] -= period > 0 ? floor(from / period) * period : 0;
       }
       job->failed[slice] =
         !mcor_split_reached(job, level, at, h[i] * job->reach, &job->split[slice][level]) ||
         mcor_are_too_many(job->split[slice]);
     }
   }
-}
-
-static bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other)
-{
-  bool added = true;
-  for (size_t i = 0; i < other->capacity && added; ++i)
-  {
-    added = other->slots[i] == MCOR_NO_BRICK || mcor_set_add(set, other->slots[i]);
-  }
-  return added;
 }
 
 static bool mcor_is_tensor(mcor_sph_kernel kernel)
@@ -296,7 +249,6 @@ static void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3])
 static bool mcor_split_above(mcor_tree* tree, int level)
 {
   const mcor_brick_set* set = &tree->split[level];
-  const mcor_rung* above = &tree->rungs[level + 1];
   bool made = true;
   for (size_t i = 0; i < set->capacity && made; ++i)
   {
@@ -304,18 +256,15 @@ static bool mcor_split_above(mcor_tree* tree, int level)
     {
       continue;
     }
-    int brick[3];
+    int brick[3], b[3];
     mcor_brick_of_key(&tree->rungs[level], set->slots[i], brick);
     for (int d = 0; d < 8 && made; ++d)
     {
-      int b[3];
-      bool within = true;
       for (int a = 0; a < 3; ++a)
       {
         b[a] = brick[a] / 2 + (d >> a & 1) * (brick[a] % 2 ? 1 : -1);
-        within = within && b[a] >= 0 && b[a] < above->n[a];
       }
-      made = !within || mcor_set_add(&tree->split[level + 1], mcor_tree_key(above, b));
+      made = mcor_split(tree, level + 1, b, &tree->split[level + 1]);
     }
   }
   return made;
@@ -323,59 +272,96 @@ static bool mcor_split_above(mcor_tree* tree, int level)
 
 /* ---- Leaves ---- */
 
-/* Lists the leaves of one level: the parts of split bricks that are not split. */
-static bool mcor_list_leaves(mcor_tree* tree, int level, size_t* room)
+/* Room for eight more leaves. False: too many, or no memory. */
+static bool mcor_extend_leaves(mcor_tree* tree, size_t* room)
 {
-  const mcor_brick_set* set = &tree->split[level + 1];
-  const size_t most = (size_t)tree->leaf_count + 8 * set->count;
+  const size_t most = (size_t)tree->leaf_count + 8;
+  if (most <= *room)
+  {
+    return true;
+  }
   if (most > MCOR_LEAF_LIMIT)
   {
     return false;
   }
-  if (most > *room)
+  cl_int* leaves = realloc(tree->leaves, 2 * most * 4 * sizeof *leaves);
+  tree->leaves = leaves ? leaves : tree->leaves;
+  cl_int* regions = realloc(tree->regions, (2 * most + 1) * sizeof *regions);
+  tree->regions = regions ? regions : tree->regions;
+  *room = leaves && regions ? 2 * most : *room;
+  return leaves && regions;
+}
+
+/* Whether a brick, with a ring of a cell around it, is in the box. */
+static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const int brick[3])
+{
+  bool wanted = true;
+  for (int a = 0; a < 3 && box->is_part; ++a)
   {
-    cl_int* leaves = realloc(tree->leaves, 2 * most * 4 * sizeof *leaves);
-    if (!leaves)
-    {
-      return false;
-    }
-    tree->leaves = leaves;
-    cl_int* regions = realloc(tree->regions, (2 * most + 1) * sizeof *regions);
-    if (!regions)
-    {
-      return false;
-    }
-    tree->regions = regions;
-    *room = 2 * most;
+    const int64_t edge = (int64_t)(2 * MCOR_BRICK) << level, ring = INT64_C(2) << cell_level;
+    const int64_t low = brick[a] * edge;
+    wanted = wanted && low + edge + ring >= box->halves[a] && low - ring <= box->halves[3 + a];
   }
-  for (size_t i = 0; i < set->capacity; ++i)
+  return wanted;
+}
+
+/* Lists the parts of a split brick that are not split and in the box. */
+static void mcor_list_parts(mcor_tree* tree, const mcor_box* box, int level, const int parent[3])
+{
+  const int first = tree->leaf_count;
+  for (int d = 0; d < 8; ++d)
   {
+    const int b[3] = { 2 * parent[0] + (d & 1), 2 * parent[1] + (d >> 1 & 1),
+      2 * parent[2] + (d >> 2) };
+    if (!mcor_tree_is_split(tree, level, b) && mcor_is_wanted(box, level, level, b))
+    {
+      cl_int* leaf = tree->leaves + 4 * (size_t)tree->leaf_count++;
+      leaf[0] = b[0];
+      leaf[1] = b[1];
+      leaf[2] = b[2];
+      leaf[3] = level;
+    }
+  }
+  if (tree->leaf_count > first)
+  {
+    tree->regions[tree->region_count++] = first;
+  }
+}
+
+/* Lists the leaves of one level: the parts of split bricks, and of their images, that are not split. */
+static bool mcor_list_leaves(mcor_tree* tree, const mcor_box* box, int level, size_t* room)
+{
+  const mcor_brick_set* set = &tree->split[level + 1];
+  bool made = true;
+  for (size_t i = 0; i < set->capacity && made; ++i)
+  {
+    int brick[3], parent[3];
     if (set->slots[i] == MCOR_NO_BRICK)
     {
       continue;
     }
-    int parent[3];
-    mcor_brick_of_key(&tree->rungs[level + 1], set->slots[i], parent);
-    const int first = tree->leaf_count;
-    for (int d = 0; d < 8; ++d)
+    mcor_brick_of_key(&tree->rungs[level + 1], set->slots[i], brick);
+    for (int image = 0; image < 27 && made; ++image)
     {
-      const int b[3] = { 2 * parent[0] + (d & 1), 2 * parent[1] + (d >> 1 & 1),
-        2 * parent[2] + (d >> 2) };
-      if (!mcor_tree_is_split(tree, level, b))
+      const int by[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
+      bool exists = true;
+      for (int a = 0; a < 3; ++a)
       {
-        cl_int* leaf = tree->leaves + 4 * (size_t)tree->leaf_count++;
-        leaf[0] = b[0];
-        leaf[1] = b[1];
-        leaf[2] = b[2];
-        leaf[3] = level;
+        const int period = tree->period[a] / (MCOR_BRICK << (level + 1));
+        exists = exists && (by[a] == 0 || period > 0);
+        parent[a] = brick[a] + by[a] * period;
+      }
+      if (exists && mcor_is_wanted(box, level + 1, level, parent))
+      {
+        made = mcor_extend_leaves(tree, room);
+        if (made)
+        {
+          mcor_list_parts(tree, box, level, parent);
+        }
       }
     }
-    if (tree->leaf_count > first)
-    {
-      tree->regions[tree->region_count++] = first;
-    }
   }
-  return true;
+  return made;
 }
 
 /* About how many leaves there will be at least: a particle has about the volume of (h / 1.3)^3, and the
@@ -399,30 +385,147 @@ static double mcor_guess_leaves(const mcor_context* context, const mcor_input* i
   return leaves;
 }
 
-mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
+/* ---- Split bricks of all particles ---- */
+
+static int mcor_compare_keys(const void* a, const void* b)
 {
-  mcor_tree* tree = &context->tree;
-  mcor_release_tree(tree);
+  const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
+  return (x > y) - (x < y);
+}
+
+/* The keys of all split bricks, ascending. */
+static mcor_status mcor_list_splits(
+  mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count)
+{
+  size_t total = 0;
+  for (int l = 0; l <= tree->top + 1; ++l)
+  {
+    total += tree->split[l].count;
+  }
+  *keys = malloc((total + 1) * sizeof **keys);
+  *count = 0;
+  MCOR_RETURN_IF(!*keys, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  for (int l = 0; l <= tree->top + 1; ++l)
+  {
+    for (size_t i = 0; i < tree->split[l].capacity; ++i)
+    {
+      const uint64_t key = tree->split[l].slots[i];
+      if (key != MCOR_NO_BRICK)
+      {
+        (*keys)[(*count)++] = key;
+      }
+    }
+  }
+  qsort(*keys, total, sizeof **keys, mcor_compare_keys);
+  return MCOR_OK;
+}
+
+/* The same from their keys. */
+static mcor_status mcor_take_splits(
+  mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count)
+{
+  int level = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    level = i > 0 && keys[i] < keys[i - 1] ? 0 : level;
+    while (level <= tree->top && keys[i] >= tree->rungs[level + 1].base)
+    {
+      ++level;
+    }
+    MCOR_RETURN_IF(keys[i] >= tree->key_limit || level == 0, context, MCOR_INVALID_ARGUMENT,
+      "The given global values were measured with other options: a brick of adaptive cubes is not "
+      "on the lattice.");
+    MCOR_RETURN_IF(!mcor_set_add(&tree->split[level], keys[i]), context, MCOR_OUT_OF_CAPACITY,
+      "Host memory for %lld bricks of adaptive cubes ran out.", (long long)count);
+  }
+  return MCOR_OK;
+}
+
+/* All bricks that are to be split, by the particles of all ranks. */
+static mcor_status mcor_split_bricks(
+  mcor_context* context, const mcor_input* input, mcor_tree* tree)
+{
   const double guess = mcor_guess_leaves(context, input);
   MCOR_RETURN_IF(guess > MCOR_LEAF_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: with cube size %g the particles fill about %.3g bricks of %d "
     "adaptive cubes, and %d is the limit. Use a larger cube size.",
     context->lattice.cube, guess, MCOR_BRICK_NODES, MCOR_LEAF_LIMIT);
-  MCOR_RETURN_IF(!mcor_number_bricks(&context->lattice, tree), context, MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or remove "
-    "particles whose smoothing length is far from that of the others.",
-    context->lattice.top + 1);
+  MCOR_TRY(mcor_number_bricks(context, tree));
   bool made = mcor_split_by_particles(context, input, tree);
-  size_t room = 0;
+  if (made && context->options->ranks)
+  {
+    uint64_t* own = NULL;
+    const void* all;
+    int64_t count;
+    mcor_status status = mcor_list_splits(context, tree, &own, &count);
+    if (status == MCOR_OK)
+    {
+      status = mcor_gather(context, own, count, sizeof *own, &all, &count);
+    }
+    if (status == MCOR_OK)
+    {
+      status = mcor_take_splits(context, tree, all, count);
+    }
+    free(own);
+    MCOR_TRY(status);
+  }
   for (int l = 1; l <= tree->top && made; ++l)
   {
     made = mcor_split_above(tree, l) && !mcor_are_too_many(tree->split);
   }
+  MCOR_RETURN_IF(!made, context, MCOR_OUT_OF_CAPACITY,
+    "Adaptive cubes have more than %d leaves, or more than host memory has room for. Use a larger "
+    "cube size.",
+    MCOR_LEAF_LIMIT);
+  return MCOR_OK;
+}
+
+mcor_status mcor_measure_splits(
+  mcor_context* context, const mcor_input* input, mcor_globals* globals)
+{
+  mcor_tree tree = { 0 };
+  if (context->lattice.top == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_status status = mcor_split_bricks(context, input, &tree);
+  if (status == MCOR_OK)
+  {
+    status = mcor_list_splits(context, &tree, &globals->splits, &globals->split_count);
+  }
+  mcor_release_tree(&tree);
+  return status;
+}
+
+mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
+{
+  mcor_tree* tree = &context->tree;
+  const mcor_globals* globals = context->options->globals;
+  mcor_release_tree(tree);
+  if (globals)
+  {
+    MCOR_RETURN_IF(!globals->splits, context, MCOR_INVALID_ARGUMENT,
+      "The given global values were measured for uniform cubes. Measure them with the same "
+      "options.");
+    MCOR_TRY(mcor_number_bricks(context, tree));
+    MCOR_TRY(mcor_take_splits(context, tree, globals->splits, globals->split_count));
+  }
+  else
+  {
+    MCOR_TRY(mcor_split_bricks(context, input, tree));
+  }
+  MCOR_RETURN_IF(context->options->point_keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context,
+    MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large for points with numbers, with cube size %g and %d levels of "
+    "adaptive cubes. Use a larger cube size, or fewer levels.",
+    context->lattice.cube, tree->top + 1);
+  size_t room = 0;
+  bool made = mcor_extend_leaves(tree, &room);
   for (int l = 0; l <= tree->top && made; ++l)
   {
     tree->first_leaf[l] = tree->leaf_count;
     tree->first_region[l] = tree->region_count;
-    made = mcor_list_leaves(tree, l, &room);
+    made = mcor_list_leaves(tree, &context->box, l, &room);
     tree->first_leaf[l + 1] = tree->leaf_count;
     tree->first_region[l + 1] = tree->region_count;
   }

@@ -218,9 +218,10 @@ void mcor_leaf_mark(
   const int count, __global const uint *finer, __global const int *tables,                         \
     __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
 
-/* One work-item = one leaf. Reads its nodes' masks where it is mixed. Writes the used cells, and which
- * edges they use; counts triangles, and loops that lie in one face between leaves. */
-__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+/* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
+ * `used`, and writes which edges they use; counts triangles, and of owned cells loops that lie in one
+ * face between leaves. */
+__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global const ulong* owned,
   __global uint* quadrants, __global ulong* used, __global int* triangle_count, __global int* flat)
 {
   const int i = get_global_id(0);
@@ -236,9 +237,11 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  ulong cells = (mcor_cell_some(leaf.corners_above) & ~mcor_cell_all(leaf.corners_above) &
-                  mcor_cell_all(leaf.corners_valid)) |
-    graded;
+  ulong cells = ((mcor_cell_some(leaf.corners_above) & ~mcor_cell_all(leaf.corners_above) &
+                   mcor_cell_all(leaf.corners_valid)) |
+                  graded) &
+    used[i];
+  const ulong within = owned[i]; /* which may be `used` */
   int triangles = 0, flat_caps = 0;
   for (ulong rest = cells; rest; rest &= rest - 1)
   {
@@ -253,7 +256,7 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
       }
       int caps = 0;
       triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
-      flat_caps += caps;
+      flat_caps += within >> cell & 1 ? caps : 0;
       mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
     }
     else
@@ -394,6 +397,32 @@ bool mcor_leaf_owns(MCOR_LEAF_BOX_PARAMS, int i, int cell)
 }
 
 #define MCOR_LEAF_BOX_ARGS is_part, x0, y0, z0, x1, y1, z1, cells
+
+/* One work-item = one leaf. Writes its cells that are in the box or in the ring around it, and those
+ * that are in it. */
+__kernel void mcor_graded_limit(
+  MCOR_LEAF_BOX_PARAMS, const int count, __global ulong* ring, __global ulong* owned)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int4 leaf = cells[i];
+  const int edge = 2 << leaf.w;
+  ulong near = 0, within = 0;
+  for (int cell = 0; cell < 64; ++cell)
+  {
+    const int x = (4 * leaf.x + (cell & 3)) * edge, y = (4 * leaf.y + (cell >> 2 & 3)) * edge;
+    const int z = (4 * leaf.z + (cell >> 4)) * edge;
+    const bool is_near = x + 2 * edge >= x0 && x - edge <= x1 && y + 2 * edge >= y0 &&
+      y - edge <= y1 && z + 2 * edge >= z0 && z - edge <= z1;
+    near |= (ulong)is_near << cell;
+    within |= (ulong)mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) << cell;
+  }
+  ring[i] = near;
+  owned[i] = within;
+}
 
 /* One work-item = one leaf. Writes which of its used cells are in the box. */
 __kernel void mcor_graded_clip(

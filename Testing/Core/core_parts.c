@@ -1,0 +1,225 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t g_width;
+
+static int compare_triangles(const void* a, const void* b)
+{
+  return memcmp(a, b, g_width);
+}
+
+/* Appends an element of an array that is there; returns where the next one goes. */
+static unsigned char* put(unsigned char* to, const void* array, int64_t i, size_t width)
+{
+  if (array)
+  {
+    memcpy(to, (const char*)array + (size_t)i * width, width);
+    return to + width;
+  }
+  return to;
+}
+
+static unsigned char* put_point(
+  unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i)
+{
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
+  mcor_list_surface_arrays(s, arrays);
+  for (int a = 0; a < MCOR_SURFACE_ARRAYS; ++a)
+  {
+    to = put(to, *arrays[a].array, i, arrays[a].width);
+  }
+  for (int a = 0; a < s->attribute_count; ++a)
+  {
+    to = put(to, s->attributes[a], i, (size_t)input->attributes[a].components * sizeof(double));
+  }
+  return to;
+}
+
+void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s)
+{
+  unsigned char point[1024];
+  if (s->triangle_count == 0)
+  {
+    return;
+  }
+  triangles->width = 3 * (size_t)(put_point(point, input, s, 0) - point);
+  const size_t count = (size_t)(triangles->count + s->triangle_count);
+  triangles->bytes = realloc(triangles->bytes, count * triangles->width);
+  assert_non_null(triangles->bytes);
+  unsigned char* to = triangles->bytes + (size_t)triangles->count * triangles->width;
+  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
+  {
+    to = put_point(to, input, s, s->triangles[i]);
+  }
+  triangles->count += s->triangle_count;
+}
+
+void core_sort_triangles(core_triangles* triangles)
+{
+  g_width = triangles->width;
+  if (triangles->count > 0)
+  {
+    qsort(triangles->bytes, (size_t)triangles->count, triangles->width, compare_triangles);
+  }
+}
+
+/* Points that no triangle uses, or triangles without a point, are nobody's. */
+static void check_points(const mcor_surface* s)
+{
+  uint8_t* used = calloc((size_t)s->point_count + 1, 1);
+  assert_non_null(used);
+  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
+  {
+    assert_in_range(s->triangles[i], 0, s->point_count - 1);
+    used[s->triangles[i]] = 1;
+  }
+  for (int64_t i = 0; i < s->point_count; ++i)
+  {
+    assert_int_equal(used[i], 1);
+  }
+  free(used);
+}
+
+/* Each point has a key of its own, and they ascend. Boxes' points have those of the whole surface, as
+ * they are compared along with all else. */
+static void check_keys(const mcor_surface* s)
+{
+  for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)
+  {
+    const uint64_t *a = s->point_keys + MCOR_POINT_KEY * (i - 1), *b = a + MCOR_POINT_KEY;
+    const int at = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
+    CORE_CHECK(a[at] < b[at], "keys of points %lld and the next", (long long)(i - 1));
+  }
+}
+
+/* The sets below lie around the origin, 10 or so in each direction. */
+const core_cut core_cuts[CORE_CUTS] = {
+  { "2 boxes", { 1, 0, 0 }, { { 0.37 } } },
+  { "3, one thinner than a support", { 0, 0, 2 }, { { 0 }, { 0 }, { 1.1, 1.9 } } },
+  { "3, one thinner than a cube", { 0, 2, 0 }, { { 0 }, { -0.3, -0.25 } } },
+  { "8 boxes", { 1, 1, 1 }, { { -1.3 }, { 0.65 * 2 }, { 2.01 } } },
+  { "empty ones", { 2, 1, 0 }, { { -1000, 0.1 }, { 500 } } },
+};
+
+void core_set_box(mcor_options* options, const core_cut* cut, const int at[3])
+{
+  options->has_box = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    options->box[2 * a] = at[a] == 0 ? -INFINITY : cut->at[a][at[a] - 1];
+    options->box[2 * a + 1] = at[a] == cut->count[a] ? INFINITY : cut->at[a][at[a]];
+  }
+}
+
+/* The whole surface, and what its boxes' statistics must add up to. */
+typedef struct core_whole
+{
+  core_triangles triangles;
+  mcor_statistics statistics;
+} core_whole;
+
+static void check_cut(mcor_context* context, const char* name, const mcor_input* input,
+  const mcor_options* options, const core_cut* cut, const core_whole* whole)
+{
+  core_triangles all = { 0 };
+  int64_t cells = 0, triangles = 0, virtual_cells = 0, caps = 0;
+  int64_t cells_of_level[MCOR_CUBE_LEVELS] = { 0 }, triangles_of_level[MCOR_CUBE_LEVELS] = { 0 };
+  const int boxes = (cut->count[0] + 1) * (cut->count[1] + 1) * (cut->count[2] + 1);
+  for (int i = 0; i < boxes; ++i)
+  {
+    const int n = cut->count[0] + 1, m = cut->count[1] + 1;
+    const int at[3] = { i % n, i / n % m, i / n / m };
+    mcor_options own = *options;
+    core_set_box(&own, cut, at);
+    mcor_surface part = core_extract(context, input, &own);
+    check_points(&part);
+    check_keys(&part);
+    core_add_surface(&all, input, &part);
+    cells += part.statistics.cells_used;
+    triangles += part.statistics.triangles_before_trimming;
+    virtual_cells += part.statistics.virtual_cells;
+    caps += part.statistics.flat_caps;
+    for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
+    {
+      cells_of_level[l] += part.statistics.cells_of_level[l];
+      triangles_of_level[l] += part.statistics.triangles_of_level[l];
+    }
+    mcor_free_surface(&part);
+  }
+  core_sort_triangles(&all);
+  CORE_CHECK(all.count == whole->triangles.count, "%s, %s: %lld triangles, not %lld", name,
+    cut->name, (long long)all.count, (long long)whole->triangles.count);
+  int64_t other = 0;
+  for (int64_t i = 0; i < all.count; ++i)
+  {
+    other += memcmp(all.bytes + (size_t)i * all.width,
+               whole->triangles.bytes + (size_t)i * all.width, all.width) != 0;
+  }
+  CORE_CHECK(other == 0, "%s, %s: %lld of %lld triangles differ", name, cut->name, (long long)other,
+    (long long)all.count);
+  assert_int_equal(cells, whole->statistics.cells_used);
+  assert_int_equal(triangles, whole->statistics.triangles_before_trimming);
+  assert_int_equal(virtual_cells, whole->statistics.virtual_cells);
+  assert_int_equal(caps, whole->statistics.flat_caps);
+  assert_memory_equal(cells_of_level, whole->statistics.cells_of_level, sizeof cells_of_level);
+  assert_memory_equal(
+    triangles_of_level, whole->statistics.triangles_of_level, sizeof triangles_of_level);
+  free(all.bytes);
+}
+
+void core_check_cuts(
+  mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
+{
+  core_whole whole = { 0 };
+  mcor_surface surface = core_extract(context, input, options);
+  CORE_CHECK(surface.triangle_count > 500, "%s: only %lld triangles", name,
+    (long long)surface.triangle_count);
+  check_keys(&surface);
+  core_add_surface(&whole.triangles, input, &surface);
+  core_sort_triangles(&whole.triangles);
+  whole.statistics = surface.statistics;
+  mcor_free_surface(&surface);
+  for (size_t i = 0; i < CORE_CUTS; ++i)
+  {
+    check_cut(context, name, input, options, core_cuts + i, &whole);
+  }
+  free(whole.triangles.bytes);
+}
+
+void core_ask_for_all(mcor_options* options)
+{
+  options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
+  options->boundary_flag = options->nearest_particle = options->iso_value = 1;
+  options->point_keys = 1;
+}
+
+/* Particles of the set not farther than `margin` from the box, in another order. */
+core_set core_take_near(const core_set* set, const double box[6], double margin)
+{
+  core_set near = core_make_set(set->count);
+  near.has_solids = set->has_solids;
+  near.count = 0;
+  for (int64_t i = set->count - 1; i >= 0; --i)
+  {
+    const double* x = set->position + 3 * i;
+    int in = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      in = in && x[a] > box[2 * a] - margin && x[a] < box[2 * a + 1] + margin;
+    }
+    if (in)
+    {
+      memcpy(near.position + 3 * near.count, x, 3 * sizeof *x);
+      near.smoothing_length[near.count] = set->smoothing_length[i];
+      near.volume[near.count] = set->volume[i];
+      near.scalar[near.count] = set->scalar[i];
+      near.solid[near.count++] = set->solid[i];
+    }
+  }
+  return near;
+}

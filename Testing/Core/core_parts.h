@@ -1,0 +1,43 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef core_parts_h
+#define core_parts_h
+
+/* Surfaces of boxes that part the lattice, against the whole surface. */
+
+#include "core_fixture.h"
+
+/* Triangles of some surfaces: the bytes of their corners, one after the other. */
+typedef struct core_triangles
+{
+  int64_t count;
+  size_t width; /* bytes of a triangle */
+  unsigned char* bytes;
+} core_triangles;
+
+void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s);
+void core_sort_triangles(core_triangles* triangles);
+
+/* Planes that cut the lattice; ends are at infinity. */
+typedef struct core_cut
+{
+  const char* name;
+  int count[3];
+  double at[3][3];
+} core_cut;
+
+#define CORE_CUTS 5
+extern const core_cut core_cuts[CORE_CUTS];
+/* One of a cut's boxes. */
+void core_set_box(mcor_options* options, const core_cut* cut, const int at[3]);
+/* Each cut's boxes make the whole surface, with all its points carry. */
+void core_check_cuts(
+  mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options);
+
+/* Arrays and keys of points, to be compared. */
+void core_ask_for_all(mcor_options* options);
+
+/* Particles of the set not farther than `margin` from the box, in another order. */
+core_set core_take_near(const core_set* set, const double box[6], double margin);
+
+#endif

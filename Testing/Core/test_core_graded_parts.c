@@ -1,0 +1,187 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes in boxes: levels are those of the whole set, and the boxes' surfaces make up the whole
+ * one's, to the last bit. */
+
+#include "core_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static mcor_options adaptive_options(const double* iso, mcor_field field)
+{
+  mcor_options options = core_options(iso);
+  options.field = field;
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  core_ask_for_all(&options);
+  return options;
+}
+
+static void smooth_surfaces(void** state)
+{
+  static const double half = 0.5, isos[2] = { 0.2, -0.3 };
+  core_set set = core_make_graded(12, 0.4);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.solid[i] = set.position[3 * i] < -0.6 * set.smoothing_length[i] && i % 3 == 0;
+  }
+  const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
+  mcor_input input = core_input(&set);
+  input.attributes = attributes;
+  input.attribute_count = 2;
+  mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
+  core_check_cuts(*state, "free surface", &input, &options);
+  set.has_solids = 1;
+  input = core_input(&set);
+  options = adaptive_options(isos, MCOR_SHEPARD);
+  options.iso_count = 2;
+  options.wall_share = 0.3;
+  options.triangle_normals = 1;
+  core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
+  core_free_set(&set);
+}
+
+/* Noise of all sizes next to each other: levels change everywhere, edges are pinched. */
+static void rough_surfaces(void** state)
+{
+  static const double iso = 0.1;
+  core_set set = core_make_random(4000, 14, 0.3, 3, 7);
+  uint64_t seed = 12;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = 2 * random_unit(&seed) - 1;
+  }
+  mcor_input input = core_input(&set);
+  input.has_volume = 0;
+  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
+  options.cube_size_factor = 1.0;
+  options.h_scale = 0.7;
+  options.node_threshold = 0.9;
+  options.vertex_threshold = 0.92;
+  core_check_cuts(*state, "noise, computed volumes", &input, &options);
+  options.preview = 1;
+  options.sph_kernel = MCOR_M_PRIME_4;
+  core_check_cuts(*state, "M'4, preview", &input, &options);
+  core_free_set(&set);
+}
+
+/* Particles of the set whose supports reach the box, with six cubes of their level around it. */
+static core_set take_reaching(
+  const core_set* set, const double box[6], const mcor_globals* globals, double cube)
+{
+  core_set near = core_make_set(set->count);
+  near.count = 0;
+  for (int64_t i = set->count - 1; i >= 0; --i)
+  {
+    const double* x = set->position + 3 * i;
+    const double h = set->smoothing_length[i];
+    const double level = floor(log2(h / globals->smoothing_length_min * (1 + 1e-12)));
+    const double reach = 2 * h + 6 * cube * exp2(level);
+    int in = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      in = in && x[a] > box[2 * a] - reach && x[a] < box[2 * a + 1] + reach;
+    }
+    if (in)
+    {
+      memcpy(near.position + 3 * near.count, x, 3 * sizeof *x);
+      near.smoothing_length[near.count] = h;
+      near.volume[near.count] = set->volume[i];
+      near.scalar[near.count++] = set->scalar[i];
+    }
+  }
+  return near;
+}
+
+/* The levels are measured once; the boxes get them, and nearby particles alone. */
+static void given_levels(void** state)
+{
+  static const double iso = 0.2;
+  core_set set = core_make_graded(40, 0.3);
+  mcor_input input = core_input(&set);
+  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
+  options.nearest_particle = 0; /* would be numbers of other inputs */
+  mcor_globals globals;
+  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
+  assert_true(globals.split_count > 10);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  core_triangles whole = { 0 }, all = { 0 };
+  core_add_surface(&whole, &input, &surface);
+  mcor_free_surface(&surface);
+  options.globals = &globals;
+  int64_t fewest = set.count;
+  for (int i = 0; i < 8; ++i)
+  {
+    const int at[3] = { i & 1, i >> 1 & 1, i >> 2 };
+    core_set_box(&options, core_cuts + 3, at);
+    core_set near = take_reaching(&set, options.box, &globals, globals.cube_size);
+    fewest = near.count < fewest ? near.count : fewest;
+    input = core_input(&near);
+    surface = core_extract(*state, &input, &options);
+    core_add_surface(&all, &input, &surface);
+    mcor_free_surface(&surface);
+    core_free_set(&near);
+  }
+  assert_in_range(fewest, 1, set.count - 100);
+  core_sort_triangles(&whole);
+  core_sort_triangles(&all);
+  assert_int_equal(all.count, whole.count);
+  assert_memory_equal(all.bytes, whole.bytes, (size_t)all.count * all.width);
+  free(whole.bytes);
+  free(all.bytes);
+  /* Of uniform cubes, they lack the levels. */
+  mcor_free_globals(&globals);
+  input = core_input(&set);
+  options.globals = NULL;
+  options.cube_size_mode = MCOR_CUBES_UNIFORM;
+  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
+  options.globals = &globals;
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+  CORE_CHECK(strstr(mcor_last_error(*state), "uniform cubes"), "%s", mcor_last_error(*state));
+  mcor_free_globals(&globals);
+  core_free_set(&set);
+}
+
+/* A box costs what reaches it. */
+static void small_boxes(void** state)
+{
+  static const double half = 0.5;
+  core_set set = core_make_graded(60, 0.3);
+  const mcor_input input = core_input(&set);
+  mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
+  options.nearest_particle = 0; /* may be any around */
+  mcor_surface whole = core_extract(*state, &input, &options);
+  const double box[6] = { -70, -45, -20, 20, -20, 20 };
+  options.has_box = 1;
+  memcpy(options.box, box, sizeof box);
+  mcor_surface part = core_extract(*state, &input, &options);
+  assert_in_range(part.triangle_count, 10, whole.triangle_count / 4);
+  assert_in_range(part.statistics.particles_in_reach, 10, set.count / 2);
+  assert_in_range(part.statistics.nodes_evaluated, 10, whole.statistics.nodes_evaluated / 3);
+  mcor_free_surface(&part);
+  options.box[0] = 1000;
+  options.box[1] = 1001;
+  part = core_extract(*state, &input, &options);
+  assert_int_equal(part.triangle_count, 0);
+  assert_int_equal(part.statistics.particles_in_reach, 0);
+  mcor_free_surface(&part);
+  /* Within the set, but where there are no leaves. */
+  const double hole[6] = { -0.01, 0.01, -0.01, 0.01, -0.01, 0.01 };
+  memcpy(options.box, hole, sizeof hole);
+  part = core_extract(*state, &input, &options);
+  assert_int_equal(part.triangle_count, 0);
+  mcor_free_surface(&part);
+  mcor_free_surface(&whole);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(smooth_surfaces),
+    cmocka_unit_test(rough_surfaces), cmocka_unit_test(given_levels),
+    cmocka_unit_test(small_boxes) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

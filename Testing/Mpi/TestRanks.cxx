@@ -133,14 +133,7 @@ const std::vector<Case> Cases = {
     {
       ContourDamBreak(f);
       f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      f->SetCubeSizeFactor(0.5);
-      f->SetCubeSizeModeToAdaptive();
-    } },
-  { "adaptive cubes, free surface, computed volumes", "evrard_collapse_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->SetCubeSizeFactor(1.0);
+      f->SetCubeSizeFactor(0.8);
       f->SetCubeSizeModeToAdaptive();
     } },
   { "smoothing lengths that differ", "dam_break_45k",

@@ -373,6 +373,7 @@ extern "C"
      * they cut off. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
     int64_t flat_caps;
+    int highest_level; /* that cubes may have, by smoothing lengths, level_limit and periods */
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
      * table; cells with two loops that might be a tunnel, and those where they are. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;

@@ -39,14 +39,9 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
 /* What adaptive cubes do not go with. */
 static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options* options)
 {
-  const bool periodic = options->periodic[0] < options->periodic[1] ||
-    options->periodic[2] < options->periodic[3] || options->periodic[4] < options->periodic[5];
-  const char* other = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM
-    ? "pairs as seeds"
-    : periodic ? "a period"
-               : NULL;
-  MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && other, context,
-    MCOR_INVALID_ARGUMENT, "Adaptive cubes do not go with %s. Use uniform cubes.", other);
+  const bool pairs = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
+  MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && pairs, context,
+    MCOR_INVALID_ARGUMENT, "Adaptive cubes do not go with pairs as seeds. Use uniform cubes.");
   return MCOR_OK;
 }
 

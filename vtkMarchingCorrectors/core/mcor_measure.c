@@ -233,9 +233,9 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
     "or remove particles of such a smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
+  lattice->top = mcor_tree_top(m, options);
   MCOR_TRY(mcor_fit_period(context, options, &cube));
   lattice->cube = m->cube = cube;
-  lattice->top = mcor_tree_top(m, options);
   /* Whole bricks of all levels; with space around, so that finer bricks beside it have a place. */
   const int64_t unit = lattice->top > 0 ? (int64_t)MCOR_BRICK << (lattice->top + 1) : 0;
   int64_t extent = 0;

@@ -10,33 +10,53 @@
 /* How far a period may be from a whole number of cubes, as a factor of it. */
 #define MCOR_PERIOD_ERROR 1e-9
 
+/* Adaptive cubes may become smaller by this factor to have all their levels. */
+#define MCOR_FINER_CUBES 1.3
+
 /* Supports beyond so many periods would take too many images. */
 #define MCOR_MOST_PERIODS 2
 
-/* Whether all periods are whole numbers of cubes where that along `axis` is `count` of them. */
-static bool mcor_periods_fit(const double length[3], int axis, int64_t count)
+/* Whether all periods are whole numbers of `unit` cubes where that along `axis` is `count` cubes. */
+static bool mcor_periods_fit(const double length[3], int axis, int64_t count, int64_t unit)
 {
   bool fit = true;
   for (int a = 0; a < 3; ++a)
   {
-    const double cubes = length[a] * (double)count / length[axis];
-    fit = fit && fabs(cubes - round(cubes)) <= MCOR_PERIOD_ERROR * cubes;
+    const double units = length[a] * (double)count / length[axis] / (double)unit;
+    fit = fit && fabs(units - round(units)) <= MCOR_PERIOD_ERROR * units;
   }
   return fit;
 }
 
-/* The fewest cubes along `axis`, from `least` on, that let all periods fit; 0: none less than twice as
- * many. */
-static int64_t mcor_count_cubes(const double length[3], int axis, int64_t least)
+/* The fewest cubes along `axis`, from `least` up to `most`, that let all periods fit; 0: there are
+ * none. */
+static int64_t mcor_count_cubes(
+  const double length[3], int axis, int64_t least, int64_t most, int64_t unit)
 {
-  for (int64_t count = least; count < 2 * least + 8; ++count)
+  for (int64_t count = (least + unit - 1) / unit * unit; count <= most; count += unit)
   {
-    if (mcor_periods_fit(length, axis, count))
+    if (mcor_periods_fit(length, axis, count, unit))
     {
       return count;
     }
   }
   return 0;
+}
+
+/* Adaptive cubes: a period is a whole number of bricks of the level above the highest one, so that levels
+ * repeat with it. Where cubes would become too small for that, there are fewer levels. */
+static int64_t mcor_count_graded_cubes(
+  const double length[3], int axis, int64_t least, int* top)
+{
+  int64_t count = 0;
+  for (++*top; count == 0 && *top > 0;)
+  {
+    --*top;
+    count = *top > 0 ? mcor_count_cubes(length, axis, least,
+                         (int64_t)(MCOR_FINER_CUBES * (double)least), (int64_t)MCOR_BRICK << (*top + 1))
+                     : 0;
+  }
+  return count;
 }
 
 /* Images that lie farther away than this from the period are not needed, L. */
@@ -46,6 +66,7 @@ static double mcor_image_reach(
   return context->measure.support_max * (2 + 1 / options->h_scale) + 8 * cube;
 }
 
+/* May lower lattice.top. */
 mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double* cube)
 {
   mcor_measure* m = &context->measure;
@@ -63,13 +84,16 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     return MCOR_OK;
   }
   const double least = ceil(length[axis] / *cube * (1 - MCOR_PERIOD_ERROR));
-  const int64_t count = least < 1e6 ? mcor_count_cubes(length, axis, (int64_t)least) : 0;
+  const int64_t fewest = least < 1e6 ? (int64_t)least : 0;
+  int64_t count = fewest > 0 ? mcor_count_graded_cubes(length, axis, fewest, &lattice->top) : 0;
+  count = count == 0 && fewest > 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
     "The periods %g, %g and %g (0: open) are not all whole numbers of a cube size near %g. Give "
     "another cube size, or periods to all their digits.",
     length[0], length[1], length[2], *cube);
   *cube = length[axis] / (double)count;
   const double reach = mcor_image_reach(context, options, *cube);
+  const double margin = lattice->top > 0 ? ldexp(8 * *cube, lattice->top) : 0;
   for (int a = 0; a < 3; ++a)
   {
     if (length[a] > 0)
@@ -78,8 +102,8 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
         "The period along %c is %g, too little for support radii of up to %g.", 'x' + a, length[a],
         m->support_max);
       lattice->period[a] = (int)round(length[a] / *cube);
-      m->low[a] = options->periodic[2 * a] - reach - m->support_max;
-      m->high[a] = options->periodic[2 * a + 1] + reach + m->support_max;
+      m->low[a] = options->periodic[2 * a] - reach - margin - m->support_max;
+      m->high[a] = options->periodic[2 * a + 1] + reach + margin + m->support_max;
     }
   }
   return MCOR_OK;

@@ -297,7 +297,8 @@ public:
    * cubes are as many times larger; bricks that touch differ by a factor of 2 at most. The surface is
    * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
    * for all, the same as UNIFORM. Ambiguous cells are then connected as the table says. Not with
-   * pairs as seeds or periodic bounds; a box then saves no time. CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default.
+   * pairs as seeds. CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The field data have
+   * CellsOfLevel, TrianglesOfLevel, FlatCaps, and HighestLevel, to which periods may limit it.
    */
   vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   vtkGetMacro(CubeSizeMode, int);

@@ -27,10 +27,16 @@ void AddCounts(mcor_statistics& all, const mcor_statistics& one, int factor)
     &mcor_statistics::joined_faces, &mcor_statistics::ambiguous_cells, &mcor_statistics::tunnels,
     &mcor_statistics::vertices_corrected, &mcor_statistics::newton_evaluations,
     &mcor_statistics::vertices_above_tolerance, &mcor_statistics::trim_vertices,
-    &mcor_statistics::trim_vertices_linear };
+    &mcor_statistics::trim_vertices_linear, &mcor_statistics::flat_caps };
   for (const auto count : counts)
   {
     all.*count = factor * all.*count + one.*count;
+  }
+  for (int level = 0; level < MCOR_CUBE_LEVELS; ++level)
+  {
+    all.cells_of_level[level] = factor * all.cells_of_level[level] + one.cells_of_level[level];
+    all.triangles_of_level[level] =
+      factor * all.triangles_of_level[level] + one.triangles_of_level[level];
   }
 }
 

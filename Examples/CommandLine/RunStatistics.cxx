@@ -30,13 +30,13 @@ const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "Estima
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",
   "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
-  "FlatCaps", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces", "JoinedFaces",
-  "AmbiguousCells", "Tunnels", "Points", "Triangles", "CapTriangles", "TrianglesBeforeTrimming",
-  "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected",
-  "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax",
-  "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
-  "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankWorkByParticles",
-  "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "FlatCaps", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
+  "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "CapTriangles",
+  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
+  "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",
+  "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak",
+  "MedianNeighbors", "MedianSpacing", "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
+  "RankWorkByParticles", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

@@ -161,6 +161,7 @@ def add_statistics(data, s, surface, options):
             add_levels(data, "CellsOfLevel", s["cells_of_level"])
             add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
             add_count(data, "FlatCaps", s["flat_caps"])
+            add_count(data, "HighestLevel", s["highest_level"])
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
     add_count(data, "TrianglesBeforeTrimming", s["triangles_before_trimming"])

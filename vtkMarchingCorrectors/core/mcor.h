@@ -97,8 +97,8 @@ extern "C"
    * times the smallest smoothing length or more; bricks that touch differ by one level at most. The
    * surface is closed across levels. With one smoothing length for all it is that of uniform cubes,
    * to the last bit. Where there are several levels, ambiguous faces are as with
-   * MCOR_TOPOLOGY_TABLE, and with a box all particles are evaluated. Not with MCOR_PAIRS, a period,
-   * given globals or point keys. */
+   * MCOR_TOPOLOGY_TABLE. With a period, which is a whole number of the largest bricks, there may be
+   * fewer levels: see mcor_statistics.highest_level. Not with MCOR_PAIRS. */
   typedef enum mcor_cube_size_mode
   {
     MCOR_CUBES_UNIFORM = 0, /* all alike; the default */

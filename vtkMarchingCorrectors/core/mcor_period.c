@@ -45,16 +45,16 @@ static int64_t mcor_count_cubes(
 
 /* Adaptive cubes: a period is a whole number of bricks of the level above the highest one, so that levels
  * repeat with it. Where cubes would become too small for that, there are fewer levels. */
-static int64_t mcor_count_graded_cubes(
-  const double length[3], int axis, int64_t least, int* top)
+static int64_t mcor_count_graded_cubes(const double length[3], int axis, int64_t least, int* top)
 {
   int64_t count = 0;
   for (++*top; count == 0 && *top > 0;)
   {
     --*top;
-    count = *top > 0 ? mcor_count_cubes(length, axis, least,
-                         (int64_t)(MCOR_FINER_CUBES * (double)least), (int64_t)MCOR_BRICK << (*top + 1))
-                     : 0;
+    count = *top > 0
+      ? mcor_count_cubes(length, axis, least, (int64_t)(MCOR_FINER_CUBES * (double)least),
+          (int64_t)MCOR_BRICK << (*top + 1))
+      : 0;
   }
   return count;
 }
@@ -86,11 +86,14 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
   const double least = ceil(length[axis] / *cube * (1 - MCOR_PERIOD_ERROR));
   const int64_t fewest = least < 1e6 ? (int64_t)least : 0;
   int64_t count = fewest > 0 ? mcor_count_graded_cubes(length, axis, fewest, &lattice->top) : 0;
-  count = count == 0 && fewest > 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
+  count =
+    count == 0 && fewest > 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
     "The periods %g, %g and %g (0: open) are not all whole numbers of a cube size near %g. Give "
     "another cube size, or periods to all their digits.",
     length[0], length[1], length[2], *cube);
+  MCOR_RETURN_IF(options->capping && lattice->top > 0, context, MCOR_INVALID_ARGUMENT,
+    "Capping does not go with adaptive cubes of several sizes. Use uniform cubes, or turn it off.");
   *cube = length[axis] / (double)count;
   const double reach = mcor_image_reach(context, options, *cube);
   const double margin = lattice->top > 0 ? ldexp(8 * *cube, lattice->top) : 0;

@@ -24,12 +24,7 @@ static uint64_t mcor_split_around(const mcor_tree* tree, int level, const int fi
   {
     const int b[3] = { first[0] + (i & 3) - 1, first[1] + (i >> 2 & 3) - 1,
       first[2] + (i >> 4) - 1 };
-    bool within = true;
-    for (int a = 0; a < 3; ++a)
-    {
-      within = within && b[a] >= 0 && b[a] < tree->rungs[level].n[a];
-    }
-    split |= (uint64_t)(within && mcor_tree_is_split(tree, level, b)) << i;
+    split |= (uint64_t)mcor_tree_is_split(tree, level, b) << i;
   }
   return split;
 }

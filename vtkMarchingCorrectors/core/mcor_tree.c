@@ -65,8 +65,7 @@ static mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
     }
     MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
       "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
-      "remove "
-      "particles whose smoothing length is far from that of the others.",
+      "remove particles whose smoothing length is far from that of the others.",
       lattice->top + 1);
     rung->base = base;
     rung->unused = 0;
@@ -84,9 +83,14 @@ static bool mcor_find_brick(const mcor_tree* tree, int level, const int brick[3]
   int b[3];
   for (int a = 0; a < 3; ++a)
   {
-    const int edge = MCOR_BRICK << level, period = tree->period[a] / edge;
-    const int first = tree->period_first[a] / edge, from = brick[a] - first;
-    b[a] = period > 0 ? (from % period + period) % period + first : brick[a];
+    b[a] = brick[a];
+    const int edge = MCOR_BRICK << level;
+    if (tree->period[a] >= edge) /* divisions cost much here */
+    {
+      const int period = tree->period[a] / edge;
+      const int first = tree->period_first[a] / edge, from = brick[a] - first;
+      b[a] = (from % period + period) % period + first;
+    }
     within = within && b[a] >= 0 && b[a] < rung->n[a];
   }
   *key = within ? mcor_tree_key(rung, b) : MCOR_NO_BRICK;

@@ -4,6 +4,7 @@
 
 #include "CommandLineOptions.h"
 #include "MessageCapture.h"
+#include "OptionValue.h"
 #include "ReadingLimits.h"
 #include "SafeText.h"
 

@@ -3,7 +3,6 @@
 #ifndef CommandLineOptions_h
 #define CommandLineOptions_h
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,9 +46,9 @@ struct CommandLineOptions
   double CubeFactor = 0.5;
   double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
   std::string Cubes = "uniform";
-  int MaxLevel = 24;            ///< of adaptive cubes
+  int MaxLevel = 24;                   ///< of adaptive cubes
   std::string Partition = "particles"; ///< what processes have alike
-  std::vector<double> Box;      ///< x0, x1, y0, y1, z0, z1; empty: all
+  std::vector<double> Box;             ///< x0, x1, y0, y1, z0, z1; empty: all
   bool Capping = false;
   bool DetectPeriod = false;    ///< --periodic auto
   std::vector<double> Periodic; ///< three lengths, or bounds like those of Box; empty: open
@@ -78,20 +77,10 @@ struct CommandLineOptions
 /// Whether there are surfaces of several times, listed in a .pvd file.
 bool IsFilm(const CommandLineOptions& options);
 
-/// Wrong usage; what() is one sentence.
-class UsageError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Throws UsageError.
+/// Throws UsageError, see OptionValue.h.
 CommandLineOptions ParseCommandLine(int argc, char* argv[]);
 
 /// The text of --help.
 std::string CommandLineHelp();
-
-/// True, and the value, if the whole text is one finite number.
-bool ParseNumber(const std::string& text, double& value);
 
 #endif

@@ -6,6 +6,7 @@
 #include "CommandLineOptions.h"
 #include "FilmRecord.h"
 #include "MessageCapture.h"
+#include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleSteps.h"
 #include "RunStatistics.h"

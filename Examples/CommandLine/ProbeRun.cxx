@@ -5,6 +5,7 @@
 #include "CommandLineOptions.h"
 #include "DataSetFile.h"
 #include "MessageCapture.h"
+#include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "SafeText.h"

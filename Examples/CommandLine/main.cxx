@@ -6,6 +6,7 @@
 #include "Film.h"
 #include "FilmRecord.h"
 #include "MessageCapture.h"
+#include "OptionValue.h"
 #include "OutputFile.h"
 #include "OwnLinker.h"
 #include "ParticleFile.h"

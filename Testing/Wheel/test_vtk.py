@@ -131,6 +131,7 @@ class Test(unittest.TestCase):
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 text.split("protected:")[0], re.M))
         self.assertGreater(len(names), 100)
+        names -= {"SetPartition", "GetPartition"}  # the wheel's filter runs in one process
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [], "add them to PROPERTIES of MarchingCorrectorsFilter.py")
         for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):

@@ -116,6 +116,7 @@ def _give_pocl_a_folder():
         pass
     temporary = tempfile.mkdtemp(prefix="marching-correctors-")
     os.environ["POCL_CACHE_DIR"] = temporary
+    os.environ["MCOR_COMPILER"] = ""  # nobody else is to write there when it is removed
     _remove_at_exit(temporary)
 
 

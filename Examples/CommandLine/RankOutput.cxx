@@ -50,6 +50,20 @@ void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& na
        << "\" NumberOfComponents=\"" << array->GetNumberOfComponents() << "\"/>\n";
 }
 
+/// Which arrays are the normals, and so on, as VTK's writers say it of a single file.
+void DescribeRoles(std::ostream& text, vtkPointData* arrays)
+{
+  for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractAttribute(role);
+    if (array && array->GetName())
+    {
+      text << ' ' << vtkDataSetAttributes::GetAttributeTypeAsString(role) << "=\""
+           << EscapedForXml(array->GetName()) << '"';
+    }
+  }
+}
+
 void Append(vtkPolyData* part, vtkPolyData* whole, vtkCellArray* triangles)
 {
   vtkDataArray* numbers = part->GetPointData()->GetGlobalIds();
@@ -127,8 +141,10 @@ std::string ListPieces(const std::string& file, int count, vtkPolyData* piece)
 {
   std::ostringstream text;
   text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\">\n"
-       << "  <PPolyData GhostLevel=\"0\">\n    <PPointData>\n";
+       << "  <PPolyData GhostLevel=\"0\">\n    <PPointData";
   vtkPointData* arrays = piece->GetPointData();
+  DescribeRoles(text, arrays);
+  text << ">\n";
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     Describe(text, arrays->GetAbstractArray(i), arrays->GetArrayName(i));

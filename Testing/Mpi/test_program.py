@@ -77,6 +77,8 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         alone, ranks = read(self.path("alone.vtp")), read(self.path("out.pvtp"))
         self.assertEqual(difference(ranks, alone), "")
+        self.assertEqual(ranks.GetPointData().GetNormals().GetName(), "Normals")
+        self.assertEqual(ranks.GetPointData().GetGlobalIds().GetName(), "GlobalPointIds")
 
     def test_probe(self):
         """Points of one file, particles in pieces: the arrays are, to the last byte, those of one process."""

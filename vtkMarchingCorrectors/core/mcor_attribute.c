@@ -172,25 +172,29 @@ mcor_status mcor_list_components(
   mcor_attributes* attributes = &context->attributes;
   MCOR_TRY(mcor_clear_components(context, input));
   MCOR_TRY(mcor_check_components(context, input));
-  const mcor_global_component* global =
-    context->options->globals ? context->options->globals->components : NULL;
+  const mcor_globals* globals = context->options->globals;
+  int next = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    not_finite[a] =
-      global ? global->not_finite : mcor_find_not_finite(array, input->solid, input->count);
-    for (int c = 0; c < mcor_components(array); ++c)
+    not_finite[a] = globals ? globals->components[next].not_finite
+                            : mcor_find_not_finite(array, input->solid, input->count);
+    for (int c = 0; c < mcor_components(array); ++c, ++next)
     {
-      double range[2] = { global ? global->low : 0, global ? global->high : 0 };
-      if (!global && not_finite[a] < 0)
-      {
-        mcor_find_range(input, a, c, range);
-      }
       if (not_finite[a] < 0)
       {
+        double range[2];
+        if (globals)
+        {
+          range[0] = globals->components[next].low;
+          range[1] = globals->components[next].high;
+        }
+        else
+        {
+          mcor_find_range(input, a, c, range);
+        }
         attributes->varying[attributes->varying_count++] = mcor_scale_component(a, c, range);
       }
-      global += global ? 1 : 0;
     }
   }
   return MCOR_OK;

@@ -53,10 +53,7 @@
 
 /* ---- Cells ---- */
 
-/* A cell is owned where its centre is in the box: so the side of a box may lie on the lattice's
- * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
-
-/* The same for cells of all levels, whose centres are at whole numbers of halves. Without end where the
+/* The box's sides for cells of all levels, whose centres are at whole numbers of halves. Without end where the
  * box is not: large cells stick out of the lattice. */
 static void mcor_place_halves(mcor_context* context, const mcor_options* options, int axis)
 {
@@ -76,6 +73,8 @@ static void mcor_place_halves(mcor_context* context, const mcor_options* options
   }
 }
 
+/* A cell is owned where its centre is in the box: so the side of a box may lie on the lattice's
+ * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
 void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
   mcor_box* box = &context->box;

@@ -40,9 +40,8 @@ typedef struct mcor_cap_job
 {
   mcor_context* context;
   int old_count; /* vertices of the mesh */
-  mcor_cap_map
-    edges[3]; /* the surface's vertices, by lower node and axis of their edge; of a pinched
-                          * one the first */
+  /* The surface's vertices, by lower node and axis of their edge; of a pinched one the first. */
+  mcor_cap_map edges[3];
   mcor_cap_map nodes, cuts;
   mcor_cap_vertex* vertices;
   int64_t vertex_count, vertex_room;

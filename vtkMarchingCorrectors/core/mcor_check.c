@@ -39,18 +39,17 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
 /* What adaptive cubes do not go with. */
 static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options* options)
 {
-  const bool pairs = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
-  MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && pairs, context,
-    MCOR_INVALID_ARGUMENT, "Adaptive cubes do not go with pairs as seeds. Use uniform cubes.");
+  MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && mcor_wants_pairs(options),
+    context, MCOR_INVALID_ARGUMENT,
+    "Adaptive cubes do not go with pairs as seeds. Use uniform cubes.");
   return MCOR_OK;
 }
 
 /* Caps are made of the whole of each side. */
 static mcor_status mcor_check_capping(mcor_context* context, const mcor_options* options)
 {
-  const bool pairs = options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
   const char* other = options->has_box   ? "a box"
-    : pairs                              ? "pairs as seeds"
+    : mcor_wants_pairs(options)          ? "pairs as seeds"
     : options->ranks || options->globals ? "several ranks"
     : options->point_keys                ? "keys of points"
                                          : NULL;

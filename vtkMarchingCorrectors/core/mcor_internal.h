@@ -353,9 +353,14 @@ static inline double mcor_wall_share(const mcor_context* context)
 }
 
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
+static inline bool mcor_wants_pairs(const mcor_options* options)
+{
+  return options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
+}
+
 static inline bool mcor_uses_pairs(const mcor_context* context)
 {
-  return context->options->seeds == MCOR_PAIRS && context->options->field != MCOR_WEIGHT_SUM;
+  return mcor_wants_pairs(context->options);
 }
 
 /* The work of one call; what an attempt before left in the result is to be freed first. */

@@ -6,6 +6,7 @@ What it computes is tested elsewhere; here it is files, options, sentences and e
 """
 import json
 import os
+import pathlib
 import resource
 import signal
 import subprocess
@@ -215,6 +216,23 @@ class BadData(CommandLineTest):
         result = self.extract("--free-surface", env=environment)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(list(temporary.iterdir()), [])
+
+    def test_kept_kernels(self):
+        """A first surface compiles nothing where the build has done so for this machine."""
+        root = pathlib.Path(self.program).resolve().parent.parent
+        kept = next(root.glob("lib*/marching-correctors-kernels"), None)
+        if not kept:
+            self.skipTest("the build has kept no kernels")
+
+        def compiled(folder):
+            return {p.relative_to(folder) for pattern in ("*.ready", "**/*.so") for p in folder.glob(pattern)}
+
+        cache = self.directory / "cache"
+        cache.mkdir()
+        environment = {k: v for k, v in os.environ.items() if k != "MCOR_KERNEL_DIR"}
+        result = self.extract("--free-surface", env={**environment, "POCL_CACHE_DIR": str(cache)})
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(compiled(cache), compiled(kept))
 
     def test_no_platform(self):
         # The ICD loader of Debian then finds no driver at all.

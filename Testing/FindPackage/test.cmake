@@ -10,6 +10,21 @@ endfunction ()
 
 file(REMOVE_RECURSE "${WORK}")
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/install")
+
+# Kernels that the build keeps are installed on its own machine, and are no part of a package for others.
+function (find_kept variable folder)
+  set(name marching-correctors-kernels)
+  file(GLOB kept RELATIVE "${folder}" "${folder}/lib*/${name}/*.ready" "${folder}/lib*/*/${name}/*.ready")
+  set("${variable}" "${kept}" PARENT_SCOPE)
+endfunction ()
+find_kept(built "${BUILD}")
+find_kept(installed "${WORK}/install")
+run("${CMAKE_COMMAND}" -E env "DESTDIR=${WORK}/package"
+  "${CMAKE_COMMAND}" --install "${BUILD}" --prefix /usr)
+find_kept(packaged "${WORK}/package/usr")
+if (NOT built STREQUAL installed OR packaged)
+  message(FATAL_ERROR "Kernels built: ${built}\ninstalled: ${installed}\npackaged: ${packaged}")
+endif ()
 run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/build" "-DCMAKE_PREFIX_PATH=${WORK}/install"
   -DCMAKE_BUILD_TYPE=Release ${DEFINITIONS})
 run("${CMAKE_COMMAND}" --build "${WORK}/build")

@@ -2,13 +2,15 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The program marching-correctors-compile, see mcor_ahead.h. It reads a request from its standard
- * input, says nothing, and ends when that input does, or when all is compiled. With --keep, it
- * compiles the kernels that all users of a machine share, see mcor_kept.h. */
+ * input, says nothing, and ends when that input does, or when all is compiled. With
+ * `--keep [SPH KERNEL]...`, it compiles the kernels that all users of a machine share, see mcor_kept.h,
+ * for these SPH kernels or for all of them. */
 
 #define _GNU_SOURCE
 
 #include "mcor_ahead.h"
 #include "mcor_kept.h"
+#include "mcor_sph_kernel.h"
 
 #include <poll.h>
 #include <stdio.h>
@@ -51,7 +53,32 @@ static void mcor_use_own_linker(void)
   }
 }
 
-static int mcor_keep_kernels(void)
+/* Bits of the SPH kernels that are named; all of them if none is; 0 where a name is unknown. */
+static unsigned mcor_named_kernels(int count, char** names)
+{
+#define MCOR_ENTRY(id, name, support, norm, tensor) #name,
+  static const char* const known[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
+#undef MCOR_ENTRY
+  const unsigned all = (1u << MCOR_SPH_KERNEL_COUNT) - 1;
+  unsigned kernels = count == 0 ? all : 0;
+  for (int i = 0; i < count; ++i)
+  {
+    int k = 0;
+    while (k < MCOR_SPH_KERNEL_COUNT && strcmp(names[i], known[k]) != 0)
+    {
+      ++k;
+    }
+    if (k == MCOR_SPH_KERNEL_COUNT)
+    {
+      fprintf(stderr, "marching-correctors-compile: there is no SPH kernel %s.\n", names[i]);
+      return 0;
+    }
+    kernels |= 1u << k;
+  }
+  return kernels;
+}
+
+static int mcor_keep_kernels(unsigned sph_kernels)
 {
   mcor_context* context = NULL;
   char folder[1024];
@@ -71,7 +98,7 @@ static int mcor_keep_kernels(void)
   {
     printf("Compiling the usual surfaces' kernels into %s ...\n", folder);
     fflush(stdout);
-    status = mcor_keep(context, folder);
+    status = mcor_keep(context, sph_kernels, folder);
   }
   if (status != MCOR_OK)
   {
@@ -85,9 +112,10 @@ int main(int count, char** arguments)
 {
   static char request[MCOR_AHEAD_BYTES + 1];
   const struct rlimit no_core = { 0, 0 };
-  if (count == 2 && strcmp(arguments[1], "--keep") == 0)
+  if (count > 1 && strcmp(arguments[1], "--keep") == 0)
   {
-    return mcor_keep_kernels();
+    const unsigned sph_kernels = mcor_named_kernels(count - 2, arguments + 2);
+    return sph_kernels ? mcor_keep_kernels(sph_kernels) : 2;
   }
   const ssize_t length = read(STDIN_FILENO, request, MCOR_AHEAD_BYTES);
   if (length <= 0 || fork() != 0)

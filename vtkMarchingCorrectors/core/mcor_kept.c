@@ -199,7 +199,7 @@ static bool mcor_share_tree(const char* path, const char* to, const char* name)
     : chmod(path, 0644) == 0;
 }
 
-mcor_status mcor_keep(mcor_context* context, const char* folder)
+mcor_status mcor_keep(mcor_context* context, unsigned sph_kernels, const char* folder)
 {
   static const mcor_field fields[] = { MCOR_WEIGHT_SUM, MCOR_SHEPARD };
   const mcor_build first = { .field = MCOR_WEIGHT_SUM };
@@ -208,7 +208,7 @@ mcor_status mcor_keep(mcor_context* context, const char* folder)
     context->cl.device_name);
   for (int kernel = 0; kernel < MCOR_SPH_KERNEL_COUNT; ++kernel)
   {
-    for (int f = 0; f < 2; ++f)
+    for (int f = 0; f < 2 && (sph_kernels >> kernel & 1); ++f)
     {
       const mcor_build build = { .sph_kernel = (mcor_sph_kernel)kernel, .field = fields[f] };
       MCOR_TRY(mcor_keep_build(context, &build));

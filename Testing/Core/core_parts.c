@@ -3,6 +3,7 @@
 #include "core_parts.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,13 +60,29 @@ void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_s
   triangles->count += s->triangle_count;
 }
 
-void core_sort_triangles(core_triangles* triangles)
+static void sort_triangles(core_triangles* triangles)
 {
   g_width = triangles->width;
   if (triangles->count > 0)
   {
     qsort(triangles->bytes, (size_t)triangles->count, triangles->width, compare_triangles);
   }
+}
+
+void core_expect_same(const char* name, core_triangles* all, core_triangles* whole)
+{
+  sort_triangles(all);
+  sort_triangles(whole);
+  CORE_CHECK(all->count == whole->count, "%s: %lld triangles, not %lld", name,
+    (long long)all->count, (long long)whole->count);
+  int64_t other = 0;
+  for (int64_t i = 0; i < all->count; ++i)
+  {
+    const size_t at = (size_t)i * all->width;
+    other += memcmp(all->bytes + at, whole->bytes + at, all->width) != 0;
+  }
+  CORE_CHECK(
+    other == 0, "%s: %lld of %lld triangles differ", name, (long long)other, (long long)all->count);
 }
 
 /* Points that no triangle uses, or triangles without a point, are nobody's. */
@@ -124,7 +141,7 @@ typedef struct core_whole
 } core_whole;
 
 static void check_cut(mcor_context* context, const char* name, const mcor_input* input,
-  const mcor_options* options, const core_cut* cut, const core_whole* whole)
+  const mcor_options* options, const core_cut* cut, core_whole* whole)
 {
   core_triangles all = { 0 };
   int64_t cells = 0, triangles = 0, virtual_cells = 0, caps = 0;
@@ -151,17 +168,9 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
     }
     mcor_free_surface(&part);
   }
-  core_sort_triangles(&all);
-  CORE_CHECK(all.count == whole->triangles.count, "%s, %s: %lld triangles, not %lld", name,
-    cut->name, (long long)all.count, (long long)whole->triangles.count);
-  int64_t other = 0;
-  for (int64_t i = 0; i < all.count; ++i)
-  {
-    other += memcmp(all.bytes + (size_t)i * all.width,
-               whole->triangles.bytes + (size_t)i * all.width, all.width) != 0;
-  }
-  CORE_CHECK(other == 0, "%s, %s: %lld of %lld triangles differ", name, cut->name, (long long)other,
-    (long long)all.count);
+  char both[100];
+  snprintf(both, sizeof both, "%s, %s", name, cut->name);
+  core_expect_same(both, &all, &whole->triangles);
   assert_int_equal(cells, whole->statistics.cells_used);
   assert_int_equal(triangles, whole->statistics.triangles_before_trimming);
   assert_int_equal(virtual_cells, whole->statistics.virtual_cells);
@@ -181,7 +190,6 @@ void core_check_cuts(
     (long long)surface.triangle_count);
   check_keys(&surface);
   core_add_surface(&whole.triangles, input, &surface);
-  core_sort_triangles(&whole.triangles);
   whole.statistics = surface.statistics;
   mcor_free_surface(&surface);
   for (size_t i = 0; i < CORE_CUTS; ++i)
@@ -198,7 +206,25 @@ void core_ask_for_all(mcor_options* options)
   options->point_keys = 1;
 }
 
-/* Particles of the set not farther than `margin` from the box, in another order. */
+void core_add_near(
+  core_set* near, const core_set* set, int64_t i, const double box[6], double margin)
+{
+  const double* x = set->position + 3 * i;
+  int in = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    in = in && x[a] > box[2 * a] - margin && x[a] < box[2 * a + 1] + margin;
+  }
+  if (in)
+  {
+    memcpy(near->position + 3 * near->count, x, 3 * sizeof *x);
+    near->smoothing_length[near->count] = set->smoothing_length[i];
+    near->volume[near->count] = set->volume[i];
+    near->scalar[near->count] = set->scalar[i];
+    near->solid[near->count++] = set->solid[i];
+  }
+}
+
 core_set core_take_near(const core_set* set, const double box[6], double margin)
 {
   core_set near = core_make_set(set->count);
@@ -206,20 +232,7 @@ core_set core_take_near(const core_set* set, const double box[6], double margin)
   near.count = 0;
   for (int64_t i = set->count - 1; i >= 0; --i)
   {
-    const double* x = set->position + 3 * i;
-    int in = 1;
-    for (int a = 0; a < 3; ++a)
-    {
-      in = in && x[a] > box[2 * a] - margin && x[a] < box[2 * a + 1] + margin;
-    }
-    if (in)
-    {
-      memcpy(near.position + 3 * near.count, x, 3 * sizeof *x);
-      near.smoothing_length[near.count] = set->smoothing_length[i];
-      near.volume[near.count] = set->volume[i];
-      near.scalar[near.count] = set->scalar[i];
-      near.solid[near.count++] = set->solid[i];
-    }
+    core_add_near(&near, set, i, box, margin);
   }
   return near;
 }

@@ -16,7 +16,8 @@ typedef struct core_triangles
 } core_triangles;
 
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s);
-void core_sort_triangles(core_triangles* triangles);
+/* Sorts both; each triangle of one must be in the other, too, with all its bytes. */
+void core_expect_same(const char* name, core_triangles* all, core_triangles* whole);
 
 /* Planes that cut the lattice; ends are at infinity. */
 typedef struct core_cut
@@ -37,7 +38,10 @@ void core_check_cuts(
 /* Arrays and keys of points, to be compared. */
 void core_ask_for_all(mcor_options* options);
 
-/* Particles of the set not farther than `margin` from the box, in another order. */
+/* Appends particle i of the set to `near`, which has room, if it is not farther than `margin` from the box. */
+void core_add_near(
+  core_set* near, const core_set* set, int64_t i, const double box[6], double margin);
+/* All that are so near, in another order. */
 core_set core_take_near(const core_set* set, const double box[6], double margin);
 
 #endif

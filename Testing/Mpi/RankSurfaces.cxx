@@ -16,11 +16,6 @@
 #include <cstring>
 #include <vector>
 
-namespace
-{
-
-using Triangle = std::array<vtkIdType, 3>;
-
 bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
 {
   const auto size = static_cast<std::size_t>(a->GetNumberOfComponents()) *
@@ -30,6 +25,11 @@ bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
     std::memcmp(static_cast<char*>(a->GetVoidPointer(0)) + static_cast<std::size_t>(i) * size,
       static_cast<char*>(b->GetVoidPointer(0)) + static_cast<std::size_t>(j) * size, size) == 0;
 }
+
+namespace
+{
+
+using Triangle = std::array<vtkIdType, 3>;
 
 void AddTriangles(vtkPolyData* surface, vtkDataArray* numbers, std::vector<Triangle>& triangles)
 {

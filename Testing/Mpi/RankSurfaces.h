@@ -6,10 +6,16 @@
 #ifndef RankSurfaces_h
 #define RankSurfaces_h
 
+#include "vtkType.h"
+
 #include <string>
 
+class vtkDataArray;
 class vtkMultiProcessController;
 class vtkPolyData;
+
+/// Tuples of the same type and size, bit for bit the same.
+bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j);
 
 /// Compares what all ranks have with rank 0's `whole`, which others leave null: the same points under
 /// the same numbers, bit for bit, with all their arrays, and the same triangles, each of them once.

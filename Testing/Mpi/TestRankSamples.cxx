@@ -6,6 +6,7 @@
 //
 //   TestRankSamples FOLDER OF DATA [some]     some: of each case one partition, all of them in turn
 #include "RankParts.h"
+#include "RankSurfaces.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -22,7 +23,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <string>
@@ -166,16 +166,6 @@ Data MakePoints(vtkPolyData* particles, bool isPlane)
   data->SetPoints(points);
   AddIndex(data);
   return data;
-}
-
-bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
-{
-  const auto size = static_cast<std::size_t>(a->GetNumberOfComponents()) *
-    static_cast<std::size_t>(a->GetDataTypeSize());
-  return a->GetDataType() == b->GetDataType() &&
-    a->GetNumberOfComponents() == b->GetNumberOfComponents() &&
-    std::memcmp(static_cast<char*>(a->GetVoidPointer(0)) + static_cast<std::size_t>(i) * size,
-      static_cast<char*>(b->GetVoidPointer(0)) + static_cast<std::size_t>(j) * size, size) == 0;
 }
 
 /// The same points in the order of `given`, with the arrays that `whole` has at them.

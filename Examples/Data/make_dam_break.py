@@ -14,8 +14,7 @@ vortices; below 0 in their cores, try -140.
 import argparse
 
 import numpy as np
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk
+import particle_file
 
 LENGTH, WIDTH, DEPTH = 1.228, 1.0, 0.55
 TIME = 0.3
@@ -93,19 +92,8 @@ def main():
         "Mass": 1000.0 * volumes,
         "Lambda2": lambda2(positions),
     }
-    particles = vtk.vtkPolyData()
-    points = vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(positions.astype(np.float32), deep=1))
-    particles.SetPoints(points)
-    for name, values in arrays.items():
-        array = numpy_to_vtk(values.astype(np.float32), deep=1)
-        array.SetName(name)
-        particles.GetPointData().AddArray(array)
-    writer = vtk.vtkXMLPolyDataWriter()
-    writer.SetFileName(arguments.out)
-    writer.SetInputData(particles)
-    writer.SetDataModeToBinary()  # appended data cannot be read by every ParaView, see README.md
-    writer.Write()
+    single = {name: values.astype(np.float32) for name, values in arrays.items()}
+    particle_file.write(arguments.out, particle_file.poly_data(positions.astype(np.float32), single))
     h = arrays["SmoothingLength"]
     print(f"{arguments.out}: {len(positions)} particles, h {h.min():.6g} .. {h.max():.6g}")
 

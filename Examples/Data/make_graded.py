@@ -12,8 +12,7 @@ passes beside the hole, in units of the distance from there).
 import argparse
 import math
 import numpy as np
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk
+import particle_file
 
 
 def shells(step, ratio):
@@ -53,18 +52,6 @@ arrays = {
     "Volume": 0.9 * (step * r) ** 3,
     "Sphere": (np.linalg.norm(p - middle, axis=1) - (0.7 * args.ratio - 2)) / r,
 }
-particles = vtk.vtkPolyData()
-points = vtk.vtkPoints()
-points.SetData(numpy_to_vtk(p, deep=1))
-particles.SetPoints(points)
-for name, values in arrays.items():
-    array = numpy_to_vtk(values, deep=1)
-    array.SetName(name)
-    particles.GetPointData().AddArray(array)
-writer = vtk.vtkXMLPolyDataWriter()
-writer.SetFileName(args.out)
-writer.SetInputData(particles)
-writer.SetDataModeToBinary()  # appended data cannot be read by every ParaView, see README.md
-writer.Write()
+particle_file.write(args.out, particle_file.poly_data(p, arrays))
 h = arrays["SmoothingLength"]
 print(f"{args.out}: {len(p)} particles, h {h.min():.6g} .. {h.max():.6g}")

@@ -293,7 +293,7 @@ static void more_leaves_than_the_limit(void** state)
   size_t room = 0;
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
-    room += context->tree.split[l].capacity * sizeof(uint64_t);
+    room += context->tree.split[l].capacity * sizeof(mcor_cluster);
   }
   CORE_CHECK(room < 50000000, "%lld bytes", (long long)room);
   mcor_release_tree(&context->tree);
@@ -322,10 +322,57 @@ static void more_leaves_of_all_levels(void** state)
   core_free_set(&set);
 }
 
+static int stop_at(void* user, double fraction, const char* phase)
+{
+  int* left = user;
+  (void)fraction;
+  (void)phase;
+  return (*left)-- == 0;
+}
+
+/* Whoever waits is asked whether to go on all along: while particles split bricks, few at a time where
+ * they reach far, while bricks are joined and split, and while leaves are listed. */
+static void making_leaves_can_be_cancelled(void** state)
+{
+  enum
+  {
+    often = 1 << 20
+  };
+  mcor_context* context = *state;
+  const double interval = context->report_interval;
+  mcor_options options;
+  mcor_input input;
+  core_set set = core_make_random(6000, 20, 0.2, 4, 5);
+  int left = often;
+  measure(context, &set, 24, &options, &input);
+  options.h_scale = 20;
+  CORE_OK(context, mcor_measure_input(context, &input, &options));
+  options.progress = stop_at;
+  options.progress_user = &left;
+  context->report_interval = 0;
+  context->fraction_end = 1;
+  CORE_OK(context, mcor_make_tree(context, &input));
+  const int calls = often - left, splits = (int)context->tree.split[1].count;
+  CORE_CHECK(calls > 50, "%d calls, %d bricks of level 1", calls, splits);
+  for (int stop = 0; stop < calls; stop += 1 + stop / 3)
+  {
+    left = stop;
+    assert_int_equal(mcor_make_tree(context, &input), MCOR_CANCELLED);
+    assert_int_equal(left, -1); /* and no more */
+  }
+  left = often;
+  CORE_OK(context, mcor_make_tree(context, &input));
+  assert_int_equal(often - left, calls);
+  context->report_interval = interval;
+  context->options = NULL;
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(more_bricks_than_numbers),
-    cmocka_unit_test(more_leaves_than_the_limit), cmocka_unit_test(more_leaves_of_all_levels),
+    cmocka_unit_test(making_leaves_can_be_cancelled), cmocka_unit_test(more_leaves_than_the_limit),
+    cmocka_unit_test(more_leaves_of_all_levels),
     cmocka_unit_test(leaves_are_those_of_the_definition), cmocka_unit_test(order_and_limit),
     cmocka_unit_test(regions), cmocka_unit_test(levels_of_particles) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

@@ -45,6 +45,31 @@ mcor_status mcor_view_level(mcor_context* context, int level)
     MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
 }
 
+#define MCOR_SPAN_SECONDS 0.1
+#define MCOR_FIRST_SPAN 256
+
+mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
+{
+  const mcor_cl* cl = &context->cl;
+  const bool waited_for = cl->is_cpu && context->options->progress;
+  const int most = cl->is_cpu ? MCOR_LARGE_LAUNCH - 1 : span->end;
+  int size = waited_for ? MCOR_FIRST_SPAN : most;
+  if (waited_for && span->count > 0)
+  {
+    MCOR_TRY(mcor_finish(context));
+    const double seconds = mcor_seconds() - span->begin;
+    size = seconds < MCOR_SPAN_SECONDS / 2             ? 2 * span->count
+      : seconds > MCOR_SPAN_SECONDS && span->count > 1 ? span->count / 2
+                                                       : span->count;
+  }
+  span->first += span->count;
+  const int rest = span->end - span->first;
+  size = size < most ? size : most;
+  span->count = size < rest ? size : rest;
+  span->begin = mcor_seconds();
+  return MCOR_OK;
+}
+
 void mcor_level_vertices(
   const mcor_context* context, bool boundary, int level, int* first, int* count)
 {
@@ -146,13 +171,18 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
   const mcor_brick_data* now = &context->bricks.now;
   for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
   {
-    const int first = graded->first_slot[l], count = graded->first_slot[l + 1] - first;
+    const size_t nodes = context->cl.lanes == 1 ? 64 : 1; /* of a slot */
+    mcor_span span = { .first = graded->first_slot[l], .end = graded->first_slot[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
-    const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
-      MCOR_REAL(iso), MCOR_BUFFER(&graded->proofs), MCOR_BUFFER(&now->value),
-      MCOR_BUFFER(&now->weight)));
+    MCOR_TRY(mcor_next_span(context, &span));
+    while (span.count > 0)
+    {
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_nodes", MCOR_HEAVY, (size_t)span.count * nodes,
+        MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
+        MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
+        MCOR_BUFFER(&graded->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight)));
+      MCOR_TRY(mcor_next_span(context, &span));
+    }
   }
   MCOR_TRY(mcor_view_level(context, 0));
   return MCOR_LAUNCH(context, "mcor_graded_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),

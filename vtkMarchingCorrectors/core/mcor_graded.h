@@ -35,4 +35,20 @@ void mcor_level_vertices(
 /* From now on MCOR_GRID_ARGS are in cells of a level. */
 mcor_status mcor_view_level(mcor_context* context, int level);
 
+/* Work-items [first, first + count) of a heavy loop. On a CPU, where they are launched at once, so many that
+ * they take some 0.1 s, as far as one does not take longer:
+ *
+ *   mcor_span span = { .end = count };
+ *   MCOR_TRY(mcor_next_span(context, &span));
+ *   while (span.count > 0)
+ *     ... MCOR_INT(span.first), MCOR_INT(span.count) ...
+ *     MCOR_TRY(mcor_next_span(context, &span)); */
+typedef struct mcor_span
+{
+  int first, count, end;
+  double begin; /* when it began */
+} mcor_span;
+
+mcor_status mcor_next_span(mcor_context* context, mcor_span* span);
+
 #endif

@@ -54,11 +54,18 @@ static bool mcor_is_beside_coarse(unsigned coarse, int at)
   return beside;
 }
 
+typedef struct mcor_finer_job
+{
+  mcor_tree* tree;
+  int64_t begin; /* the first region of this loop */
+} mcor_finer_job;
+
 static void mcor_find_finer_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_tree* tree = data;
+  const mcor_finer_job* job = data;
+  mcor_tree* tree = job->tree;
   (void)slice;
-  for (int64_t r = first; r < last; ++r)
+  for (int64_t r = job->begin + first; r < job->begin + last; ++r)
   {
     const cl_int* leaf = tree->leaves + 4 * (int64_t)tree->regions[r];
     const int begin[3] = { leaf[0] & ~1, leaf[1] & ~1, leaf[2] & ~1 };
@@ -77,13 +84,23 @@ static void mcor_find_finer_slice(void* data, int slice, int64_t first, int64_t 
   }
 }
 
+/* Regions between two reports. */
+#define MCOR_FINER_STEP 32768
+
 /* Which of the bricks around each leaf are finer, see MCOR_DIRECTION. */
 static mcor_status mcor_find_finer(mcor_context* context)
 {
   mcor_tree* tree = &context->tree;
   tree->finer = malloc(((size_t)tree->leaf_count + 1) * sizeof *tree->finer);
   MCOR_RETURN_IF(!tree->finer, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  mcor_parallel_for(tree->region_count, MCOR_HEAVY_GRAIN / 8, mcor_find_finer_slice, tree);
+  for (mcor_finer_job job = { tree, 0 }; job.begin < tree->region_count;
+       job.begin += MCOR_FINER_STEP)
+  {
+    const int64_t rest = tree->region_count - job.begin;
+    mcor_parallel_for(rest < MCOR_FINER_STEP ? rest : MCOR_FINER_STEP, MCOR_HEAVY_GRAIN / 8,
+      mcor_find_finer_slice, &job);
+    MCOR_TRY(mcor_report_launch(context));
+  }
   return MCOR_OK;
 }
 
@@ -142,13 +159,19 @@ static mcor_status mcor_find_region_states(
   const mcor_leaf_nodes none = { 0 };
   for (int l = 0; l <= tree->top; ++l)
   {
-    const int first = tree->first_region[l], count = tree->first_region[l + 1] - first;
+    mcor_span span = { .first = tree->first_region[l], .end = tree->first_region[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_regions", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->regions), MCOR_BUFFER(&graded->leaves),
-      MCOR_BUFFER(&graded->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
-      MCOR_BUFFER(&graded->states), MCOR_BUFFER(found ? &found->value : &none.value),
-      MCOR_BUFFER(found ? &found->weight : &none.weight)));
+    MCOR_TRY(mcor_next_span(context, &span));
+    while (span.count > 0)
+    {
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_regions", MCOR_HEAVY, span.count,
+        MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
+        MCOR_BUFFER(&graded->regions), MCOR_BUFFER(&graded->leaves),
+        MCOR_BUFFER(&graded->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
+        MCOR_BUFFER(&graded->states), MCOR_BUFFER(found ? &found->value : &none.value),
+        MCOR_BUFFER(found ? &found->weight : &none.weight)));
+      MCOR_TRY(mcor_next_span(context, &span));
+    }
   }
   return mcor_view_level(context, 0);
 }
@@ -168,24 +191,24 @@ static int mcor_compare_leaves(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* Sorts the leaves that are to be examined, and takes them and what is beside them to the device. */
+/* Sorts the leaves that are to be examined, which are in the order of their levels, and takes them and
+ * what is beside them to the device. */
 static mcor_status mcor_write_examined(
   mcor_context* context, mcor_keyed_leaf* examined, cl_int (*cells)[4], cl_uint* finer)
 {
   const mcor_tree* tree = &context->tree;
   mcor_graded* graded = &context->graded;
   const size_t n = (size_t)graded->count;
-  qsort(examined, n, sizeof *examined, mcor_compare_leaves);
-  memset(graded->first_leaf, 0, sizeof graded->first_leaf);
+  for (int l = 0; l <= tree->top; ++l)
+  {
+    const int first = graded->first_leaf[l], count = graded->first_leaf[l + 1] - first;
+    qsort(examined + first, (size_t)count, sizeof *examined, mcor_compare_leaves);
+    MCOR_TRY(mcor_report_launch(context));
+  }
   for (size_t i = 0; i < n; ++i)
   {
     memcpy(cells[i], tree->leaves + 4 * examined[i].leaf, sizeof cells[i]);
     finer[i] = tree->finer[examined[i].leaf] & (MCOR_COARSER_UP - 1);
-    ++graded->first_leaf[cells[i][3] + 1];
-  }
-  for (int l = 0; l <= tree->top; ++l)
-  {
-    graded->first_leaf[l + 1] += graded->first_leaf[l];
   }
   MCOR_TRY(mcor_write(context, &graded->cells, cells, n * sizeof *cells));
   return mcor_write(context, &graded->finer, finer, n * sizeof *finer);
@@ -211,13 +234,21 @@ static mcor_status mcor_list_examined(mcor_context* context)
   if (status == MCOR_OK && examined && cells && finer)
   {
     size_t to = 0;
+    memset(graded->first_leaf, 0, sizeof graded->first_leaf);
     for (size_t i = 0; i < n; ++i)
     {
       if (chosen[i])
       {
         const cl_int* leaf = tree->leaves + 4 * i;
         examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), i };
+        graded->first_leaf[leaf[3] + 1] = (int)to;
       }
+    }
+    for (int l = 0; l <= tree->top; ++l) /* levels without any */
+    {
+      const int first = graded->first_leaf[l];
+      graded->first_leaf[l + 1] =
+        graded->first_leaf[l + 1] > first ? graded->first_leaf[l + 1] : first;
     }
     status = mcor_write_examined(context, examined, cells, finer);
   }

@@ -138,12 +138,19 @@ typedef struct mcor_mesh
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
 } mcor_mesh;
 
-/* A set of bricks of adaptive cubes, each by its key: base of its level + its number there. */
+/* Some of 4^3 bricks of adaptive cubes, aligned to multiples of 4: bit x + 4 y + 16 z. */
+typedef struct mcor_cluster
+{
+  uint64_t key; /* its number in its level, see mcor_cluster_key */
+  uint64_t bricks;
+} mcor_cluster;
+
+/* A set of bricks of one level. */
 typedef struct mcor_brick_set
 {
-  uint64_t* slots; /* [capacity], MCOR_NO_BRICK where free */
-  size_t capacity; /* a power of 2, or 0 */
-  size_t count;
+  mcor_cluster* slots; /* [capacity]; one without bricks is free */
+  size_t capacity;     /* a power of 2, or 0 */
+  size_t clusters, count; /* of bricks */
 } mcor_brick_set;
 
 /* Leaves of adaptive cubes; see mcor_tree.h. */
@@ -381,7 +388,8 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
 
 /* Reports that something runs from one fraction of the call to another; may cancel. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
-/* The same between two launches: where it is time for a sign of life, a bit nearer to the end. */
+/* The same between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
+ * nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);

@@ -1,0 +1,156 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: split bricks as keys, numbers of all levels' bricks, as other ranks and calls are told
+ * of them. */
+
+#include "mcor_tree.h"
+
+#include <stdlib.h>
+
+/* Keys that are sorted at once. */
+#define MCOR_SORTED_KEYS 65536
+
+static int mcor_compare_keys(const void* a, const void* b)
+{
+  const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
+  return (x > y) - (x < y);
+}
+
+/* Writes both of two sorted runs of keys, the second one from `middle` on. */
+static void mcor_merge_keys(const uint64_t* keys, size_t middle, size_t end, uint64_t* to)
+{
+  size_t i = 0, j = middle;
+  while (i < middle || j < end)
+  {
+    const bool first = j >= end || (i < middle && keys[i] < keys[j]);
+    *to++ = first ? keys[i++] : keys[j++];
+  }
+}
+
+/* Sorts keys in runs that become longer; `other` has as much room. The result is in *keys. */
+static mcor_status mcor_sort_keys(
+  mcor_context* context, uint64_t** keys, uint64_t** other, size_t count)
+{
+  for (size_t i = 0; i < count; i += MCOR_SORTED_KEYS)
+  {
+    const size_t rest = count - i;
+    qsort(*keys + i, rest < MCOR_SORTED_KEYS ? rest : MCOR_SORTED_KEYS, sizeof **keys,
+      mcor_compare_keys);
+    MCOR_TRY(mcor_report_launch(context));
+  }
+  for (size_t run = MCOR_SORTED_KEYS; run < count; run *= 2)
+  {
+    for (size_t i = 0; i < count; i += 2 * run)
+    {
+      const size_t rest = count - i;
+      mcor_merge_keys(
+        *keys + i, rest < run ? rest : run, rest < 2 * run ? rest : 2 * run, *other + i);
+      MCOR_TRY(mcor_report_launch(context));
+    }
+    uint64_t* sorted = *other;
+    *other = *keys;
+    *keys = sorted;
+  }
+  return MCOR_OK;
+}
+
+/* Writes the keys of a level's split bricks; returns their number. */
+static size_t mcor_write_keys(const mcor_tree* tree, int level, uint64_t* keys)
+{
+  const mcor_brick_set* set = &tree->split[level];
+  const mcor_rung* rung = &tree->rungs[level];
+  size_t count = 0;
+  for (size_t i = 0; i < set->capacity; ++i)
+  {
+    int first[3];
+    mcor_first_of_cluster(rung, set->slots[i].key, first);
+    for (int bit = 0; bit < 64 && set->slots[i].bricks >> bit; ++bit)
+    {
+      const int b[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
+      if (set->slots[i].bricks >> bit & 1)
+      {
+        keys[count++] = mcor_tree_key(rung, b);
+      }
+    }
+  }
+  return count;
+}
+
+mcor_status mcor_list_splits(
+  mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count)
+{
+  size_t total = 0;
+  for (int l = 0; l <= tree->top + 1; ++l)
+  {
+    total += tree->split[l].count;
+  }
+  *keys = malloc((total + 1) * sizeof **keys);
+  uint64_t* other = malloc((total + 1) * sizeof *other);
+  mcor_status status =
+    *keys && other ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  *count = 0;
+  for (int l = 0; l <= tree->top + 1 && status == MCOR_OK; ++l)
+  {
+    *count += (int64_t)mcor_write_keys(tree, l, *keys + *count);
+    status = mcor_report_launch(context);
+  }
+  if (status == MCOR_OK)
+  {
+    status = mcor_sort_keys(context, keys, &other, total);
+  }
+  free(other);
+  return status;
+}
+
+/* The position of a brick with a key. */
+static void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3])
+{
+  const uint64_t number = key - rung->base, nx = (uint64_t)rung->n[0], ny = (uint64_t)rung->n[1];
+  brick[0] = (int)(number % nx);
+  brick[1] = (int)(number / nx % ny);
+  brick[2] = (int)(number / nx / ny);
+}
+
+mcor_status mcor_take_splits(
+  mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count)
+{
+  int level = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    level = i > 0 && keys[i] < keys[i - 1] ? 0 : level;
+    while (level <= tree->top && keys[i] >= tree->rungs[level + 1].base)
+    {
+      ++level;
+    }
+    MCOR_RETURN_IF(keys[i] >= tree->key_limit || level == 0, context, MCOR_INVALID_ARGUMENT,
+      "The given global values were measured with other options: a brick of adaptive cubes is not "
+      "on the lattice.");
+    const mcor_rung* rung = &tree->rungs[level];
+    int b[3];
+    mcor_brick_of_key(rung, keys[i], b);
+    MCOR_RETURN_IF(!mcor_set_add(&tree->split[level], mcor_cluster_key(rung, b),
+                     UINT64_C(1) << mcor_cluster_bit(b)),
+      context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld bricks of adaptive cubes ran out.",
+      (long long)count);
+    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_measure_splits(
+  mcor_context* context, const mcor_input* input, mcor_globals* globals)
+{
+  mcor_tree tree = { 0 };
+  if (context->lattice.top == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_status status = mcor_split_bricks(context, input, &tree);
+  if (status == MCOR_OK)
+  {
+    status = mcor_list_splits(context, &tree, &globals->splits, &globals->split_count);
+  }
+  mcor_release_tree(&tree);
+  return status;
+}

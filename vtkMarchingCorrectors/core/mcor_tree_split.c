@@ -1,0 +1,396 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: which bricks are split. One is where a particle of a lower level reaches it: each
+ * particle splits those of the level above its own that it reaches, and a split brick those of the
+ * next level that touch it. So all around it are leaves no more than a level above its parts.
+ *
+ * This is global: all particles decide, of all ranks (mcor_measure_splits), and around a period, which
+ * is a whole number of bricks of all levels: a brick is known by its image in the first period.
+ *
+ * Sets of bricks are kept, and filled, in clusters of 4^3: what a particle reaches, and what is above a
+ * cluster, are masks. */
+
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_ranks.h"
+#include "mcor_sph_kernel.h"
+#include "mcor_tree.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Clusters ---- */
+
+/* Adds bricks of a cluster, `first` being a multiple of 4, not necessarily on the lattice. False where
+ * memory ran out, or there are too many. */
+static bool mcor_split_cluster(
+  const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
+{
+  const mcor_rung* rung = &tree->rungs[level];
+  const int edge = MCOR_BRICK << level;
+  bool within = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int low = tree->period_first[a] / edge, period = tree->period[a] / edge;
+    const int begin = period > 0 ? low : 0, end = period > 0 ? low + period : rung->n[a];
+    within = within && first[a] >= begin && first[a] + MCOR_CLUSTER <= end;
+  }
+  if (within)
+  {
+    return mcor_set_add(set, mcor_cluster_key(rung, first), bricks);
+  }
+  bool made = true;
+  for (int bit = 0; bit < 64 && made; ++bit)
+  {
+    const int brick[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
+    int b[3];
+    if ((bricks >> bit & 1) && mcor_place_brick(tree, level, brick, b))
+    {
+      made = mcor_set_add(set, mcor_cluster_key(rung, b), UINT64_C(1) << mcor_cluster_bit(b));
+    }
+  }
+  return made;
+}
+
+/* The first `count` of four layers of a cluster's bricks across an axis. */
+static uint64_t mcor_layers(int axis, int count)
+{
+  static const uint64_t layers[3][5] = { { 0, 0x1111111111111111, 0x3333333333333333,
+                                           0x7777777777777777, UINT64_MAX },
+    { 0, 0x000f000f000f000f, 0x00ff00ff00ff00ff, 0x0fff0fff0fff0fff, UINT64_MAX },
+    { 0, 0xffff, 0xffffffff, 0xffffffffffff, UINT64_MAX } };
+  return layers[axis][count];
+}
+
+/* The same of 4^3 bricks from any one on. */
+static bool mcor_split_cube(
+  const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
+{
+  bool made = true;
+  for (int d = 0; d < 8 && made; ++d)
+  {
+    uint64_t part = bricks;
+    int cluster[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const int by = first[a] & 3, shift = 2 * a, beyond = d >> a & 1;
+      cluster[a] = first[a] - by + MCOR_CLUSTER * beyond;
+      if (by > 0)
+      {
+        part = beyond ? part >> ((MCOR_CLUSTER - by) << shift) & mcor_layers(a, by)
+                      : (part & mcor_layers(a, MCOR_CLUSTER - by)) << (by << shift);
+      }
+      part = by == 0 && beyond ? 0 : part;
+    }
+    made = part == 0 || mcor_split_cluster(tree, level, cluster, part, set);
+  }
+  return made;
+}
+
+/* ---- Bricks that particles split ---- */
+
+typedef struct mcor_tree_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_tree* tree;
+  int64_t begin; /* the first particle of this loop */
+  double reach;  /* of a support radius in smoothing lengths, in cubes */
+  bool is_cube;  /* the support */
+  mcor_brick_set split[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 2];
+  bool failed[MCOR_SLICES];
+} mcor_tree_job;
+
+/* Distance from x to the brick's interval along an axis, squared. */
+static double mcor_interval_distance2(double x, int brick, double edge)
+{
+  const double below = brick * edge - x, above = x - (brick + 1) * edge;
+  const double d = below > 0 ? below : above > 0 ? above : 0;
+  return d * d;
+}
+
+/* A particle in a level's bricks: those from `first` to `last` that are within its reach. */
+typedef struct mcor_reached
+{
+  double x[3], edge, reach; /* cubes from the lattice's origin */
+  bool is_cube;
+  int first[3], last[3];
+} mcor_reached;
+
+/* Bricks of a cluster that are reached. */
+static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int cluster[3])
+{
+  double square[3][MCOR_CLUSTER];
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int i = 0; i < MCOR_CLUSTER; ++i)
+    {
+      const int b = cluster[a] + i;
+      square[a][i] = b < reached->first[a] || b > reached->last[a] ? INFINITY
+        : reached->is_cube                                         ? 0
+                           : mcor_interval_distance2(reached->x[a], b, reached->edge);
+    }
+  }
+  uint64_t bricks = 0;
+  for (int row = 0; row < 16; ++row)
+  {
+    const double y2 = square[1][row & 3], z2 = square[2][row >> 2];
+    for (int i = 0; i < MCOR_CLUSTER && y2 + z2 < INFINITY; ++i)
+    {
+      const bool in = square[0][i] + y2 + z2 <= reached->reach * reached->reach;
+      bricks |= (uint64_t)in << (4 * row + i);
+    }
+  }
+  return bricks;
+}
+
+/* Splits the bricks of a level that are within `reach` of x. */
+static bool mcor_split_reached(
+  const mcor_tree_job* job, int level, const double x[3], double reach, mcor_brick_set* set)
+{
+  mcor_reached reached = {
+    .edge = ldexp(MCOR_BRICK, level), .reach = reach, .is_cube = job->is_cube
+  };
+  for (int a = 0; a < 3; ++a)
+  {
+    reached.x[a] = x[a];
+    reached.first[a] = (int)ceil((x[a] - reach) / reached.edge) - 1;
+    reached.last[a] = (int)floor((x[a] + reach) / reached.edge);
+  }
+  const int* first = reached.first;
+  int c[3];
+  for (c[2] = first[2] & ~3; c[2] <= reached.last[2]; c[2] += MCOR_CLUSTER)
+  {
+    for (c[1] = first[1] & ~3; c[1] <= reached.last[1]; c[1] += MCOR_CLUSTER)
+    {
+      for (c[0] = first[0] & ~3; c[0] <= reached.last[0]; c[0] += MCOR_CLUSTER)
+      {
+        const uint64_t bricks = mcor_reached_bricks(&reached, c);
+        if (bricks != 0 && !mcor_split_cluster(job->tree, level, c, bricks, set))
+        {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_tree_job* job = data;
+  const mcor_context* context = job->context;
+  const mcor_lattice* lattice = &context->lattice;
+  const double h_min = context->measure.h_min;
+  mcor_array positions = job->input->positions;
+  positions.components = 3;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  const int64_t end = job->begin + last;
+  for (int64_t begin = job->begin + first; begin < end && !job->failed[slice]; begin += MCOR_CHUNK)
+  {
+    const int count = end - begin < MCOR_CHUNK ? (int)(end - begin) : MCOR_CHUNK;
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_read_array(&positions, begin, count, a, x[a]);
+    }
+    mcor_read_smoothing_length(context, job->input, begin, count, h);
+    for (int i = 0; i < count && !job->failed[slice]; ++i)
+    {
+      if (!mcor_is_used(context, job->input, begin + i))
+      {
+        continue;
+      }
+      const int level = mcor_tree_level_of(h[i], h_min, job->tree->top) + 1;
+      double at[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        at[a] = x[a][i] / lattice->cube - (double)lattice->origin[a];
+        const double from = at[a] - lattice->period_first[a], period = lattice->period[a];
+        at[a] -= period > 0 ? floor(from / period) * period : 0;
+      }
+      job->failed[slice] =
+        !mcor_split_reached(job, level, at, h[i] * job->reach, &job->split[slice][level]) ||
+        mcor_are_too_many(job->split[slice]);
+    }
+  }
+}
+
+static bool mcor_is_tensor(mcor_sph_kernel kernel)
+{
+#define MCOR_ENTRY(id, name, support, norm, tensor) tensor,
+  static const bool tensors[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
+#undef MCOR_ENTRY
+  return tensors[kernel];
+}
+
+/* Particles of a slice: of all slices of a loop as many as are split by in some 0.1 s. */
+static int64_t mcor_split_grain(const mcor_tree_job* job)
+{
+  const mcor_measure* measure = &job->context->measure;
+  const double largest = fmax(2 * measure->h_min, ldexp(measure->h_max, -job->tree->top));
+  const double cluster = 2 * MCOR_BRICK * MCOR_CLUSTER; /* of the level above the lowest */
+  const double along = 2 * job->reach * largest / cluster + 2;
+  const double grain = 8 * MCOR_HEAVY_GRAIN / (along * along * along);
+  return grain < 1 ? 1 : grain < MCOR_HEAVY_GRAIN ? (int64_t)grain : MCOR_HEAVY_GRAIN;
+}
+
+/* The bricks that particles split, found in slices. */
+static mcor_status mcor_split_in_slices(mcor_context* context, mcor_tree_job* job)
+{
+  const int64_t grain = mcor_split_grain(job), step = MCOR_SLICES * grain;
+  const int64_t particles = job->input->count;
+  for (job->begin = 0; job->begin < particles; job->begin += step)
+  {
+    const int64_t rest = particles - job->begin;
+    mcor_parallel_for(rest < step ? rest : step, grain, mcor_split_slice, job);
+    for (int s = 0; s < MCOR_SLICES; ++s)
+    {
+      MCOR_TRY(job->failed[s] ? mcor_fail_leaves(context) : MCOR_OK);
+    }
+    MCOR_TRY(mcor_report_launch(context));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_join_slices(
+  mcor_context* context, const mcor_tree_job* job, mcor_tree* tree)
+{
+  for (int s = 0; s < MCOR_SLICES; ++s)
+  {
+    for (int l = 0; l <= tree->top + 1; ++l)
+    {
+      const bool made = mcor_set_add_all(&tree->split[l], &job->split[s][l]);
+      MCOR_TRY(made && !mcor_are_too_many(tree->split) ? MCOR_OK : mcor_fail_leaves(context));
+    }
+    MCOR_TRY(mcor_report_launch(context));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_split_by_particles(
+  mcor_context* context, const mcor_input* input, mcor_tree* tree)
+{
+  mcor_tree_job* job = calloc(1, sizeof *job);
+  MCOR_RETURN_IF(!job, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  const mcor_options* options = context->options;
+  job->context = context;
+  job->input = input;
+  job->tree = tree;
+  job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale / context->lattice.cube;
+  job->is_cube = mcor_is_tensor(options->sph_kernel);
+  mcor_status status = mcor_split_in_slices(context, job);
+  if (status == MCOR_OK)
+  {
+    status = mcor_join_slices(context, job, tree);
+  }
+  for (int s = 0; s < MCOR_SLICES; ++s)
+  {
+    for (int l = 0; l <= tree->top + 1; ++l)
+    {
+      mcor_set_free(&job->split[s][l]);
+    }
+  }
+  free(job);
+  return status;
+}
+
+/* ---- Bricks above split ones ---- */
+
+/* Which of the four bricks above along an axis, from the one below the first parent on, touch bricks of a
+ * cluster: of brick i, those of i / 2 and the nearest other one. */
+static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
+{
+  const int step = 1 << 2 * axis;
+  const uint64_t layer = mcor_layers(axis, 1), low = bricks & layer,
+                 second = bricks >> step & layer, third = bricks >> 2 * step & layer,
+                 high = bricks >> 3 * step & layer;
+  return low | (low | second | third) << step | (second | third | high) << 2 * step |
+    high << 3 * step;
+}
+
+/* Splits the bricks above that touch a split one: its parent, and those beyond the parent's sides that it
+ * lies at. */
+static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int level)
+{
+  const mcor_brick_set* set = &tree->split[level];
+  for (size_t i = 0; i < set->capacity; ++i)
+  {
+    if (set->slots[i].bricks != 0)
+    {
+      int first[3];
+      uint64_t above = set->slots[i].bricks;
+      mcor_first_of_cluster(&tree->rungs[level], set->slots[i].key, first);
+      for (int a = 0; a < 3; ++a)
+      {
+        first[a] = first[a] / 2 - 1;
+        above = mcor_spread_layers(a, above);
+      }
+      const bool made = mcor_split_cube(tree, level + 1, first, above, &tree->split[level + 1]);
+      MCOR_TRY(made ? MCOR_OK : mcor_fail_leaves(context));
+    }
+    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+  }
+  return mcor_are_too_many(tree->split) ? mcor_fail_leaves(context) : MCOR_OK;
+}
+
+/* ---- All ---- */
+
+/* Fails where there will be too many leaves: a particle has about the volume of (h / 1.3)^3, and the
+ * cubes of its level there. */
+static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* input)
+{
+  const double brick = MCOR_BRICK * context->lattice.cube;
+  double leaves = 0, h[MCOR_CHUNK];
+  for (int64_t begin = 0; begin < input->count; begin += MCOR_CHUNK)
+  {
+    const int64_t rest = input->count - begin;
+    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    mcor_read_smoothing_length(context, input, begin, count, h);
+    for (int i = 0; i < count; ++i)
+    {
+      const int level = mcor_tree_level_of(h[i], context->measure.h_min, context->lattice.top);
+      const double bricks = h[i] / 1.3 / ldexp(brick, level);
+      leaves += mcor_is_used(context, input, begin + i) ? bricks * bricks * bricks : 0;
+    }
+    MCOR_TRY(mcor_report_launch(context));
+  }
+  MCOR_RETURN_IF(leaves > MCOR_LEAF_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large: with cube size %g the particles fill about %.3g bricks of %d "
+    "adaptive cubes, and %d is the limit. Use a larger cube size.",
+    context->lattice.cube, leaves, MCOR_BRICK_NODES, MCOR_LEAF_LIMIT);
+  return MCOR_OK;
+}
+
+/* Adds those that other ranks' particles split. */
+static mcor_status mcor_join_ranks(mcor_context* context, mcor_tree* tree)
+{
+  uint64_t* own = NULL;
+  const void* all;
+  int64_t count;
+  mcor_status status = mcor_list_splits(context, tree, &own, &count);
+  if (status == MCOR_OK)
+  {
+    status = mcor_gather(context, own, count, sizeof *own, &all, &count);
+  }
+  if (status == MCOR_OK)
+  {
+    status = mcor_take_splits(context, tree, all, count);
+  }
+  free(own);
+  return status;
+}
+
+mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree)
+{
+  MCOR_TRY(mcor_guess_leaves(context, input));
+  MCOR_TRY(mcor_number_bricks(context, tree));
+  MCOR_TRY(mcor_split_by_particles(context, input, tree));
+  MCOR_TRY(context->options->ranks ? mcor_join_ranks(context, tree) : MCOR_OK);
+  for (int l = 1; l <= tree->top; ++l)
+  {
+    MCOR_TRY(mcor_split_above(context, tree, l));
+  }
+  return MCOR_OK;
+}

@@ -34,6 +34,7 @@ if (MCOR_VTK_PYTHON)
   mcor_add_example_test(benchmark vtk "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/Benchmark/benchmark.py" $<TARGET_FILE:marching-correctors> --quick
     --markdown "${out}/benchmark.md" --json "${out}/benchmark.json")
+  set_tests_properties(example.benchmark PROPERTIES COST 130)
 endif ()
 
 if (MCOR_BUILD_PLUGIN)

@@ -94,7 +94,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   options.precision = at->precision;
   options.seeds = at->seeds;
   options.topology = at->topology;
-  options.cube_size_factor = noise ? 0.7 : options.cube_size_factor;
+  options.cube_size_factor = noise ? 0.7 : small ? 0.65 : options.cube_size_factor;
   options.h_scale = noise ? 0.5 : options.h_scale;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
   options.boundary_detection = at->boundary;

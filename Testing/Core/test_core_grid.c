@@ -410,7 +410,7 @@ static void* read_array(mcor_context* context, const mcor_buffer* buffer, int co
 
 static sorted_set sort_set(mcor_context* context, const core_set* set)
 {
-  const double iso = 100; /* no surface: the grid is all that is wanted */
+  const double iso = 2000; /* above all scalars, no surface: the grid is all that is wanted */
   const mcor_input input = core_input_to_keep(set);
   mcor_options options = core_options(&iso);
   options.seeds = MCOR_PAIRS;

@@ -1,15 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* From the caller's arrays to the device: particles and values, in input order. */
+/* Particles from the caller's arrays to the device, in input order: those that are needed, and in a periodic
+ * box their images. */
 
-#include "mcor_stage.h"
-#include "mcor_box.h"
-#include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_tree.h"
+#include "mcor_stage_chunk.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,46 +59,6 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
   return status;
 }
 
-static void mcor_store_reals(
-  const mcor_context* context, void* array, int64_t first, const double* values, int count)
-{
-  if (context->cl.real_size == sizeof(float))
-  {
-    float* to = (float*)array + first;
-    for (int i = 0; i < count; ++i)
-    {
-      to[i] = (float)values[i];
-    }
-  }
-  else
-  {
-    memcpy((double*)array + first, values, (size_t)count * sizeof *values);
-  }
-}
-
-/* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
- * truncating rounds them. */
-static void mcor_store_fixed(const mcor_context* context, void* array, int64_t first, int axis,
-  const double* values, int count)
-{
-  if (context->cl.fix_size == sizeof(int32_t))
-  {
-    int32_t* to = (int32_t*)array + 3 * first + axis;
-    for (int i = 0; i < count; ++i)
-    {
-      to[3 * i] = (int32_t)(values[i] + 0.5);
-    }
-  }
-  else
-  {
-    int64_t* to = (int64_t*)array + 3 * first + axis;
-    for (int i = 0; i < count; ++i)
-    {
-      to[3 * i] = (int64_t)(values[i] + 0.5);
-    }
-  }
-}
-
 /* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume in
  * cubes, the mass over the largest one, or 1. */
 double mcor_size_scale(const mcor_context* context, const mcor_input* input)
@@ -117,111 +74,6 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input)
   }
   const mcor_globals* globals = context->options->globals;
   return 1 / (globals ? globals->mass_max : mcor_largest(&input->mass, NULL, input->count, 0));
-}
-
-static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
-{
-  static const mcor_array one = { .constant = 1 };
-  mcor_read_array(input->has_volume ? &input->volume
-      : input->has_mass             ? &input->mass
-                                    : &one,
-    first, count, 0, out);
-  if (!input->has_volume && input->has_mass && input->has_density)
-  {
-    double density[MCOR_CHUNK];
-    mcor_read_array(&input->density, first, count, 0, density);
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] /= density[i];
-    }
-  }
-}
-
-static int mcor_level_of(double support_max, double support)
-{
-  const int level = support < support_max ? ilogb(support_max / support) : 0;
-  return level < 0 ? 0 : level >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : level;
-}
-
-/* Particles of a chunk in the staging arrays' units. */
-typedef struct mcor_stage_chunk
-{
-  int count;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK];
-  int32_t source[MCOR_CHUNK];
-} mcor_stage_chunk;
-
-/* Where they are, and how large. reach: NULL, or what tells of a period. */
-static void mcor_read_stage_places(const mcor_context* context, const mcor_input* input,
-  int64_t first, const mcor_reach_box* reach, mcor_stage_chunk* chunk)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const double scale = ldexp(1, lattice->fix_bits);
-  const int count = chunk->count;
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double origin = (double)lattice->origin[a];
-    double* x = chunk->x[a];
-    mcor_read_array(&positions, first, count, a, x);
-    for (int i = 0; i < count; ++i)
-    {
-      x[i] = (x[i] / lattice->cube - origin) * scale;
-    }
-    for (int i = 0; i < count && reach && reach->period[a] > 0; ++i)
-    {
-      x[i] = mcor_wrap(reach, a, x[i]);
-    }
-  }
-  mcor_read_smoothing_length(context, input, first, count, chunk->h);
-  for (int i = 0; i < count; ++i)
-  {
-    chunk->source[i] = (int32_t)(first + i);
-  }
-}
-
-static void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
-  int64_t first, const mcor_staging* staging, const mcor_reach_box* reach, mcor_stage_chunk* chunk)
-{
-  mcor_read_stage_places(context, input, first, reach, chunk);
-  mcor_read_size(input, first, chunk->count, chunk->size);
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    chunk->size[i] *= staging->size_scale;
-  }
-}
-
-/* A weight beyond would be infinite on the device. */
-static double mcor_weight_limit(const mcor_context* context)
-{
-  return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
-}
-
-/* Weight of particle i of a chunk on the device: large where the volume is huge against the smoothing
- * length. */
-static double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
-{
-  const double inv_h = context->lattice.cube / context->options->h_scale / chunk->h[i];
-  return chunk->size[i] * inv_h * inv_h * inv_h;
-}
-
-/* Input index of the first particle of a chunk whose weight is too large; -1 if there is none. The
- * largest one is kept. */
-static int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
-  const mcor_stage_chunk* chunk, double* largest_weight)
-{
-  const double limit = mcor_weight_limit(context);
-  for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
-  {
-    const double weight = mcor_stage_weight(context, chunk, i);
-    if (!(weight < limit))
-    {
-      return chunk->source[i];
-    }
-    *largest_weight = weight > *largest_weight ? weight : *largest_weight;
-  }
-  return -1;
 }
 
 typedef struct mcor_stage_job
@@ -256,61 +108,6 @@ static int mcor_images_of(
     at[a] = chunk->x[a][i] * job->reach->unit;
   }
   return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, chunk->h[i]), images);
-}
-
-/* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
- * MCOR_POINT_EXTENT. */
-static int mcor_spared_bits(const mcor_context* context, double support, int level)
-{
-  const int digits = context->cl.real_size == sizeof(float) ? FLT_MANT_DIG : DBL_MANT_DIG;
-  int exponent;
-  frexp(1.0001 * support / context->lattice.cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
-  const int bits = exponent + context->lattice.fix_bits - digits;
-  return bits > 0 ? bits : 0;
-}
-
-/* Rounds positions to what evaluations make of them. reach: of a support radius in smoothing
- * lengths. */
-static void mcor_round_positions(const mcor_context* context, double reach, mcor_stage_chunk* chunk)
-{
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    const int level = mcor_tree_level_of(chunk->h[i], context->measure.h_min, context->lattice.top);
-    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, level));
-    for (int a = 0; a < 3; ++a)
-    {
-      chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
-    }
-  }
-}
-
-/* To element `to` of the staging arrays. */
-static void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input,
-  mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to)
-{
-  const mcor_measure* m = &context->measure;
-  const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
-  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
-  uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
-  if (mcor_spared_bits(context, m->support_max, context->lattice.top) > 0)
-  {
-    mcor_round_positions(context, reach, chunk);
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_store_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
-  }
-  mcor_store_reals(context, staging->size, to, chunk->size, chunk->count);
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    solid[i] = input->solid && input->solid[chunk->source[i]];
-    level[i] = m->support_min < m->support_max
-      ? (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach)
-      : 0;
-    chunk->h[i] = scaled_cube / chunk->h[i];
-  }
-  mcor_store_reals(context, staging->inv_h, to, chunk->h, chunk->count);
-  memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
 }
 
 /* Marks the particles of a chunk that cannot reach anything, by one look at each coordinate: most of
@@ -534,63 +331,6 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
   const mcor_status status = mcor_stage_particles(context, &job, staging);
   free(job.images);
   return status;
-}
-
-typedef struct mcor_value_job
-{
-  const mcor_context* context;
-  const mcor_input* input;
-  const mcor_array* array;
-  int component;
-  double shift, scale;
-  void* values;
-} mcor_value_job;
-
-static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_value_job* job = data;
-  const mcor_input* input = job->input;
-  const int32_t* source = job->context->source;
-  const double shift = job->shift, scale = job->scale;
-  int n = 0;
-  for (int64_t begin = first; begin < last; begin += n)
-  {
-    const int64_t from = source[begin], rest = input->count - from;
-    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
-    double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
-    job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
-               : mcor_read_scalar(input, from, count, chunk);
-    /* Images of a particle stand side by side. */
-    for (n = 0; n < MCOR_CHUNK && begin + n < last && source[begin + n] < from + count; ++n)
-    {
-      used[n] = (chunk[source[begin + n] - from] - shift) * scale;
-    }
-    /* Those of solids play no part, whatever they are. */
-    for (int i = 0; i < n && input->solid; ++i)
-    {
-      used[i] = input->solid[source[begin + i]] ? 0 : used[i];
-    }
-    mcor_store_reals(job->context, job->values, begin, used, n);
-  }
-  (void)slice;
-}
-
-/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from
- * the caller's order to the sorted one, to row `to_row`, one value per particle long. */
-mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row)
-{
-  const mcor_grid* grid = &context->grid;
-  const size_t bytes = (size_t)grid->count * context->cl.real_size;
-  mcor_buffer* raw = &context->stage.values;
-  mcor_value_job job = { context, input, array, component, shift, scale, NULL };
-  MCOR_TRY(mcor_reserve(context, raw, bytes));
-  MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
-  mcor_parallel_for(grid->count, MCOR_LIGHT_GRAIN, mcor_store_value_slice, &job);
-  MCOR_TRY(mcor_unmap(context, raw, &job.values));
-  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
-    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
-    MCOR_INT(to_row));
 }
 
 void mcor_release_stage(mcor_context* context)

@@ -1,0 +1,196 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* A chunk of the caller's particles, in the staging arrays' units. */
+
+#include "mcor_stage_chunk.h"
+#include "mcor_tree.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+void mcor_read_stage_places(const mcor_context* context, const mcor_input* input, int64_t first,
+  const mcor_reach_box* reach, mcor_stage_chunk* chunk)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const double scale = ldexp(1, lattice->fix_bits);
+  const int count = chunk->count;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double origin = (double)lattice->origin[a];
+    double* x = chunk->x[a];
+    mcor_read_array(&positions, first, count, a, x);
+    for (int i = 0; i < count; ++i)
+    {
+      x[i] = (x[i] / lattice->cube - origin) * scale;
+    }
+    for (int i = 0; i < count && reach && reach->period[a] > 0; ++i)
+    {
+      x[i] = mcor_wrap(reach, a, x[i]);
+    }
+  }
+  mcor_read_smoothing_length(context, input, first, count, chunk->h);
+  for (int i = 0; i < count; ++i)
+  {
+    chunk->source[i] = (int32_t)(first + i);
+  }
+}
+
+static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
+{
+  static const mcor_array one = { .constant = 1 };
+  mcor_read_array(input->has_volume ? &input->volume
+      : input->has_mass             ? &input->mass
+                                    : &one,
+    first, count, 0, out);
+  if (!input->has_volume && input->has_mass && input->has_density)
+  {
+    double density[MCOR_CHUNK];
+    mcor_read_array(&input->density, first, count, 0, density);
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] /= density[i];
+    }
+  }
+}
+
+void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input, int64_t first,
+  const mcor_staging* staging, const mcor_reach_box* reach, mcor_stage_chunk* chunk)
+{
+  mcor_read_stage_places(context, input, first, reach, chunk);
+  mcor_read_size(input, first, chunk->count, chunk->size);
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    chunk->size[i] *= staging->size_scale;
+  }
+}
+
+double mcor_weight_limit(const mcor_context* context)
+{
+  return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
+}
+
+double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
+{
+  const double inv_h = context->lattice.cube / context->options->h_scale / chunk->h[i];
+  return chunk->size[i] * inv_h * inv_h * inv_h;
+}
+
+int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
+  const mcor_stage_chunk* chunk, double* largest_weight)
+{
+  const double limit = mcor_weight_limit(context);
+  for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
+  {
+    const double weight = mcor_stage_weight(context, chunk, i);
+    if (!(weight < limit))
+    {
+      return chunk->source[i];
+    }
+    *largest_weight = weight > *largest_weight ? weight : *largest_weight;
+  }
+  return -1;
+}
+
+/* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
+ * MCOR_POINT_EXTENT. */
+static int mcor_spared_bits(const mcor_context* context, double support, int level)
+{
+  const int digits = context->cl.real_size == sizeof(float) ? FLT_MANT_DIG : DBL_MANT_DIG;
+  int exponent;
+  frexp(1.0001 * support / context->lattice.cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
+  const int bits = exponent + context->lattice.fix_bits - digits;
+  return bits > 0 ? bits : 0;
+}
+
+/* Rounds positions to what evaluations make of them. reach: of a support radius in smoothing
+ * lengths. */
+static void mcor_round_positions(const mcor_context* context, double reach, mcor_stage_chunk* chunk)
+{
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const int level = mcor_tree_level_of(chunk->h[i], context->measure.h_min, context->lattice.top);
+    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, level));
+    for (int a = 0; a < 3; ++a)
+    {
+      chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
+    }
+  }
+}
+
+static int mcor_level_of(double support_max, double support)
+{
+  const int level = support < support_max ? ilogb(support_max / support) : 0;
+  return level < 0 ? 0 : level >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : level;
+}
+
+void mcor_store_reals(
+  const mcor_context* context, void* array, int64_t first, const double* values, int count)
+{
+  if (context->cl.real_size == sizeof(float))
+  {
+    float* to = (float*)array + first;
+    for (int i = 0; i < count; ++i)
+    {
+      to[i] = (float)values[i];
+    }
+  }
+  else
+  {
+    memcpy((double*)array + first, values, (size_t)count * sizeof *values);
+  }
+}
+
+/* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
+ * truncating rounds them. */
+static void mcor_store_fixed(const mcor_context* context, void* array, int64_t first, int axis,
+  const double* values, int count)
+{
+  if (context->cl.fix_size == sizeof(int32_t))
+  {
+    int32_t* to = (int32_t*)array + 3 * first + axis;
+    for (int i = 0; i < count; ++i)
+    {
+      to[3 * i] = (int32_t)(values[i] + 0.5);
+    }
+  }
+  else
+  {
+    int64_t* to = (int64_t*)array + 3 * first + axis;
+    for (int i = 0; i < count; ++i)
+    {
+      to[3 * i] = (int64_t)(values[i] + 0.5);
+    }
+  }
+}
+
+void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input,
+  mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to)
+{
+  const mcor_measure* m = &context->measure;
+  const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
+  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
+  uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
+  if (mcor_spared_bits(context, m->support_max, context->lattice.top) > 0)
+  {
+    mcor_round_positions(context, reach, chunk);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_store_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
+  }
+  mcor_store_reals(context, staging->size, to, chunk->size, chunk->count);
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    solid[i] = input->solid && input->solid[chunk->source[i]];
+    level[i] = m->support_min < m->support_max
+      ? (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach)
+      : 0;
+    chunk->h[i] = scaled_cube / chunk->h[i];
+  }
+  mcor_store_reals(context, staging->inv_h, to, chunk->h, chunk->count);
+  memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
+}

@@ -1,0 +1,64 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Values of particles, from the caller's arrays to the device: by the order of the search grid. */
+
+#include "mcor_parallel.h"
+#include "mcor_stage_chunk.h"
+
+typedef struct mcor_value_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_array* array;
+  int component;
+  double shift, scale;
+  void* values;
+} mcor_value_job;
+
+static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_value_job* job = data;
+  const mcor_input* input = job->input;
+  const int32_t* source = job->context->source;
+  const double shift = job->shift, scale = job->scale;
+  int n = 0;
+  for (int64_t begin = first; begin < last; begin += n)
+  {
+    const int64_t from = source[begin], rest = input->count - from;
+    const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+    double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
+    job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
+               : mcor_read_scalar(input, from, count, chunk);
+    /* Images of a particle stand side by side. */
+    for (n = 0; n < MCOR_CHUNK && begin + n < last && source[begin + n] < from + count; ++n)
+    {
+      used[n] = (chunk[source[begin + n] - from] - shift) * scale;
+    }
+    /* Those of solids play no part, whatever they are. */
+    for (int i = 0; i < n && input->solid; ++i)
+    {
+      used[i] = input->solid[source[begin + i]] ? 0 : used[i];
+    }
+    mcor_store_reals(job->context, job->values, begin, used, n);
+  }
+  (void)slice;
+}
+
+/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from
+ * the caller's order to the sorted one, to row `to_row`, one value per particle long. */
+mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
+  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row)
+{
+  const mcor_grid* grid = &context->grid;
+  const size_t bytes = (size_t)grid->count * context->cl.real_size;
+  mcor_buffer* raw = &context->stage.values;
+  mcor_value_job job = { context, input, array, component, shift, scale, NULL };
+  MCOR_TRY(mcor_reserve(context, raw, bytes));
+  MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
+  mcor_parallel_for(grid->count, MCOR_LIGHT_GRAIN, mcor_store_value_slice, &job);
+  MCOR_TRY(mcor_unmap(context, raw, &job.values));
+  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
+    MCOR_INT(to_row));
+}

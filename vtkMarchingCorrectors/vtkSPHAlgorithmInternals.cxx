@@ -41,10 +41,16 @@ void vtkSPHAlgorithm::vtkInternals::SetVersions(vtkSPHParticles& input)
   {
     ++this->ParticlesVersion;
   }
+  if (input.AttributesSignature != this->Attributes)
+  {
+    ++this->AttributesVersion;
+  }
   this->Particles = input.ParticlesSignature;
   this->Scalar = input.ScalarSignature;
+  this->Attributes = input.AttributesSignature;
   input.Core.particles_version = this->ParticlesVersion;
   input.Core.scalar_version = this->ScalarVersion;
+  input.Core.attributes_version = this->AttributesVersion;
 }
 
 //------------------------------------------------------------------------------
@@ -52,6 +58,7 @@ void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
 {
   this->Particles.clear();
   this->Scalar.clear();
+  this->Attributes.clear();
   if (status == MCOR_DEVICE_ERROR)
   {
     mcor_free_context(this->Context);

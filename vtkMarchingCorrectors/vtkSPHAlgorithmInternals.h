@@ -42,8 +42,8 @@ private:
   std::string Device; // what the context was created for
   bool InRun = false;
   bool ReleaseAfterRun = false;
-  std::vector<std::uint64_t> Particles, Scalar;
-  std::uint64_t ParticlesVersion = 0, ScalarVersion = 0;
+  std::vector<std::uint64_t> Particles, Scalar, Attributes;
+  std::uint64_t ParticlesVersion = 0, ScalarVersion = 0, AttributesVersion = 0;
 };
 
 #endif

@@ -279,6 +279,10 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
     this->Interpolated.push_back({ velocity, NameOf(velocity), 3 });
     this->Attributes.push_back(this->View(velocity));
   }
+  for (const vtkSPHAttribute& attribute : this->Interpolated)
+  {
+    SignObject(this->AttributesSignature, attribute.Array);
+  }
   this->Core.attributes = this->Attributes.data();
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
 }

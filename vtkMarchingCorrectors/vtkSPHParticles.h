@@ -118,10 +118,11 @@ public:
   vtkSmartPointer<vtkDataArray> Fluid;
   vtkIdType FluidCount = 0;
 
-  std::vector<vtkSPHAttribute> Interpolated;     // in the order of Core.attributes
-  std::vector<vtkSPHAttribute> FromNearest;      // identifiers, integers, strings
-  std::vector<std::uint64_t> ParticlesSignature; // equal signatures: same particles
-  std::vector<std::uint64_t> ScalarSignature;    // the same for the core's scalar, empty if none
+  std::vector<vtkSPHAttribute> Interpolated;      // in the order of Core.attributes
+  std::vector<vtkSPHAttribute> FromNearest;       // identifiers, integers, strings
+  std::vector<std::uint64_t> ParticlesSignature;  // equal signatures: same particles
+  std::vector<std::uint64_t> ScalarSignature;     // the same for the core's scalar, empty if none
+  std::vector<std::uint64_t> AttributesSignature; // the same for the interpolated arrays
 
 protected:
   static std::string Quote(const std::string& name);

@@ -4,6 +4,7 @@
 /* The field at points: against the oracle, and the same bits whatever the other points are. */
 
 #include "core_fixture.h"
+#include "mcor_input.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -373,11 +374,121 @@ static void test_threshold_itself(void** state)
   core_free_set(&set);
 }
 
+/* ---- attributes kept between calls ---- */
+
+typedef struct kept_call
+{
+  core_set set;
+  double *points, *other;
+  mcor_array attributes[2 * MCOR_ATTRIBUTE_LIMIT];
+  mcor_input input;
+  mcor_options options;
+} kept_call;
+
+#define KEPT_POINTS 200
+
+/* Probes; `reused`: whether the attributes of the call before are. Bit for bit what a context that knows
+ * nothing says. */
+static void kept_probe(mcor_context* context, const kept_call* call, bool reused, const char* step)
+{
+  const mcor_array at = core_array(call->points, 3);
+  mcor_input alone = call->input;
+  mcor_context* fresh = NULL;
+  mcor_samples got, expected;
+  alone.particles_version = alone.scalar_version = alone.attributes_version = 0;
+  /* Where what is kept is taken, nobody asks for the array's values. */
+  double* const values = (double*)call->attributes[0].data;
+  const double value = values[0];
+  values[0] = reused ? NAN : value;
+  CORE_OK(context, mcor_probe(context, &call->input, &call->options, &at, KEPT_POINTS, &got));
+  values[0] = value;
+  CORE_OK(fresh, mcor_create_context(NULL, &fresh));
+  CORE_OK(fresh, mcor_probe(fresh, &alone, &call->options, &at, KEPT_POINTS, &expected));
+  for (int a = 0; a < call->input.attribute_count; ++a)
+  {
+    CORE_CHECK(got.attribute_not_finite[a] == expected.attribute_not_finite[a], "%s: finite", step);
+    if (expected.values[a])
+    {
+      const size_t bytes =
+        (size_t)mcor_components(&call->attributes[a]) * KEPT_POINTS * sizeof(double);
+      CORE_CHECK(
+        memcmp(got.values[a], expected.values[a], bytes) == 0, "%s: values of %d", step, a);
+    }
+  }
+  mcor_free_samples(&got);
+  mcor_free_samples(&expected);
+  mcor_free_context(fresh);
+}
+
+static void kept_extract(mcor_context* context, const kept_call* call)
+{
+  const double iso = 0.3;
+  mcor_options options = core_options(&iso);
+  mcor_surface surface;
+  CORE_OK(context, mcor_extract(context, &call->input, &options, &surface));
+  mcor_free_surface(&surface);
+}
+
+static void test_kept_attributes(void** state)
+{
+  mcor_context* context = *state;
+  kept_call call = { .set = core_make_random(800, 6, 0.6, 1.2, 31), .options = core_options(NULL) };
+  call.points = probe_points(KEPT_POINTS, 6, 9);
+  call.other = probe_points(call.set.count, 3, 7);
+  call.options.iso_count = 0;
+  call.input = core_input_to_keep(&call.set);
+  call.input.attributes = call.attributes;
+  call.input.attribute_count = 1;
+  call.input.attributes_version = 5;
+  call.attributes[0] = call.input.scalar;
+  kept_probe(context, &call, false, "first");
+  kept_probe(context, &call, true, "again");
+  call.points[0] += 0.5;
+  kept_probe(context, &call, true, "other points");
+  call.options.field = MCOR_SUM;
+  call.input.attribute_count = 2;
+  call.attributes[1] = core_array(call.other, 3);
+  kept_probe(context, &call, false, "one more");
+  kept_probe(context, &call, true, "one more, again");
+  call.attributes[0] = core_array(call.other, 1);
+  call.input.attributes_version = 6;
+  kept_probe(context, &call, false, "other values");
+  kept_extract(context, &call);
+  kept_probe(context, &call, false, "after a surface");
+  call.options.h_scale = 1.2;
+  kept_probe(context, &call, false, "another search grid");
+  call.input.particles_version = call.input.scalar_version += 1000;
+  kept_probe(context, &call, false, "other particles");
+  kept_probe(context, &call, true, "other particles, again");
+  mcor_release_memory(context);
+  kept_probe(context, &call, false, "released");
+  call.input.attributes_version = 0;
+  kept_probe(context, &call, false, "no version");
+  kept_probe(context, &call, false, "no version, again");
+  call.input.attributes_version = 7;
+  call.other[0] = NAN;
+  kept_probe(context, &call, false, "not finite");
+  kept_probe(context, &call, false, "not finite, again");
+  call.other[0] = 1;
+  call.input.attributes_version = 8;
+  call.input.attribute_count = MCOR_ATTRIBUTE_LIMIT + 1;
+  for (int a = 1; a <= MCOR_ATTRIBUTE_LIMIT; ++a)
+  {
+    call.attributes[a] = call.input.scalar;
+  }
+  kept_probe(context, &call, false, "too many");
+  kept_probe(context, &call, false, "too many, again");
+  free(call.points);
+  free(call.other);
+  core_free_set(&call.set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_threshold_itself),
     cmocka_unit_test(test_against_oracle), cmocka_unit_test(test_wide_range_against_oracle),
     cmocka_unit_test(test_bits_do_not_depend_on_other_points),
-    cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points) };
+    cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points),
+    cmocka_unit_test(test_kept_attributes) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

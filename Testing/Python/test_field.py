@@ -11,6 +11,8 @@ import unittest
 
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkPolyData
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersGeneral import vtkImageDataToPointSet
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives, vtkSPHProbe
@@ -158,6 +160,46 @@ class TestProbe(unittest.TestCase):
             speed = math.cos(x) * math.sin(y)
             self.assertAlmostEqual(data.GetArray("Velocity").GetComponent(i, 0), speed, delta=0.15)
         self.assertEqual(probe.GetUsedSmoothingLengthArrayName(), "h")
+
+    def test_points_of_an_image(self):
+        """They are computed row by row, in chunks: the same bits as at points that are stored."""
+        image = vtkImageData()
+        image.SetExtent(3, 1033, -5, 511, 7, 8)  # more than one chunk of points
+        image.SetSpacing(0.0011, 0.0009, 0.3)
+        image.SetOrigin(0.7, 0.1, -1.9)
+        image.SetDirectionMatrix(0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1)
+        convert = vtkImageDataToPointSet()
+        convert.SetInputData(image)
+        convert.Update()
+        self.assertEqual(convert.GetOutput().GetPoint(540000), image.GetPoint(540000))
+        probe = self.make()
+        results = []
+        for points in (image, convert.GetOutput()):
+            probe.SetInputData(points)
+            probe.Update()
+            data = probe.GetOutput().GetPointData()
+            results.append([vtk_to_numpy(data.GetArray(name)).tobytes() for name in ("Weight", "Velocity")])
+            self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (0, 1))
+        self.assertTrue(results[0] == results[1])
+
+    def test_changed_arrays(self):
+        """What a probe keeps of the arrays is not taken for others."""
+        probe = self.make()
+        probe.Update()
+        particles = probe.GetSource()
+        velocity = particles.GetPointData().GetArray("Velocity")
+        before = probe.GetOutput().GetPointData().GetArray("Velocity").GetTuple(20)
+        twice = vtkFloatArray()
+        twice.DeepCopy(velocity)
+        for i in range(velocity.GetNumberOfTuples()):
+            twice.SetTuple3(i, *(2 * x for x in velocity.GetTuple(i)))
+        particles.GetPointData().AddArray(twice)
+        probe.Update()
+        after = probe.GetOutput().GetPointData().GetArray("Velocity").GetTuple(20)
+        self.assertEqual(after, tuple(2 * x for x in before))
+        probe.AddExcludedArray("h")
+        probe.Update()
+        self.assertEqual(probe.GetOutput().GetPointData().GetArray("Velocity").GetTuple(20), after)
 
     def test_source(self):
         probe = self.make()

@@ -173,10 +173,12 @@ extern "C"
     int attribute_count;
 
     /* Reuse: equal nonzero numbers in two successive calls promise that positions, smoothing
-     * lengths, volumes and solids (particles_version), or the scalar (scalar_version) are the same.
-     * Reuse saves time and never changes the result. 0: never reuse. */
+     * lengths, volumes and solids (particles_version), the scalar (scalar_version), or all attributes
+     * (attributes_version: mcor_probe then keeps them on the device) are the same. Reuse saves time and
+     * never changes the result. 0: never reuse. */
     uint64_t particles_version;
     uint64_t scalar_version;
+    uint64_t attributes_version;
   } mcor_input;
 
   /* Of one component of an attribute; of particles that are not solid. */

@@ -75,6 +75,7 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
   mcor_attributes* attributes = &context->attributes;
   const size_t most = mcor_count_components(input) + 1;
   free(attributes->varying);
+  attributes->kept = 0;
   attributes->varying_count = attributes->count = 0;
   attributes->varying = malloc(most * sizeof *attributes->varying);
   MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
@@ -411,4 +412,5 @@ void mcor_release_attributes(mcor_context* context)
 {
   mcor_attributes* attributes = &context->attributes;
   MCOR_RELEASE(context, &attributes->sorted, &attributes->nearest);
+  attributes->kept = 0;
 }

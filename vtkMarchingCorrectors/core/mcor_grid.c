@@ -276,6 +276,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
     status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15);
   }
   context->grid.count = staging.count;
+  context->attributes.kept = 0; /* in another order */
   if (status == MCOR_OK && staging.count > 0)
   {
     status = mcor_sort_particles(context, &staging);

@@ -241,6 +241,7 @@ typedef struct mcor_attributes
   int varying_count;
   int first, count;
   mcor_buffer sorted;  /* real [count][grid.count] */
+  uint64_t kept; /* attributes_version of a probe, where all of it holds for the next one; or 0 */
   mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
 

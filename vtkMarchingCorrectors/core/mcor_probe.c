@@ -235,6 +235,28 @@ static void mcor_fit_batch(mcor_context* context, double begin, double built)
   }
 }
 
+/* Whether the attributes of the last probe are those of this one, and are still on the device. */
+static bool mcor_has_attributes(const mcor_context* context, const mcor_input* input)
+{
+  return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;
+}
+
+/* Keeps them for the next probe, or not: not where each batch of them replaces the one before. */
+static void mcor_keep_attributes(mcor_context* context, const mcor_input* input, mcor_samples* s)
+{
+  mcor_attributes* attributes = &context->attributes;
+  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !context->options->globals;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    all = all && s->attribute_not_finite[a] < 0;
+  }
+  attributes->kept = all ? input->attributes_version : 0;
+  if (attributes->kept == 0)
+  {
+    mcor_release(context, &attributes->sorted);
+  }
+}
+
 /* All arrays, some at a time, at all points, some at a time. */
 static mcor_status mcor_probe_all(mcor_probe_run* run)
 {
@@ -249,7 +271,10 @@ static mcor_status mcor_probe_all(mcor_probe_run* run)
   }
   for (int array = 0; array == 0 || array < arrays; array += MCOR_ATTRIBUTE_LIMIT)
   {
-    MCOR_TRY(mcor_load_attributes(context, run->input, array));
+    if (!mcor_has_attributes(context, run->input))
+    {
+      MCOR_TRY(mcor_load_attributes(context, run->input, array));
+    }
     int64_t count = 0;
     for (int64_t first = 0; first < points; first += count)
     {
@@ -315,7 +340,18 @@ static mcor_status mcor_make_tables(
   s->attribute_count = input->attribute_count;
   MCOR_RETURN_IF(!s->values || (gradients && !s->gradients) || !s->attribute_not_finite, context,
     MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  return mcor_list_components(context, input, s->attribute_not_finite);
+  if (!context->grid_valid || !mcor_same_particles(input, &context->last_input) ||
+    context->options->globals || input->attribute_count != context->last_input.attribute_count)
+  {
+    context->attributes.kept = 0;
+  }
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    s->attribute_not_finite[a] = -1;
+  }
+  return mcor_has_attributes(context, input)
+    ? MCOR_OK
+    : mcor_list_components(context, input, s->attribute_not_finite);
 }
 
 typedef struct mcor_probe_call
@@ -358,7 +394,7 @@ static mcor_status mcor_run_probe(
     .is_sum = call->is_sum };
   const mcor_status status = context->grid.count > 0 ? mcor_probe_all(&run) : MCOR_OK;
   mcor_release_probe(&run);
-  mcor_release(context, &context->attributes.sorted);
+  mcor_keep_attributes(context, input, samples);
   MCOR_TRY(status);
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);

@@ -131,3 +131,45 @@ int particle_set_medium(particle_set* set, double ratio)
   }
   return 1;
 }
+
+/* Particles of a box, on a lattice, jittered; their number along an axis is made whole. */
+static void graded_block(particle_set* set, const double low[3], const double high[3],
+  double spacing, int solid, uint64_t* state)
+{
+  int64_t n[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    n[axis] = (int64_t)floor((high[axis] - low[axis]) / spacing + 0.5);
+  }
+  for (int64_t c = 0; c < n[0] * n[1] * n[2]; ++c)
+  {
+    const int64_t at[3] = { c % n[0], c / n[0] % n[1], c / n[0] / n[1] };
+    double x[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double jitter = solid ? 0.0 : 0.2 * (random_unit(state) - 0.5);
+      x[axis] = low[axis] + ((double)at[axis] + 0.5 + jitter) * spacing;
+    }
+    const double scalar = x[0] - 0.1 + 0.4 * sin(3.0 * x[1]) + 0.3 * cos(4.0 * x[2]);
+    graded_add(set, x, 1.3 * spacing, pow(spacing, 3.0), scalar);
+    set->solid[set->count - 1] = (uint8_t)solid;
+  }
+}
+
+int particle_set_basin(particle_set* set, double ratio)
+{
+  const double coarse = 0.25, fine = coarse / ratio, floor_spacing = 0.1;
+  const double low[3] = { -1.0, -0.6, 0.0 }, high[3] = { 0.0, 0.6, 0.8 };
+  const double fine_low[3] = { 0.0, -0.6, 0.0 }, fine_high[3] = { 0.6, 0.6, 0.6 };
+  const double floor_low[3] = { -1.4, -0.8, -0.3 }, floor_high[3] = { 0.9, 0.8, 0.0 };
+  uint64_t state = 13;
+  if (!graded_reserve(set))
+  {
+    return 0;
+  }
+  set->has_solids = 1;
+  graded_block(set, low, high, coarse, 0, &state);
+  graded_block(set, fine_low, fine_high, fine, 0, &state);
+  graded_block(set, floor_low, floor_high, floor_spacing, 1, &state);
+  return 1;
+}

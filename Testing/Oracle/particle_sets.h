@@ -45,6 +45,9 @@ int particle_set_random(particle_set* set, uint64_t seed);
  * scalar = 0 from there to far away; smoothing lengths differ by the ratio. 0 if memory ran out. */
 int particle_set_drops(particle_set* set, double ratio);
 int particle_set_medium(particle_set* set, double ratio);
+/* A coarse and a fine block of fluid, side by side on a floor of solids of a smoothing length of its own. 0 if
+ * memory ran out. */
+int particle_set_basin(particle_set* set, double ratio);
 
 void particle_set_free(particle_set* set);
 

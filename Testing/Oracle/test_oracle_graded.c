@@ -151,6 +151,15 @@ static void test_oracle(oracle_suite* suite)
 
 /* ---- the library ------------------------------------------------------------------------------- */
 
+/* What solids do, as the program's --solids. */
+typedef enum graded_solids
+{
+  SOLIDS_NONE,
+  SOLIDS_WEIGHT,
+  SOLIDS_IGNORE,
+  SOLIDS_WALL
+} graded_solids;
+
 typedef struct graded_entry
 {
   const char* name;
@@ -159,7 +168,10 @@ typedef struct graded_entry
   mcor_field field;
   mcor_sph_kernel kernel;
   mcor_type precision;
+  graded_solids solids;
 } graded_entry;
+
+static const char* const solids_names[] = { "", "/weight", "/ignore", "/wall" };
 
 static void run_entry(oracle_suite* suite, const graded_entry* entry)
 {
@@ -177,12 +189,15 @@ static void run_entry(oracle_suite* suite, const graded_entry* entry)
   at.options.sph_kernel = entry->kernel;
   at.options.precision = entry->precision;
   at.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  at.input.ignore_solids = entry->solids == SOLIDS_IGNORE;
+  at.options.wall_share = entry->solids == SOLIDS_WALL ? 0.5 : 0.0;
   at.skip_pairs = 1;
-  snprintf(at.name, sizeof(at.name), "graded/%s/%g/%s/%s%s", entry->name, entry->ratio,
+  snprintf(at.name, sizeof(at.name), "graded/%s/%g/%s/%s%s%s", entry->name, entry->ratio,
     entry->field == MCOR_WEIGHT_SUM ? "weight"
       : entry->field == MCOR_SUM    ? "sum"
                                     : "shepard",
-    mcor_sph_kernel_name(entry->kernel), entry->precision == MCOR_FLOAT64 ? "/double" : "");
+    mcor_sph_kernel_name(entry->kernel), entry->precision == MCOR_FLOAT64 ? "/double" : "",
+    solids_names[entry->solids]);
   oracle_run_case(suite, &at);
   particle_set_free(&set);
 }
@@ -190,16 +205,41 @@ static void run_entry(oracle_suite* suite, const graded_entry* entry)
 int main(int argc, char** argv)
 {
   static const graded_entry entries[] = {
-    { "drops", particle_set_drops, 10, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "drops", particle_set_drops, 100, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT64 },
-    { "drops", particle_set_drops, 10, 0.1, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "drops", particle_set_drops, 100, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "medium", particle_set_medium, 10, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "medium", particle_set_medium, 100, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "medium", particle_set_medium, 1000, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
-    { "medium", particle_set_medium, 1000, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32 },
+    { "drops", particle_set_drops, 10, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "drops", particle_set_drops, 100, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT64,
+      SOLIDS_NONE },
+    { "drops", particle_set_drops, 10, 0.1, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "drops", particle_set_drops, 100, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "medium", particle_set_medium, 10, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "medium", particle_set_medium, 100, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "medium", particle_set_medium, 1000, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "medium", particle_set_medium, 1000, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_NONE },
+    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_WEIGHT },
+    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_IGNORE },
+    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_WALL },
+    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT64,
+      SOLIDS_WALL },
+    { "basin", particle_set_basin, 4, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_WEIGHT },
+    { "basin", particle_set_basin, 4, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_WALL },
+    { "basin", particle_set_basin, 2.2, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
+      SOLIDS_WALL },
+    { "basin", particle_set_basin, 4, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32, SOLIDS_WALL },
   };
   oracle_suite suite;
   if (!oracle_begin_suite(&suite, argc, argv))

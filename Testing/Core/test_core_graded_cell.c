@@ -9,7 +9,8 @@
  * depend on its nodes alone and are reversed on its other side, so each line between two cells has
  * one triangle on each side, or is one of two that a third cell joins without a triangle. All other
  * sides of triangles are diagonals; one within a single facet or cell edge could be a side in another
- * cell too, and there are none, but in loops within a whole face. */
+ * cell too, and there are none, but in loops within a whole face. Of a face with four nodes there are none at
+ * all: the cell beyond, where the field decides, may have some. */
 
 #include "core_graded.h"
 
@@ -85,6 +86,22 @@ static int find_root(const int* parent, int i)
   return i;
 }
 
+/* Whether one of these faces has its four corners alone as nodes. */
+static int is_plain(const core_shape* cell, int faces)
+{
+  int plain = 0;
+  for (int face = 0; face < 6; ++face)
+  {
+    uint32_t split = 0;
+    for (int i = 1; i < 8; i += 2)
+    {
+      split |= cell->split >> mcor_graded_face_node(face, i) & 1;
+    }
+    plain |= (faces >> face & 1) && !split;
+  }
+  return plain;
+}
+
 /* All sides are segments, each of them once, or diagonals that may be; the triangles of each loop
  * hang together by its n - 3 diagonals, so they are a disc. */
 static void check_triangles(const core_shape* cell, uint32_t above,
@@ -116,6 +133,9 @@ static void check_triangles(const core_shape* cell, uint32_t above,
     }
     CORE_CHECK(!cell->forbidden[a][b] || loops->in_whole[loop],
       "split %x, above %x: diagonal %d-%d", cell->split, above, a, b);
+    /* A cell without finer nodes may have diagonals in its faces, see mcor_case_table.c. */
+    CORE_CHECK(!is_plain(cell, loops->in_whole[loop]), "split %x, above %x: flat in a plain face",
+      cell->split, above);
     if (a < b)
     {
       const int one = find_root(parent, side[a][b]), other = find_root(parent, side[b][a]);

@@ -12,6 +12,7 @@
 #include "mcor_graded.h"
 #include "mcor_graded_box.h"
 #include "mcor_graded_seed.h"
+#include "mcor_graded_topology.h"
 #include "mcor_tree.h"
 
 #include <math.h>
@@ -343,9 +344,10 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
   mcor_buffer* owned = &context->box.owned;
   MCOR_TRY(mcor_reserve(context, owned, context->box.is_part ? triangles : 1));
   return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context), MCOR_BUFFER(owned),
-    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+    MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context), MCOR_LEAF_DECISION_ARGS(context),
+    MCOR_BUFFER(owned), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&mesh->triangles));
 }
 
 /* Counts the triangles of each level, in the box where there is one. */
@@ -390,6 +392,7 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
     return MCOR_OK;
   }
   MCOR_TRY(mcor_count_leaves(context));
+  MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_leaves(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, context->bricks.now.count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, context->graded.count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;

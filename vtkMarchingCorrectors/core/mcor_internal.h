@@ -196,6 +196,7 @@ typedef struct mcor_topology_data
   mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
   mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
   mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
+  mcor_buffer plain, used; /* ulong: of adaptive cubes, see mcor_graded_topology.c */
 } mcor_topology_data;
 
 /* Points at which the field is evaluated, see mcor_make_groups. */
@@ -459,6 +460,8 @@ mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_find_side_flags(mcor_context* context, double iso);
+mcor_status mcor_begin_topology(mcor_context* context);
+mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
 mcor_status mcor_count_resolved(mcor_context* context);
 mcor_status mcor_emit_resolved(mcor_context* context);
@@ -539,6 +542,7 @@ extern const char mcor_source_mcor_block_cl[];
 extern const char mcor_source_mcor_march_cl[];
 extern const char mcor_source_mcor_pair_cl[];
 extern const char mcor_source_mcor_correct_cl[];
+extern const char mcor_source_mcor_topology_row_cl[];
 extern const char mcor_source_mcor_topology_cl[];
 extern const char mcor_source_mcor_boundary_cl[];
 extern const char mcor_source_mcor_trim_cl[];
@@ -553,6 +557,7 @@ extern const char mcor_source_mcor_graded_cell_h[];
 extern const char mcor_source_mcor_graded_seed_cl[];
 extern const char mcor_source_mcor_graded_cl[];
 extern const char mcor_source_mcor_graded_march_cl[];
+extern const char mcor_source_mcor_graded_topology_cl[];
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \

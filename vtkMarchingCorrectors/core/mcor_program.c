@@ -54,13 +54,16 @@ int mcor_program_sources(
     { mcor_source_mcor_pair_cl, OPTIONS },
     { mcor_source_mcor_attribute_cl, FIELD | OPTIONS | PROBE },
     { mcor_source_mcor_evaluate_cl, FIELD | OPTIONS },
-    { mcor_source_mcor_correct_cl, FIELD | OPTIONS }, { mcor_source_mcor_topology_cl, OPTIONS },
-    { mcor_source_mcor_boundary_cl, trim | OPTIONS }, { mcor_source_mcor_trim_cl, LATTICE | trim },
+    { mcor_source_mcor_correct_cl, FIELD | OPTIONS },
+    { mcor_source_mcor_topology_row_cl, OPTIONS | GRADED },
+    { mcor_source_mcor_topology_cl, OPTIONS }, { mcor_source_mcor_boundary_cl, trim | OPTIONS },
+    { mcor_source_mcor_trim_cl, LATTICE | trim },
     { mcor_source_mcor_box_cl, LATTICE | FIELD | OPTIONS }, { mcor_source_mcor_cap_cl, OPTIONS },
     { mcor_source_mcor_probe_cl, PROBE },
     { vectors ? mcor_source_mcor_probe_lanes_cl : mcor_source_mcor_probe_point_cl, PROBE },
     { mcor_source_mcor_derive_cl, PROBE }, { mcor_source_mcor_graded_cell_h, GRADED },
-    { mcor_source_mcor_graded_seed_cl, GRADED }, { mcor_source_mcor_graded_cl, GRADED }, { mcor_source_mcor_graded_march_cl, GRADED } };
+    { mcor_source_mcor_graded_seed_cl, GRADED }, { mcor_source_mcor_graded_cl, GRADED },
+    { mcor_source_mcor_graded_march_cl, GRADED }, { mcor_source_mcor_graded_topology_cl, GRADED } };
   int count = 0;
   for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
   {

@@ -4,7 +4,7 @@
 /* Topology by the field: what Marching Cubes leaves ambiguous is decided by samples of the
  * field. */
 
-#include "mcor_internal.h"
+#include "mcor_graded.h"
 
 #include <stdlib.h>
 
@@ -28,6 +28,34 @@ static mcor_status mcor_upload_topology_table(mcor_context* context)
   return status;
 }
 
+/* The first sample of a level of adaptive cubes: slots are in the order of their levels. */
+static mcor_status mcor_first_sample(mcor_context* context, int level, int* first)
+{
+  const size_t slot = (size_t)context->graded.first_slot[level];
+  return mcor_read(
+    context, &context->topology.sample_base, slot * sizeof(cl_int), first, sizeof(cl_int));
+}
+
+/* Evaluates the samples, level by level. */
+static mcor_status mcor_find_sides(mcor_context* context, double iso, int sample_count)
+{
+  mcor_topology_data* topology = &context->topology;
+  const int top = context->lattice.top;
+  int first = 0, end, groups;
+  for (int l = 0; l <= top; ++l, first = end)
+  {
+    end = sample_count;
+    MCOR_TRY(l < top ? mcor_first_sample(context, l + 1, &end) : MCOR_OK);
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(mcor_make_groups(context, &topology->sample_node, first, end - first, &groups));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups,
+      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
+      MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset), MCOR_REAL(iso),
+      MCOR_BUFFER(&topology->sample_side)));
+  }
+  return mcor_view_level(context, 0);
+}
+
 /* Makes room for the samples that sample_base counts and lets `locate` place them; evaluates
  * them. */
 static mcor_status mcor_evaluate_samples(
@@ -36,7 +64,6 @@ static mcor_status mcor_evaluate_samples(
   mcor_bricks* bricks = &context->bricks;
   mcor_topology_data* topology = &context->topology;
   const int count = bricks->now.count;
-  int groups;
   MCOR_TRY(mcor_scan(context, &topology->sample_base, count, sample_count));
   const size_t n = (size_t)*sample_count;
   MCOR_TRY(mcor_reserve(context, &topology->sample_node, n * sizeof(cl_int4)));
@@ -47,23 +74,15 @@ static mcor_status mcor_evaluate_samples(
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&topology->sample_base), MCOR_REAL(iso), MCOR_BUFFER(&topology->sample_node),
     MCOR_BUFFER(&topology->sample_offset)));
-  MCOR_TRY(mcor_make_groups(context, &topology->sample_node, 0, *sample_count, &groups));
-  return MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&topology->sample_node),
-    MCOR_BUFFER(&topology->sample_offset), MCOR_REAL(iso), MCOR_BUFFER(&topology->sample_side));
+  return mcor_find_sides(context, iso, *sample_count);
 }
 
 static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
 {
-  mcor_mesh* mesh = &context->mesh;
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   mcor_buffer* counts = &topology->counts;
   int faces, joined;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
-    MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_saddles", iso, &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_MEDIUM, count, MCOR_INT(count),
@@ -75,14 +94,13 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   return MCOR_OK;
 }
 
-static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
+static mcor_status mcor_resolve_cells(mcor_context* context, const mcor_buffer* used, double iso)
 {
-  mcor_mesh* mesh = &context->mesh;
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
@@ -93,17 +111,36 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
     MCOR_BUFFER(&topology->decisions));
 }
 
-/* Decides on all ambiguous faces, then on the cells whose loops may be a tunnel. iso: relative to
- * A0. */
-mcor_status mcor_resolve_topology(mcor_context* context, double iso)
+/* Tables, and room for what is decided; sample_base: counts. */
+mcor_status mcor_begin_topology(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
   const size_t n = (size_t)context->bricks.now.count;
   MCOR_TRY(mcor_upload_topology_table(context));
   MCOR_TRY(mcor_reserve(context, &topology->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int)));
+  return mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int));
+}
+
+/* Decides on the faces in `decisions`, of which sample_base has each slot's number; then on the cells
+ * whose loops may be a tunnel. used: ulong, cells by slot. iso: relative to A0. */
+mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso)
+{
   MCOR_TRY(mcor_resolve_faces(context, iso));
-  return mcor_resolve_cells(context, iso);
+  return mcor_resolve_cells(context, used, iso);
+}
+
+/* Decides on all ambiguous faces and such cells of the uniform lattice. */
+mcor_status mcor_resolve_topology(mcor_context* context, double iso)
+{
+  const mcor_mesh* mesh = &context->mesh;
+  const mcor_topology_data* topology = &context->topology;
+  const int count = context->bricks.now.count;
+  MCOR_TRY(mcor_begin_topology(context));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&topology->sample_base)));
+  return mcor_decide_topology(context, &mesh->used, iso);
 }
 
 /* Counts the triangles of each brick anew. */
@@ -143,5 +180,5 @@ void mcor_release_topology(mcor_context* context)
 {
   mcor_topology_data* t = &context->topology;
   MCOR_RELEASE(context, &t->decisions, &t->counts, &t->sample_base, &t->sample_node,
-    &t->sample_offset, &t->sample_side);
+    &t->sample_offset, &t->sample_side, &t->plain, &t->used);
 }

@@ -442,9 +442,15 @@ __kernel void mcor_graded_clip(
   clipped[i] = within;
 }
 
+/* How a cell without finer nodes is cut: as the field decided, else by the case table. */
+#define MCOR_LEAF_DECISION_PARAMS                                                                  \
+  const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
+    __global const int *cases, __global const mcor_cell_row *rows
+
 /* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, where
  * there is a box, whether their cells are in it. */
-__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS, __global uchar* owned,
+__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
+  MCOR_LEAF_DECISION_PARAMS, __global uchar* owned,
   __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
   __global const int* triangle_base, __global int* triangles)
 {
@@ -474,7 +480,15 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS, __gl
     else
     {
       __global const uchar* row = case_table + mcor_march_case(leaf.corners_above, cell) * 16;
-      for (int k = 0; k < 3 * row[15]; ++k)
+      int made = row[15], tunnel;
+      if (resolved)
+      {
+        __global const mcor_cell_row* decided = mcor_topology_cell(
+          leaf.corners_above, neighbours, decisions, cases, rows, leaf.slots[0], cell, &tunnel);
+        row = decided->edges;
+        made = decided->triangles;
+      }
+      for (int k = 0; k < 3 * made; ++k)
       {
         const int c = row[k] & 7, lower = 2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2);
         *to++ = mcor_leaf_vertex(&leaf, cell, 0, row[k] >> 3, lower, edges, vertex_base);

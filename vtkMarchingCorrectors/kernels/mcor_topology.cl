@@ -12,13 +12,6 @@
 #define MCOR_SAMPLE_ABOVE 1
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
-ulong mcor_from_last(int axis, ulong m, ulong last)
-{
-  return axis == 0 ? mcor_from_last_x(m, last)
-    : axis == 1    ? mcor_from_last_y(m, last)
-                   : mcor_from_last_z(m, last);
-}
-
 /* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next
  * to used cells, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
@@ -37,9 +30,8 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   int count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
     const ulong reached = lower[0] | mcor_from_last(axis, lower[0], lower[1 << axis]);
-    const ulong ambiguous = reached & (m[0] ^ m[du]) & (m[0] ^ m[dv]) & ~(m[0] ^ m[du | dv]);
+    const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
     count += (int)popcount(ambiguous);
   }
@@ -156,28 +148,6 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
     count += (int)popcount(joined);
   }
   joined_count[slot] = count;
-}
-
-/* First row of a cell's case, plus that of its decisions on faces. corners: see
- * mcor_cell_corners. */
-int mcor_topology_row(const ulong* corners, __global const int* neighbours,
-  __global const ulong* decisions, __global const int* cases, int slot, int cell)
-{
-  const int entry = cases[mcor_march_case(corners, cell)];
-  int row = entry >> 6, bit = 1;
-  for (int face = 0; face < 6; ++face)
-  {
-    if (entry >> face & 1)
-    {
-      const int axis = face >> 1, shift = 2 * axis;
-      const int outside = face & 1 & ((cell >> shift & 3) == 3);
-      const int owner = outside ? neighbours[slot * 14L + (1 << axis) - 1] : slot;
-      const int n = outside ? cell - (3 << shift) : cell + ((face & 1) << shift);
-      row += decisions[owner * (long)MCOR_DECISION_MASKS + axis] >> n & 1 ? bit : 0;
-      bit <<= 1;
-    }
-  }
-  return row;
 }
 
 /* One work-item = one brick. Reads used cells and joined faces. Writes the cells that may have a
@@ -336,20 +306,6 @@ __kernel void mcor_topology_agree(const int brick_count, __global const int* bas
   }
   cells[0] = below;
   cells[1] = above;
-}
-
-/* The row of a cell with all that was decided. *tunnel: whether it has a tunnel. */
-__global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
-  __global const int* neighbours, __global const ulong* decisions, __global const int* cases,
-  __global const mcor_cell_row* rows, int slot, int cell, int* tunnel)
-{
-  __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
-  const int first = cases[mcor_march_case(corners, cell)] >> 6;
-  const int row = mcor_topology_row(corners, neighbours, decisions, cases, slot, cell);
-  __global const uchar* choice = rows[row].tunnel;
-  const int other = cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
-  *tunnel = other != 0;
-  return rows + (other ? first + other : row);
 }
 
 /* One work-item = one brick. Reads all decisions. Writes the numbers of triangles and of

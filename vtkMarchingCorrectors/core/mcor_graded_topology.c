@@ -1,0 +1,50 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: topology by the field, on faces between cells that are as on the uniform lattice. */
+
+#include "mcor_graded_topology.h"
+
+/* The slots' neighbours and plain cells, and the faces to decide on. */
+static mcor_status mcor_find_plain_faces(mcor_context* context)
+{
+  const mcor_graded* graded = &context->graded;
+  const int slots = context->bricks.now.count;
+  const size_t n = (size_t)slots;
+  mcor_topology_data* topology = &context->topology;
+  mcor_buffer* neighbours = &context->bricks.neighbours;
+  context->bricks.neighbours_valid = false; /* for the uniform lattice */
+  MCOR_TRY(mcor_fill(context, neighbours, 0xff, n * 14 * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &topology->plain, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &topology->used, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_graded_plain", MCOR_MEDIUM, graded->count, MCOR_INT(graded->count),
+      MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->mesh.used),
+      MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain), MCOR_BUFFER(&topology->used)));
+  return MCOR_LAUNCH(context, "mcor_graded_faces", MCOR_MEDIUM, slots, MCOR_INT(slots),
+    MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain), MCOR_BUFFER(&topology->used),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&topology->sample_base));
+}
+
+/* Decides, and counts the triangles of each leaf anew. iso: relative to A0. */
+mcor_status mcor_resolve_leaves(mcor_context* context, double iso)
+{
+  const mcor_graded* graded = &context->graded;
+  mcor_topology_data* topology = &context->topology;
+  mcor_buffer* counts = &topology->counts;
+  int tunnels;
+  MCOR_TRY(mcor_begin_topology(context));
+  MCOR_TRY(mcor_find_plain_faces(context));
+  MCOR_TRY(mcor_decide_topology(context, &topology->used, iso));
+  MCOR_TRY(mcor_reserve(context, counts, ((size_t)graded->count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_recount", MCOR_MEDIUM, graded->count,
+    MCOR_INT(graded->count), MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->bricks.neighbours),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->used),
+    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),
+    MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&context->mesh.triangle_base),
+    MCOR_BUFFER(counts)));
+  MCOR_TRY(mcor_scan(context, counts, graded->count, &tunnels));
+  context->statistics->tunnels += tunnels;
+  return MCOR_OK;
+}

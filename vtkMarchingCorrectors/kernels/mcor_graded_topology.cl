@@ -1,0 +1,91 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes, topology by the field. A cell is plain where no finer leaf touches it, not even its
+ * corner. The field decides on the faces between two plain cells of one level, and on tunnels in plain
+ * cells, as on the uniform lattice; all other ambiguous faces are as in the case table. Which faces these are
+ * is up to the leaves alone, so that cells on both sides agree. Slots are seen as the uniform lattice's
+ * bricks: plain cells have all their nodes in slots of their level. */
+
+/* One work-item = one leaf. Writes of its slot which cells are plain, and which of these are used; enters
+ * it and the slots up from it into each other's lists, see mcor_brick_neighbours. */
+__kernel void mcor_graded_plain(const int count, __global const uint* finer,
+  __global const int* tables, __global const ulong* used, __global int* neighbours,
+  __global ulong* plain, __global ulong* plain_used)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
+  const int slot = slots[0];
+  const ulong cells = ~mcor_leaf_graded_cells(mcor_leaf_hanging(finer[i]));
+  plain[slot] = cells;
+  plain_used[slot] = cells & used[i];
+  for (int d = 1; d < 8; ++d)
+  {
+    if (slots[d] >= 0)
+    {
+      neighbours[slot * 14L + d - 1] = slots[d];
+      neighbours[slots[d] * 14L + d + 6] = slot;
+    }
+  }
+}
+
+/* One work-item = one slot. Writes the ambiguous faces between plain cells, next to used ones, and their
+ * number. */
+__kernel void mcor_graded_faces(const int slot_count, __global const int* neighbours,
+  __global const ulong* plain, __global const ulong* used, __global const ulong* above,
+  __global ulong* decisions, __global int* counts)
+{
+  const int slot = get_global_id(0);
+  if (slot >= slot_count)
+  {
+    return;
+  }
+  ulong m[8], p[8], u[8];
+  mcor_brick_masks(plain, neighbours, slot, 7, p);
+  mcor_brick_masks(used, neighbours, slot, 7, u);
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
+  int count = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const ulong between = p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
+    const ulong reached = between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
+    const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
+    decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
+    count += (int)popcount(ambiguous);
+  }
+  counts[slot] = count;
+}
+
+/* One work-item = one leaf. Reads all decisions. Adds to its number of triangles what its plain cells have
+ * more or fewer than by the case table; writes the number of their tunnels. */
+__kernel void mcor_graded_recount(const int count, __global const int* tables,
+  __global const int* neighbours, __global const ulong* above, __global const ulong* used,
+  __global const ulong* decisions, __global const int* cases, __global const mcor_cell_row* rows,
+  __global const uchar* case_table, __global int* triangle_count, __global int* tunnel_count)
+{
+  const int i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const int slot = tables[i * (long)MCOR_LEAF_SLOTS];
+  ulong m[8];
+  mcor_brick_masks(above, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
+  int triangles = 0, tunnels = 0, tunnel;
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    triangles +=
+      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel)->triangles -
+      case_table[mcor_march_case(m, cell) * 16 + 15];
+    tunnels += tunnel;
+  }
+  triangle_count[i] += triangles;
+  tunnel_count[i] = tunnels;
+}

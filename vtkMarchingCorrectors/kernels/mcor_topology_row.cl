@@ -1,0 +1,55 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Topology by the field: what the decisions on faces and cells say of a cell. */
+
+/* At each place of a brick what is one place before it along an axis; last: of the brick before. */
+ulong mcor_from_last(int axis, ulong m, ulong last)
+{
+  return axis == 0 ? mcor_from_last_x(m, last)
+    : axis == 1    ? mcor_from_last_y(m, last)
+                   : mcor_from_last_z(m, last);
+}
+
+/* Faces across an axis, by their lowest node, that are ambiguous. corners: see mcor_cell_corners. */
+ulong mcor_ambiguous_faces(const ulong* corners, int axis)
+{
+  const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
+  return (corners[0] ^ corners[du]) & (corners[0] ^ corners[dv]) & ~(corners[0] ^ corners[du | dv]);
+}
+
+/* First row of a cell's case, plus that of its decisions on faces. corners: see
+ * mcor_cell_corners. */
+int mcor_topology_row(const ulong* corners, __global const int* neighbours,
+  __global const ulong* decisions, __global const int* cases, int slot, int cell)
+{
+  const int entry = cases[mcor_march_case(corners, cell)];
+  int row = entry >> 6, bit = 1;
+  for (int face = 0; face < 6; ++face)
+  {
+    if (entry >> face & 1)
+    {
+      const int axis = face >> 1, shift = 2 * axis;
+      const int outside = face & 1 & ((cell >> shift & 3) == 3);
+      const int owner = outside ? neighbours[slot * 14L + (1 << axis) - 1] : slot;
+      const int n = outside ? cell - (3 << shift) : cell + ((face & 1) << shift);
+      row += decisions[owner * (long)MCOR_DECISION_MASKS + axis] >> n & 1 ? bit : 0;
+      bit <<= 1;
+    }
+  }
+  return row;
+}
+
+/* The row of a cell with all that was decided. *tunnel: whether it has a tunnel. */
+__global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
+  __global const int* neighbours, __global const ulong* decisions, __global const int* cases,
+  __global const mcor_cell_row* rows, int slot, int cell, int* tunnel)
+{
+  __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
+  const int first = cases[mcor_march_case(corners, cell)] >> 6;
+  const int row = mcor_topology_row(corners, neighbours, decisions, cases, slot, cell);
+  __global const uchar* choice = rows[row].tunnel;
+  const int other = cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
+  *tunnel = other != 0;
+  return rows + (other ? first + other : row);
+}

@@ -96,10 +96,10 @@ extern "C"
    * of 2^L times the cube size where all particles that reach a brick of 4^3 such cubes have 2^L
    * times the smallest smoothing length or more; bricks that touch differ by one level at most. The
    * surface is closed across levels. With one smoothing length for all it is that of uniform cubes,
-   * to the last bit. MCOR_TOPOLOGY_FIELD decides on faces between two cubes that no finer
-   * cube touches, and in such cubes; all other ambiguous faces are as with MCOR_TOPOLOGY_TABLE. With a
-   * period, which is a whole number of the largest bricks, there may be
-   * fewer levels: see mcor_statistics.highest_level. Not with MCOR_PAIRS. */
+   * to the last bit. With MCOR_TOPOLOGY_FIELD the field decides on faces between two cubes that no
+   * finer cube touches, and in such cubes; other ambiguous faces are as with MCOR_TOPOLOGY_TABLE.
+   * With a period, which is a whole number of the largest bricks, there may be fewer levels: see
+   * mcor_statistics.highest_level. Not with MCOR_PAIRS. */
   typedef enum mcor_cube_size_mode
   {
     MCOR_CUBES_UNIFORM = 0, /* all alike; the default */

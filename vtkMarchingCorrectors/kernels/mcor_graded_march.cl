@@ -442,11 +442,6 @@ __kernel void mcor_graded_clip(
   clipped[i] = within;
 }
 
-/* How a cell without finer nodes is cut: as the field decided, else by the case table. */
-#define MCOR_LEAF_DECISION_PARAMS                                                                  \
-  const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
-    __global const int *cases, __global const mcor_cell_row *rows
-
 /* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, where
  * there is a box, whether their cells are in it. */
 __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,

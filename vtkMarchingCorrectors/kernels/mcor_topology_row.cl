@@ -53,3 +53,9 @@ __global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
   *tunnel = other != 0;
   return rows + (other ? first + other : row);
 }
+
+/* Of adaptive cubes, how a cell without finer nodes is cut: as the field decided where it is resolved, else
+ * by the case table. */
+#define MCOR_LEAF_DECISION_PARAMS                                                                  \
+  const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
+    __global const int *cases, __global const mcor_cell_row *rows

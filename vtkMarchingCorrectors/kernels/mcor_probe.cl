@@ -41,16 +41,20 @@ __kernel void mcor_probe_order(const int count, __global const int* order,
 void mcor_probe_put(const mcor_points* points, realv weight, const realv* sums,
   __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
   {
-    const long v = points->index[lane];
-    for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
+    for (int lane = 0; lane < MCOR_LANES && c < attribute_count; ++lane)
     {
-      if (c < attribute_count && v >= 0)
+      const long v = points->index[lane];
+      if (v >= 0)
       {
         means[v * attribute_count + c] = MCOR_GET(sums[c], lane);
       }
     }
+  }
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const long v = points->index[lane];
     if (v >= 0)
     {
       weight_sum[v] = MCOR_GET(weight, lane);

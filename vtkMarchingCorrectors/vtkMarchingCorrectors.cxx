@@ -209,7 +209,9 @@ void vtkMarchingCorrectors::Extract(
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
-  this->EstimateRun(input.Core, options);
+  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(
+    input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
+  this->WarnOfHugeRun();
   mcor_surface surface = {};
   if (!this->CallCore(input, options,
         [&](mcor_context* context)
@@ -254,9 +256,8 @@ void vtkMarchingCorrectors::ClearSummary()
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::EstimateRun(const mcor_input& input, const mcor_options& options)
+void vtkMarchingCorrectors::WarnOfHugeRun()
 {
-  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(input, options);
   if (this->EstimatedCells >= vtkMarchingCorrectorsHugeCells)
   {
     vtkWarningMacro(<< this->BlockName << "The fluid fills about " << this->EstimatedCells
@@ -282,6 +283,12 @@ double vtkMarchingCorrectors::GetNextCells()
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectors::LookAhead()
 {
+  if (this->IsShared())
+  {
+    std::copy_n(this->FluidScalarRange, 2, this->NextScalarRange);
+    this->NextCells = this->EstimatedCells;
+    return;
+  }
   vtkDataObject* data =
     this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
   if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
@@ -324,7 +331,8 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
         this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
         this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
       }
-      this->NextCells += vtkMarchingCorrectorsEstimateCells(input.Core, options);
+      this->NextCells += vtkMarchingCorrectorsEstimateCells(
+        input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
       return;
     }
   }

@@ -616,7 +616,8 @@ public:
    * What an update with the properties and the input as they are now would find: the range that
    * FluidScalarRange would have, and the cells of EstimatedCells (of all blocks). The input is read as
    * it is, and not updated. 0 to 0, or 0, where it is not known: without particles, or without a
-   * scalar.
+   * scalar. Where processes share a run these are the last update's: one process alone has but some of
+   * the particles, and to ask the others could be to wait for ever.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2);
   double GetNextCells();
@@ -683,6 +684,7 @@ private:
   void ProcessTogether(vtkPointSet* particles, vtkPolyData* output);
   std::vector<double> ListIsoValuesTogether(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
+  void EstimateTogether(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
   void FinishTogether(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
@@ -693,7 +695,7 @@ private:
   void ClearSummary();
   void LookAhead();
   void LookAhead(vtkPointSet* particles, const mcor_options& options);
-  void EstimateRun(const mcor_input& input, const mcor_options& options);
+  void WarnOfHugeRun();
   void Summarize(
     const mcor_input& input, const mcor_options& options, const mcor_statistics& statistics);
   std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);

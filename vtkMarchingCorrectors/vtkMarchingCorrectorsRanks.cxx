@@ -102,6 +102,20 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValuesTogether(
 }
 
 //------------------------------------------------------------------------------
+void vtkMarchingCorrectors::EstimateTogether(
+  vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
+{
+  double least = vtkMarchingCorrectorsLeastLength(own);
+  ranks.Reduce(vtkSPHRanks::LEAST, &least, 1);
+  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(own, options, least);
+  ranks.Reduce(vtkSPHRanks::SUM, &this->EstimatedCells, 1);
+  if (ranks.GetRank() == 0)
+  {
+    this->WarnOfHugeRun();
+  }
+}
+
+//------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData* output)
 {
@@ -153,6 +167,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   {
     return;
   }
+  this->EstimateTogether(ranks, mine.Core, options);
   vtkSPHRanksBalance balance;
   if (this->Partition == BY_WORK)
   {

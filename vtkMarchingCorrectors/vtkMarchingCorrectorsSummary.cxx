@@ -3,6 +3,7 @@
 #include "vtkMarchingCorrectorsSummary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <sstream>
@@ -45,27 +46,33 @@ std::string Name(const mcor_array& array)
 }
 
 //------------------------------------------------------------------------------
-double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_options& options)
+double vtkMarchingCorrectorsLeastLength(const mcor_input& input)
 {
-  // In units of the smoothing length or, as a factor of it, the support radius.
-  double cubes = 0.0, smallest = std::numeric_limits<double>::infinity();
-  double count = 0.0;
+  double least = std::numeric_limits<double>::infinity();
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])
     {
-      const double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
-      smallest = std::min(smallest, h);
-      count += 1.0;
+      least =
+        std::min(least, input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i));
     }
   }
+  return least;
+}
+
+//------------------------------------------------------------------------------
+double vtkMarchingCorrectorsEstimateCells(
+  const mcor_input& input, const mcor_options& options, double least)
+{
+  // In units of the smoothing length or, as a factor of it, the support radius.
+  double cubes = 0.0;
   const bool isAdaptive = options.cube_size_mode == MCOR_CUBES_ADAPTIVE;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])
     {
       double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
-      for (int level = 0; isAdaptive && level < options.level_limit && h >= 2.0 * smallest; ++level)
+      for (int level = 0; isAdaptive && level < options.level_limit && h >= 2.0 * least; ++level)
       {
         h *= 0.5; // its cubes are larger
       }
@@ -73,7 +80,7 @@ double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_op
     }
   }
   const bool isKnown = !input.estimate_smoothing_length || options.cube_size <= 0.0;
-  if (count == 0.0 || !isKnown)
+  if (!std::isfinite(least) || !isKnown)
   {
     return 0.0;
   }
@@ -82,7 +89,7 @@ double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_op
     ? 1.0 / mcor_support_factor(options.sph_kernel)
     : 1.0;
   const double size =
-    options.cube_size > 0.0 ? options.cube_size : options.cube_size_factor * smallest * perLength;
+    options.cube_size > 0.0 ? options.cube_size : options.cube_size_factor * least * perLength;
   const double spacing = perLength / 1.3;
   return size > 0.0 ? cubes * spacing * spacing * spacing / (size * size * size) : 0.0;
 }

@@ -18,11 +18,19 @@ class vtkMarchingCorrectorsInput;
 constexpr double vtkMarchingCorrectorsHugeCells = 1e9;
 
 /**
+ * The least smoothing length of the fluid, as the input has it; 1 where it is estimated in the run.
+ * Infinite without fluid.
+ */
+double vtkMarchingCorrectorsLeastLength(const mcor_input& input);
+
+/**
  * About how many cubes of the virtual grid the fluid (in the box, if there is one) fills: a particle
  * takes (h / 1.3)^3. 0 where
- * the smoothing length is estimated in the run and the cube size does not follow from it.
+ * the smoothing length is estimated in the run and the cube size does not follow from it. least: of
+ * vtkMarchingCorrectorsLeastLength, over all processes that share the run.
  */
-double vtkMarchingCorrectorsEstimateCells(const mcor_input& input, const mcor_options& options);
+double vtkMarchingCorrectorsEstimateCells(
+  const mcor_input& input, const mcor_options& options, double least);
 
 /** "0.0236", "0.02 to 0.045 (array h)": at most six digits. */
 std::string vtkMarchingCorrectorsDescribeSmoothingLength(

@@ -5,14 +5,13 @@
 #include "vtkArrayDispatch.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDoubleArray.h"
-#include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 namespace
@@ -131,30 +130,29 @@ std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array
 bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2])
 {
   const double none = std::numeric_limits<double>::infinity();
-  using Range = std::array<double, 2>;
-  vtkSMPThreadLocal<Range> ranges(Range{ { none, -none } });
+  double all[2] = { none, -none };
+  std::mutex guard;
   vtkSMPTools::For(0, core.count,
     [&](vtkIdType begin, vtkIdType end)
     {
-      Range& local = ranges.Local();
+      double low = none, high = -none;
       for (vtkIdType i = begin; i < end; ++i)
       {
         const double value =
           core.solid && core.solid[i] ? none : vtkMarchingCorrectorsScalarOf(core, i);
         if (std::isfinite(value))
         {
-          local = { { std::min(local[0], value), std::max(local[1], value) } };
+          low = std::min(low, value);
+          high = std::max(high, value);
         }
       }
+      const std::lock_guard<std::mutex> lock(guard);
+      all[0] = std::min(all[0], low);
+      all[1] = std::max(all[1], high);
     });
-  Range all = { { none, -none } };
-  for (const Range& local : ranges)
-  {
-    all = { { std::min(all[0], local[0]), std::max(all[1], local[1]) } };
-  }
   if (all[0] <= all[1])
   {
-    std::copy(all.begin(), all.end(), range);
+    std::copy_n(all, 2, range);
   }
   return all[0] <= all[1];
 }

@@ -13,6 +13,7 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

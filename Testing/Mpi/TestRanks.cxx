@@ -8,6 +8,7 @@
 #include "RankParts.h"
 #include "RankSurfaces.h"
 
+#include "vtkCommunicator.h"
 #include "vtkDataArray.h"
 #include "vtkMPIController.h"
 #include "vtkMarchingCorrectors.h"
@@ -16,6 +17,8 @@
 #include "vtkPolyData.h"
 #include "vtkXMLPolyDataReader.h"
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -153,16 +156,38 @@ vtkSmartPointer<vtkPolyData> Read(const std::string& file)
   return reader->GetOutput();
 }
 
-vtkSmartPointer<vtkPolyData> Extract(
-  const Setup& setUp, vtkPolyData* particles, vtkMultiProcessController* controller)
+/// A surface, and what the filter says of it: ranges and cells, of the run and of the next one.
+struct Extracted
+{
+  vtkSmartPointer<vtkPolyData> Surface;
+  std::array<double, 6> Said = {};
+};
+
+Extracted Extract(const Setup& setUp, vtkPolyData* particles, vtkMultiProcessController* controller)
 {
   vtkNew<vtkMarchingCorrectors> filter;
   filter->SetController(controller);
   setUp(filter);
   filter->SetInputData(particles);
   filter->Update();
-  vtkSmartPointer<vtkPolyData> surface = filter->GetOutput();
-  return surface;
+  const double *range = filter->GetFluidScalarRange(), *next = filter->GetNextScalarRange();
+  return { filter->GetOutput(),
+    { range[0], range[1], filter->GetEstimatedCells(), next[0], next[1], filter->GetNextCells() } };
+}
+
+/// Whether all ranks say what rank 0 said alone, up to the rounding of sums.
+bool SayTheSame(vtkMultiProcessController* controller, const Extracted& own, Extracted whole)
+{
+  const int count = static_cast<int>(whole.Said.size());
+  controller->Broadcast(whole.Said.data(), count, 0);
+  int wrong = 0, wrongAnywhere = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    wrong += std::fabs(own.Said[i] - whole.Said[i]) <= 1e-12 * std::fabs(whole.Said[i]) ? 0 : 1;
+  }
+  wrong += whole.Said[2] > 0 ? 0 : 1;
+  controller->AllReduce(&wrong, &wrongAnywhere, 1, vtkCommunicator::MAX_OP);
+  return wrongAnywhere == 0;
 }
 
 /// Returns how many partitions give another surface.
@@ -170,15 +195,15 @@ int Check(const Case& tried, const std::string& folder, vtkMPIController* contro
 {
   const vtkSmartPointer<vtkPolyData> particles = Read(folder + "/" + tried.File + ".vtp");
   const bool isFirst = controller->GetLocalProcessId() == 0;
-  const vtkSmartPointer<vtkPolyData> whole =
-    isFirst ? Extract(tried.SetUp, particles, nullptr) : nullptr;
+  const Extracted whole = isFirst ? Extract(tried.SetUp, particles, nullptr) : Extracted();
   int failures = 0;
   for (int part = 0; part < PartCount; ++part)
   {
     const vtkSmartPointer<vtkPolyData> own = TakePart(
       particles, part, controller->GetLocalProcessId(), controller->GetNumberOfProcesses());
-    const vtkSmartPointer<vtkPolyData> surface = Extract(tried.SetUp, own, controller);
-    const std::string problem = CompareWithWhole(controller, surface, whole);
+    const Extracted made = Extract(tried.SetUp, own, controller);
+    std::string problem = CompareWithWhole(controller, made.Surface, whole.Surface);
+    problem += SayTheSame(controller, made, whole) ? "" : "other ranges or numbers of cells";
     if (isFirst)
     {
       failures += problem.empty() ? 0 : 1;

@@ -376,10 +376,126 @@ static void lengths(void** state)
   core_free_set(&set);
 }
 
+/* The set's scalar as an attribute, which is all that is evaluated. */
+static mcor_input attribute_input(const core_set* set, mcor_array* attribute)
+{
+  mcor_input input = core_input(set);
+  *attribute = input.scalar;
+  input.scalar = (mcor_array){ 0 };
+  input.attributes = attribute;
+  input.attribute_count = 1;
+  return input;
+}
+
+enum
+{
+  POINTS = 1500
+};
+
+/* The field at points, and of those that are in the period with all images as particles. */
+static void check_points(
+  mcor_context* context, const core_set* set, mcor_options* options, uint64_t version)
+{
+  double points[2][3 * POINTS];
+  uint64_t seed = 9;
+  for (int i = 0; i < 3 * POINTS; ++i)
+  {
+    /* Some on the sides; numbers that a period leaves exact. */
+    const double length = options->periodic[2 * (i % 3) + 1];
+    const double at = i % 7 == 0 ? 0 : floor(random_unit(&seed) * 1024) / 1024;
+    points[0][i] = at * fmax(length, 8);
+    points[1][i] = points[0][i] + length * (i % 5 == 0 ? 1 : i % 5 - 2);
+  }
+  mcor_array attribute, images_attribute, at = core_array(points[0], 3);
+  mcor_input input = attribute_input(set, &attribute);
+  input.particles_version = input.scalar_version = version;
+  mcor_samples samples, moved, expected;
+  CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &samples));
+  core_set all = add_images(set, options->periodic);
+  const mcor_input other = attribute_input(&all, &images_attribute);
+  mcor_options plain = *options;
+  memset(plain.periodic, 0, sizeof plain.periodic);
+  CORE_OK(context, mcor_probe(context, &other, &plain, &at, POINTS, &expected));
+  at.data = points[1];
+  CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &moved));
+  for (int i = 0; i < POINTS; ++i)
+  {
+    CORE_CHECK(samples.weight_sum[i] > 0.3 &&
+        fabs(samples.weight_sum[i] - expected.weight_sum[i]) < 1e-5 &&
+        fabs(samples.values[0][i] - expected.values[0][i]) < 1e-5,
+      "point %d: %g of weight %g, expected %g of %g", i, samples.values[0][i],
+      samples.weight_sum[i], expected.values[0][i], expected.weight_sum[i]);
+    for (int a = 0; a < 3; ++a)
+    {
+      assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
+    }
+  }
+  assert_memory_equal(moved.weight_sum, samples.weight_sum, POINTS * sizeof(double));
+  assert_memory_equal(moved.values[0], samples.values[0], POINTS * sizeof(double));
+  assert_memory_equal(moved.gradients[0], samples.gradients[0], 3 * POINTS * sizeof(double));
+  mcor_free_samples(&samples);
+  mcor_free_samples(&moved);
+  mcor_free_samples(&expected);
+  core_free_set(&all);
+}
+
+static void points_see_images(void** state)
+{
+  const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
+  const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
+  for (int i = 0; i < 4; ++i)
+  {
+    core_set set = make_period(i % 2 ? slab : cube, 5);
+    mcor_options options = period_options(NULL, i % 2 ? along : around);
+    options.iso_count = 0;
+    options.precision = i < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
+    check_points(*state, &set, &options, i == 1 ? 77 : 0);
+    core_free_set(&set);
+  }
+}
+
+/* Gradients at particles, of which some are given periods away, with images and with these as
+ * particles. */
+static void derivatives_see_images(void** state)
+{
+  const int cube[3] = { 8, 8, 8 };
+  const double around[6] = { 0, 8, 0, 8, 0, 8 };
+  core_set set = make_period(cube, 8);
+  for (int64_t i = 0; i < 3 * set.count; ++i)
+  {
+    set.position[i] = i % 11 == 0 ? 0 : floor(set.position[i] * 1024) / 1024;
+  }
+  core_set all = add_images(&set, around);
+  mcor_array attribute, images_attribute;
+  const mcor_input input = attribute_input(&set, &attribute);
+  const mcor_input other = attribute_input(&all, &images_attribute);
+  mcor_options options = period_options(NULL, around), plain = options;
+  options.iso_count = plain.iso_count = 0;
+  memset(plain.periodic, 0, sizeof plain.periodic);
+  mcor_derivatives found, expected, moved;
+  CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &found));
+  CORE_OK(*state, mcor_derive(*state, &other, &plain, MCOR_GRADIENT_CORRECTED, &expected));
+  for (int64_t i = 0; i < 3 * set.count; ++i)
+  {
+    const double is = found.gradients[0][i], was = expected.gradients[0][3 * 13 * set.count + i];
+    CORE_CHECK(fabs(is - was) < 1e-4, "gradient %lld is %g, expected %g", (long long)i, is, was);
+    set.position[i] += 8 * (double)(i % 5 - 2);
+  }
+  CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
+  assert_memory_equal(
+    moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
+  mcor_free_derivatives(&found);
+  mcor_free_derivatives(&expected);
+  mcor_free_derivatives(&moved);
+  core_free_set(&all);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
     cmocka_unit_test(adaptive_cubes), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
-    cmocka_unit_test(lengths) };
+    cmocka_unit_test(lengths), cmocka_unit_test(points_see_images),
+    cmocka_unit_test(derivatives_see_images) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

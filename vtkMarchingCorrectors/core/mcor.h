@@ -290,8 +290,9 @@ extern "C"
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, particles and all they carry repeat along x
      * with that period: each is taken to where it is between x0 and x1, and its images count. The
      * surface is that of one period, open at its sides, where it meets itself: points a period apart
-     * agree in all bits, but for the coordinate along it, which is rounded. All periods are whole numbers of cubes: the cube size is made to fit, smaller by less than a
-     * half. x0 = x1, the default 0: open. mcor_probe and mcor_derive do not read it. */
+     * agree in all bits, but for the coordinate along it, which is rounded. All periods are whole numbers
+     * of cubes: the cube size is made to fit, smaller by less than a half. x0 = x1, the default 0: open.
+     * For mcor_probe and mcor_derive, too: points may be anywhere. */
     double periodic[6];
     /* Nonzero: the surface is closed at periodic sides by flat triangles there, around the particles'
      * side of it: where values are above the iso value. Its border's points are shared; the others
@@ -432,6 +433,12 @@ extern "C"
    * mcor_list_devices, or part of a device's or platform's name. On failure *context still holds a
    * context whose mcor_last_error says why (NULL only if host memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);
+  /* The same for one of `count` processes, or threads, of a machine that run side by side: number
+   * `place` of them, from 0. Where no device is asked for they take, in turn, those of the default
+   * one's platform and kind; each of those that have a CPU in common takes its share of the processors.
+   * The result does not depend on it. */
+  mcor_status mcor_create_shared_context(
+    const char* device, int place, int count, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
   /* One line per device, "number: device (platform)\n"; *text is to be freed with free(). An empty
@@ -527,9 +534,9 @@ extern "C"
 
   /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The
    * input's scalar is not read. Of the options sph_kernel, field, h_scale, gradients, node_threshold,
-   * precision, memory_limit and progress count; cube_size and cube_size_factor are the unit of
-   * length on the device and do not matter otherwise. A point's bits do not depend on the other
-   * points. *samples is overwritten. */
+   * precision, memory_limit, periodic and progress count; cube_size and cube_size_factor are the unit of
+   * length on the device, made to fit periods, and do not matter otherwise. A point's bits do not depend on
+   * the other points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);

@@ -73,6 +73,22 @@ static void mcor_place_halves(mcor_context* context, const mcor_options* options
   }
 }
 
+/* The cells that a probe's points are in; all of the period where some are beyond it, and taken into
+ * it. */
+static void mcor_place_points(
+  mcor_context* context, int axis, double first, double last, double side[2])
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const double* points = context->box.points + 2 * axis;
+  const double origin = (double)lattice->origin[axis], rounding = ldexp(0.25, -lattice->fix_bits);
+  const double low = points[0] / lattice->cube - origin, high = points[1] / lattice->cube - origin;
+  if (lattice->period[axis] == 0 || (low >= first - rounding && high <= last + rounding))
+  {
+    side[0] = fmin(fmax(floor(low), first), last);
+    side[1] = fmin(fmax(floor(high) + 1, first), last);
+  }
+}
+
 /* A cell is owned where its centre is in the box: so the side of a box may lie on the lattice's
  * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
 void mcor_place_box(mcor_context* context, const mcor_options* options)
@@ -92,11 +108,9 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
       const double at = ceil(options->box[2 * a + s] / lattice->cube - 0.5);
       side[s] = fmin(fmax(at - (double)lattice->origin[a], first), last);
     }
-    for (int s = 0; s < 2 && box->of_points; ++s)
+    if (box->of_points)
     {
-      /* All cells that a point is in. */
-      const double at = floor(box->points[2 * a + s] / lattice->cube) - (double)lattice->origin[a];
-      side[s] = fmin(fmax(at + s, first), last);
+      mcor_place_points(context, a, first, last, side);
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];

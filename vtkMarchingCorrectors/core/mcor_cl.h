@@ -55,6 +55,7 @@ typedef struct mcor_cl
 {
   cl_platform_id platform;
   cl_device_id device;
+  cl_device_id share; /* the device, where it is a part of one; else NULL */
   cl_context context;
   cl_command_queue queue, timed_queue; /* timed: for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
@@ -131,7 +132,7 @@ typedef struct mcor_ahead_kernel
   bool large; /* to be launched with many work-items */
 } mcor_ahead_kernel;
 
-mcor_status mcor_open_device(mcor_context* context, const char* device);
+mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);

@@ -4,6 +4,7 @@
 /* Which OpenCL device, what it can do, and what its errors mean. */
 
 #include "mcor_cl_call.h"
+#include "mcor_parallel.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -249,7 +250,62 @@ static void mcor_query_device(mcor_cl* cl)
   cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
 }
 
-mcor_status mcor_open_device(mcor_context* context, const char* device)
+static cl_device_type mcor_type_of(cl_device_id device)
+{
+  cl_device_type type = 0;
+  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
+}
+
+/* Of `count` processes number `place` takes one of the devices like the chosen one, in turn; both become
+ * those among the processes that take the same. */
+static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
+{
+  int like[MCOR_DEVICE_LIMIT], n = 0;
+  for (int i = 0; i < list->count; ++i)
+  {
+    if (list->platforms[i] == list->platforms[chosen] &&
+      mcor_type_of(list->devices[i]) == mcor_type_of(list->devices[chosen]))
+    {
+      like[n++] = i;
+    }
+  }
+  const int turn = *place % n;
+  *count = (*count - turn + n - 1) / n;
+  *place = *place / n;
+  return like[turn];
+}
+
+/* Of a CPU that `count` processes have in common the share of number `place`. A driver that does not
+ * divide it gives all of it to each. */
+static void mcor_take_share(mcor_cl* cl, int place, int count)
+{
+  cl_uint units = 1, parts = 0;
+  clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
+  const cl_uint wanted = (cl_uint)mcor_processors(count);
+  const cl_device_partition_property equally[] = { CL_DEVICE_PARTITION_EQUALLY, wanted, 0 };
+  if (count < 2 || !(mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) || wanted >= units ||
+    clCreateSubDevices(cl->device, equally, 0, NULL, &parts) != CL_SUCCESS || parts == 0)
+  {
+    return;
+  }
+  cl_device_id* made = calloc(parts, sizeof *made);
+  if (made && clCreateSubDevices(cl->device, equally, parts, made, NULL) == CL_SUCCESS)
+  {
+    const cl_uint own = (cl_uint)place % parts;
+    for (cl_uint i = 0; i < parts; ++i)
+    {
+      if (i != own)
+      {
+        clReleaseDevice(made[i]);
+      }
+    }
+    cl->device = cl->share = made[own];
+  }
+  free(made);
+}
+
+mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count)
 {
   mcor_cl* cl = &context->cl;
   mcor_device_list list;
@@ -260,7 +316,7 @@ mcor_status mcor_open_device(mcor_context* context, const char* device)
   MCOR_RETURN_IF(list.count == 0, context, MCOR_DEVICE_ERROR,
     "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
     "runs on the CPU.");
-  const int chosen = mcor_choose_device(&list, device);
+  int chosen = mcor_choose_device(&list, device);
   if (chosen < 0)
   {
     char devices[300];
@@ -269,11 +325,16 @@ mcor_status mcor_open_device(mcor_context* context, const char* device)
       "There is no OpenCL device \"%s\"; give the number of one, or part of its name: %s.", device,
       devices);
   }
+  if (!device || !*device)
+  {
+    chosen = mcor_take_turn(&list, chosen, &place, &count);
+  }
   cl->platform = list.platforms[chosen];
   cl->device = list.devices[chosen];
   cl->device_number = chosen;
   mcor_device_names(
     cl->platform, cl->device, cl->device_name, cl->platform_name, sizeof cl->device_name);
+  mcor_take_share(cl, place, count);
   mcor_query_device(cl);
   cl_int error;
   cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
@@ -301,5 +362,9 @@ void mcor_close_device(mcor_context* context)
   if (cl->context)
   {
     clReleaseContext(cl->context);
+  }
+  if (cl->share)
+  {
+    clReleaseDevice(cl->share);
   }
 }

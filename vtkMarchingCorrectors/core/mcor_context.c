@@ -38,6 +38,12 @@ void mcor_set_default_options(mcor_options* options)
 
 mcor_status mcor_create_context(const char* device, mcor_context** context)
 {
+  return mcor_create_shared_context(device, 0, 1, context);
+}
+
+mcor_status mcor_create_shared_context(
+  const char* device, int place, int count, mcor_context** context)
+{
   if (!context)
   {
     return MCOR_INVALID_ARGUMENT;
@@ -48,7 +54,10 @@ mcor_status mcor_create_context(const char* device, mcor_context** context)
     return MCOR_OUT_OF_CAPACITY;
   }
   (*context)->report_interval = MCOR_REPORT_SECONDS;
-  mcor_status status = mcor_open_device(*context, device);
+  mcor_status status = place >= 0 && place < count
+    ? mcor_open_device(*context, device, place, count)
+    : mcor_fail(
+        *context, MCOR_INVALID_ARGUMENT, "There is no number %d of %d processes.", place, count);
   if (status == MCOR_OK)
   {
     uint8_t table[256][16];

@@ -119,22 +119,47 @@ static mcor_status mcor_load_arrays(mcor_derive_run* run)
 
 /* ---- evaluation --------------------------------------------------------------------------- */
 
+/* The cells of the particles whose gradients are wanted; false: of all. Of a particle's images those in the
+ * period alone, or on its upper side where the lower one is not in the box. */
+static bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3])
+{
+  const mcor_box* box = &context->box;
+  const mcor_lattice* lattice = &context->lattice;
+  bool bounded = box->of_points;
+  for (int a = 0; a < 3; ++a)
+  {
+    first[a] = box->begin[a] - (box->of_points ? 1 : 0);
+    last[a] = box->end[a] + (box->of_points ? 1 : 0);
+    if (lattice->period[a] > 0)
+    {
+      const int from = lattice->period_first[a], to = from + lattice->period[a];
+      const int end = box->begin[a] > from ? to + 1 : to;
+      first[a] = first[a] > from ? first[a] : from;
+      last[a] = last[a] < end ? last[a] : end;
+      bounded = true;
+    }
+  }
+  return bounded;
+}
+
 /* Sorts the batch's particles by place and cuts them into groups that are evaluated together. */
 static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
 {
   mcor_context* context = run->context;
   const mcor_grid* grid = &context->grid;
   const size_t n = (size_t)run->count, real = context->cl.real_size;
+  int first[3], last[3];
+  const bool bounded = mcor_bound_particles(context, first, last);
   MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, run->count, MCOR_INT(run->first),
     MCOR_INT(run->count), MCOR_INT(context->lattice.fix_bits), MCOR_BUFFER(&grid->px),
-    MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(context->box.of_points),
-    MCOR_CELL_ARGS(context->box.begin, context->box.end, 1, 1), MCOR_BUFFER(&run->batch.in_node),
+    MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(bounded),
+    MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&run->batch.in_node),
     MCOR_BUFFER(&run->batch.in_offset), MCOR_BUFFER(&context->points.flags)));
   run->inside = run->count;
-  if (context->box.of_points)
+  if (bounded)
   {
     MCOR_TRY(mcor_scan(context, &context->points.flags, run->count, &run->inside));
   }

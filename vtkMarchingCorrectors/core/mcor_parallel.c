@@ -17,6 +17,12 @@ static int mcor_slice_count(int64_t count, int64_t grain)
 
 #ifdef _WIN32
 
+int mcor_processors(int count)
+{
+  (void)count;
+  return 1 << 20; /* not known: no process keeps to a share */
+}
+
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
 {
   const int slices = mcor_slice_count(count, grain);
@@ -56,15 +62,23 @@ static void* mcor_run_slices(void* data)
   return NULL;
 }
 
-static int mcor_thread_limit(void)
+int mcor_processors(int count)
 {
-  long processors = 0;
+  const long all = sysconf(_SC_NPROCESSORS_ONLN);
+  long usable = 0;
 #ifdef __linux__
   cpu_set_t set;
-  processors = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
+  usable = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
 #endif
-  processors = processors > 0 ? processors : sysconf(_SC_NPROCESSORS_ONLN);
-  return processors < 1 ? 1 : processors < MCOR_THREADS ? (int)processors : MCOR_THREADS;
+  usable = usable > 0 ? usable : all;
+  const long share = all / count < usable ? all / count : usable;
+  return share < 1 ? 1 : (int)share;
+}
+
+static int mcor_thread_limit(void)
+{
+  const int processors = mcor_processors(1);
+  return processors < MCOR_THREADS ? processors : MCOR_THREADS;
 }
 
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)

@@ -24,4 +24,8 @@ typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t la
  * of slices. */
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
+/* The share of one of `count` processes in the machine's processors, of those that the calling thread
+ * may use; at least 1. */
+int mcor_processors(int count);
+
 #endif

@@ -412,10 +412,6 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
   options->capping = 0;
   options->cube_size_mode = MCOR_CUBES_UNIFORM;
   options->ranks = NULL;
-  for (int i = 0; i < 6; ++i)
-  {
-    options->periodic[i] = 0;
-  }
   return uses_solids;
 }
 

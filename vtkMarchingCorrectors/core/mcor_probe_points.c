@@ -73,6 +73,22 @@ typedef struct mcor_point_job
   cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
 } mcor_point_job;
 
+/* A coordinate within the period, its upper side too: rounded as particles are, so that points a period
+ * apart are at one place. Of one on a side the other side is as good; that is taken where the box is. */
+static double mcor_wrap_point(const mcor_context* context, int axis, double at)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const double first = ldexp(lattice->period_first[axis], lattice->fix_bits);
+  const double period = ldexp(lattice->period[axis], lattice->fix_bits);
+  const double fixed = floor(ldexp(at, lattice->fix_bits) + 0.5);
+  const bool beyond = !(fixed >= first && fixed <= first + period);
+  const double within = beyond ? fixed - floor((fixed - first) / period) * period : fixed;
+  const bool off_lower = within == first && context->box.begin[axis] > lattice->period_first[axis];
+  const bool off_upper = within == first + period &&
+    context->box.end[axis] < lattice->period_first[axis] + lattice->period[axis];
+  return ldexp(within + (off_lower ? period : off_upper ? -period : 0), -lattice->fix_bits);
+}
+
 /* Where points [first, first + count) of the batch are, from the lattice's origin, in cubes. */
 static void mcor_read_points(
   const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
@@ -87,6 +103,7 @@ static void mcor_read_points(
     for (int i = 0; i < count; ++i)
     {
       at[a][i] = at[a][i] / lattice->cube - origin;
+      at[a][i] = lattice->period[a] > 0 ? mcor_wrap_point(run->context, a, at[a][i]) : at[a][i];
     }
   }
 }

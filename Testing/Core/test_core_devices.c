@@ -1,0 +1,73 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Processes of one machine: each takes a device in turn, and a share of a CPU. PoCL shows one twice. */
+
+#include "core_fixture.h"
+#include "mcor_parallel.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum
+{
+  PROCESSES = 5
+};
+
+static void test_turns_and_shares(void** state)
+{
+  core_set set = core_make_block(7, 0.3, 3, core_ball);
+  const double iso = 2;
+  const mcor_input input = core_input(&set);
+  const mcor_options options = core_options(&iso);
+  mcor_context* context = *state;
+  mcor_surface surface = core_extract(context, &input, &options);
+  const uint64_t expected = core_hash(&surface);
+  const int first = context->cl.device_number, units = context->cl.units;
+  assert_true(surface.triangle_count > 100);
+  mcor_free_surface(&surface);
+  for (int place = 0; place < PROCESSES; ++place)
+  {
+    /* Three have the first device, two the second. */
+    const int share = mcor_processors(place % 2 ? 2 : 3);
+    CORE_OK(context, mcor_create_shared_context(NULL, place, PROCESSES, &context));
+    assert_int_equal(context->cl.device_number, first + place % 2);
+    assert_int_equal(context->cl.units, share < units ? share : units);
+    surface = core_extract(context, &input, &options);
+    assert_true(core_hash(&surface) == expected);
+    mcor_free_surface(&surface);
+    mcor_free_context(context);
+  }
+  core_free_set(&set);
+}
+
+/* Who asks for a device gets it. */
+static void test_named_device(void** state)
+{
+  mcor_context* context = *state;
+  const int second = context->cl.device_number + 1;
+  const char name[] = { (char)('0' + second), '\0' };
+  for (int place = 0; place < 3; ++place)
+  {
+    CORE_OK(context, mcor_create_shared_context(name, place, 3, &context));
+    assert_int_equal(context->cl.device_number, second);
+    mcor_free_context(context);
+  }
+}
+
+static void test_no_such_place(void** state)
+{
+  (void)state;
+  mcor_context* context;
+  assert_int_equal(mcor_create_shared_context(NULL, 2, 2, &context), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(context), "no number 2 of 2"));
+  mcor_free_context(context);
+}
+
+int main(void)
+{
+  setenv("POCL_DEVICES", "pthread pthread", 1);
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_turns_and_shares),
+    cmocka_unit_test(test_named_device), cmocka_unit_test(test_no_such_place) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

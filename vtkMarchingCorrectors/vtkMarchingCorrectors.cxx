@@ -119,7 +119,6 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.level_limit = this->CubeLevelLimit;
   options.has_box = this->UseBox;
   std::copy(this->Box, this->Box + 6, options.box);
-  std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
   options.capping = this->Capping;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
@@ -195,6 +194,10 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   else
   {
     this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
+    if (!this->SetPeriod(particles, options))
+    {
+      return;
+    }
     this->Extract(input, options, vtkPolyData::SafeDownCast(output));
   }
 }
@@ -370,17 +373,12 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles")
      << "\n";
   os << indent << "Use Box: " << this->UseBox << "\n";
-  const auto printSides = [&](const char* name, const double(&sides)[6])
+  os << indent << "Box:";
+  for (const double side : this->Box)
   {
-    os << indent << name << ":";
-    for (const double side : sides)
-    {
-      os << " " << side;
-    }
-    os << "\n";
-  };
-  printSides("Box", this->Box);
-  printSides("Periodic Bounds", this->PeriodicBounds);
+    os << " " << side;
+  }
+  os << "\n";
   os << indent << "Capping: " << this->Capping << "\n";
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
   os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";

@@ -341,17 +341,6 @@ public:
 
   ///@{
   /**
-   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, particles and
-   * all they carry repeat along x with that period, and their images count. The surface is that of
-   * one period, open at its sides, where it meets itself, to the last bit. Periods are whole numbers of
-   * cubes: the cube size is made to fit, see "CubeSize" in the field data.
-   */
-  vtkSetVector6Macro(PeriodicBounds, double);
-  vtkGetVector6Macro(PeriodicBounds, double);
-  ///@}
-
-  ///@{
-  /**
    * Close the surface at periodic sides, off by default: by flat triangles around what is above the
    * iso value, which share the points of the surface's border. What encloses the body is then closed,
    * unless trimming leaves it open. Not with UseBox, PAIRS or several processes.
@@ -640,7 +629,6 @@ protected:
   double CubeSize = 0.0;
   vtkTypeBool UseBox = 0;
   double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   vtkTypeBool Capping = 0;
   int SeedMode = COMPLETE;
   int CubeSizeMode = UNIFORM;

@@ -21,6 +21,7 @@
 #include "vtkSPHRanksCalls.h"
 #endif
 
+#include <algorithm>
 #include <cstdlib>
 
 // These are handed to the core as they are.
@@ -235,6 +236,7 @@ void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
   mcor_set_default_options(&options);
   options.sph_kernel = static_cast<mcor_sph_kernel>(this->Kernel);
   options.h_scale = this->HScaleFactor;
+  std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
   options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
 }
@@ -270,6 +272,14 @@ int vtkSPHAlgorithm::RequestData(
   this->Internals->BeginRun();
   auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (this->IsShared() && this->DetectPeriod)
+  {
+    this->Fail(
+      "The period is detected in the field data of one process. With several, turn that off and "
+      "set the periodic bounds.");
+    this->Internals->EndRun();
+    return 0;
+  }
   if (this->IsShared() && !this->AgreeOnBlocks(blocks))
   {
     this->Internals->EndRun();
@@ -340,12 +350,13 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
 
 //------------------------------------------------------------------------------
 // A mcor_status; `message` says why it is not MCOR_OK, unless that is because the user cancelled. What
-// an observer of the progress may change is read before the run.
+// an observer of the progress may change is read before the run. Of `count` processes on this machine
+// this is number `place`.
 int vtkSPHAlgorithm::RunCore(vtkSPHParticles& particles, mcor_options& options,
-  const std::function<int(mcor_context*)>& call, std::string& message)
+  const std::function<int(mcor_context*)>& call, std::string& message, int place, int count)
 {
   const bool keep = this->KeepDeviceData != 0;
-  message = this->Internals->Prepare(this->Device);
+  message = this->Internals->Prepare(this->Device, place, count);
   if (!message.empty())
   {
     return MCOR_DEVICE_ERROR;
@@ -381,7 +392,7 @@ bool vtkSPHAlgorithm::CallCore(
   vtkSPHParticles& particles, mcor_options& options, const std::function<int(mcor_context*)>& call)
 {
   std::string message;
-  const int status = this->RunCore(particles, options, call, message);
+  const int status = this->RunCore(particles, options, call, message, 0, 1);
   if (!message.empty())
   {
     this->Fail(message);
@@ -395,10 +406,12 @@ bool vtkSPHAlgorithm::CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& part
   mcor_options& options, const std::function<int(mcor_context*)>& call,
   const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
 {
+  int place, count;
+  ranks.FindNeighbors(place, count);
   vtkSPHRanksCalls calls(ranks, near);
   options.ranks = calls.Get();
   std::string message;
-  const int status = this->RunCore(particles, options, call, message);
+  const int status = this->RunCore(particles, options, call, message, place, count);
   options.ranks = nullptr;
   calls.End(status != MCOR_OK);
   std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
@@ -451,6 +464,12 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Mass: " << this->Mass << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
+  os << indent << "Periodic Bounds:";
+  for (const double side : this->PeriodicBounds)
+  {
+    os << " " << side;
+  }
+  os << "\n" << indent << "Detect Period: " << this->DetectPeriod << "\n";
   printName("Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
   printName("Used Volume Array Name", this->UsedVolumeArrayName);
   printName("Used Mass Array Name", this->UsedMassArrayName);

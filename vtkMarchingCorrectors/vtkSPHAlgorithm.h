@@ -135,6 +135,31 @@ public:
 
   ///@{
   /**
+   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, particles and
+   * all they carry repeat along x with that period, and their images count. A surface is that of
+   * one period, open at its sides, where it meets itself, to the last bit. Periods are whole numbers of
+   * cubes: the cube size is made to fit, see "CubeSize" in the surface's field data. Points of a probe may
+   * be anywhere: those a period apart have the same values.
+   */
+  vtkSetVector6Macro(PeriodicBounds, double);
+  vtkGetVector6Macro(PeriodicBounds, double);
+  ///@}
+
+  ///@{
+  /**
+   * Take the period from the particles' field data instead of PeriodicBounds, off by default: of an
+   * array "PeriodicBounds" of six bounds; "BoxSize" of one or three lengths, as GADGET and SWIFT call
+   * it, which begin at 0, at minus half the length or at the lowest particle, whichever is the first that
+   * holds all particles; "box" of six bounds with "boundaryType", 1 where it repeats, as SPH-EXA does. Of
+   * blocks each has its own. An error where there is none, and with several processes.
+   */
+  vtkSetMacro(DetectPeriod, vtkTypeBool);
+  vtkGetMacro(DetectPeriod, vtkTypeBool);
+  vtkBooleanMacro(DetectPeriod, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Find smoothing length, volume, mass and density arrays by their usual names. On by default.
    */
   vtkSetMacro(DetectArrays, vtkTypeBool);
@@ -367,6 +392,12 @@ protected:
 
   void FillChoice(vtkSPHParticlesChoice& choice) const;
   void FillOptions(mcor_options& options) const;
+
+  /**
+   * Gives the options the period of these particles. False if there should be one and is not, which is
+   * reported.
+   */
+  bool SetPeriod(vtkPointSet* particles, mcor_options& options);
   void SetUsedNames(const vtkSPHParticles* particles);
   bool IsAborted();
 
@@ -380,6 +411,8 @@ protected:
   double Mass = 0.0;
   double Density = 0.0;
   vtkTypeBool DetectArrays = 1;
+  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  vtkTypeBool DetectPeriod = 0;
   std::string UsedSmoothingLengthArrayName;
   std::string UsedVolumeArrayName;
   std::string UsedMassArrayName;
@@ -412,7 +445,7 @@ private:
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);
   int RunCore(vtkSPHParticles& particles, mcor_options& options,
-    const std::function<int(mcor_context*)>& call, std::string& message);
+    const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
 };
 
 #endif

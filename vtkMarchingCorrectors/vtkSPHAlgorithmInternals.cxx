@@ -11,15 +11,17 @@ vtkSPHAlgorithm::vtkInternals::~vtkInternals()
 }
 
 //------------------------------------------------------------------------------
-std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device)
+std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device, int place, int count)
 {
-  if (this->Context && this->Device == device)
+  if (this->Context && this->Device == device && this->Place == place && this->Count == count)
   {
     return "";
   }
   this->Forget(MCOR_DEVICE_ERROR);
   this->Device = device;
-  if (mcor_create_context(device.c_str(), &this->Context) == MCOR_OK)
+  this->Place = place;
+  this->Count = count;
+  if (mcor_create_shared_context(device.c_str(), place, count, &this->Context) == MCOR_OK)
   {
     return "";
   }

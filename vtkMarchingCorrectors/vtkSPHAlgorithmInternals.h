@@ -21,9 +21,11 @@ class vtkSPHAlgorithm::vtkInternals
 public:
   ~vtkInternals();
 
-  /** A context for this device, the same one if there is one. Nothing if it is usable, else why not.
+  /**
+   * A context for this device, the same one if there is one, for number `place` of `count` processes of
+   * this machine. Nothing if it is usable, else why not.
    */
-  std::string Prepare(const std::string& device);
+  std::string Prepare(const std::string& device, int place, int count);
 
   /** Tells the core what is the same as in the run before. */
   void SetVersions(vtkSPHParticles& input);
@@ -40,6 +42,7 @@ public:
 
 private:
   std::string Device; // what the context was created for
+  int Place = 0, Count = 0;
   bool InRun = false;
   bool ReleaseAfterRun = false;
   std::vector<std::uint64_t> Particles, Scalar, Attributes;

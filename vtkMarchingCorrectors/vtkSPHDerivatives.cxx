@@ -150,6 +150,10 @@ void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, v
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
   mcor_options options;
   this->FillOptions(options);
+  if (!this->SetPeriod(particles, options))
+  {
+    return;
+  }
   mcor_derivatives derivatives = {};
   if (!this->CallCore(input, options,
         [&](mcor_context* context)

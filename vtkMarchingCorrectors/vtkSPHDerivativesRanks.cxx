@@ -27,8 +27,8 @@ namespace
 using Lists = std::vector<std::vector<vtkIdType>>;
 
 /** Of particles that came, those from each rank that this one owns. */
-Lists ListOwned(vtkPolyData* near, const std::vector<vtkIdType>& from,
-  const vtkSPHRanksPartition& partition, int self)
+Lists ListOwned(
+  vtkPolyData* near, const std::vector<vtkIdType>& from, const vtkSPHRanksRoute& route, int self)
 {
   Lists owned;
   vtkIdType next = 0;
@@ -39,7 +39,7 @@ Lists ListOwned(vtkPolyData* near, const std::vector<vtkIdType>& from,
     {
       double at[3];
       near->GetPoint(next, at);
-      if (partition.FindOwner(at) == self)
+      if (route.FindOwner(at) == self)
       {
         owned.back().push_back(next);
       }
@@ -49,15 +49,14 @@ Lists ListOwned(vtkPolyData* near, const std::vector<vtkIdType>& from,
 }
 
 /** Of this rank's particles, the numbers of those that each rank owns. */
-Lists ListOwners(
-  vtkPolyData* own, vtkIdList* numbers, const vtkSPHRanksPartition& partition, int ranks)
+Lists ListOwners(vtkPolyData* own, vtkIdList* numbers, const vtkSPHRanksRoute& route, int ranks)
 {
   Lists owners(static_cast<std::size_t>(ranks));
   for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
   {
     double at[3];
     own->GetPoint(i, at);
-    owners[static_cast<std::size_t>(partition.FindOwner(at))].push_back(numbers->GetId(i));
+    owners[static_cast<std::size_t>(route.FindOwner(at))].push_back(numbers->GetId(i));
   }
   return owners;
 }
@@ -169,8 +168,8 @@ bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtk
     return false;
   }
   vtkSPHReturnArrays(ranks, found, near->GetNumberOfPoints(),
-    ListOwned(near, from, *route.Partition, ranks.GetRank()),
-    ListOwners(own, numbers, *route.Partition, ranks.GetCount()), count, results);
+    ListOwned(near, from, route, ranks.GetRank()),
+    ListOwners(own, numbers, route, ranks.GetCount()), count, results);
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
   vtkSPHAddSampleShares(ranks, this->RunStatistics, route, route.OwnedParticles);
   return true;

@@ -296,6 +296,10 @@ void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* 
 {
   mcor_options options;
   this->FillProbeOptions(options);
+  if (!this->SetPeriod(this->Particles, options))
+  {
+    return;
+  }
   vtkSPHSamples samples(input, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints());
   vtkFieldData* statistics = this->RunStatistics;
   if (input.FluidCount > 0 && points->GetNumberOfPoints() > 0 &&

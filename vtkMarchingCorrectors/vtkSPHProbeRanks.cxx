@@ -54,16 +54,19 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkDataSet* data, std::vector<vtkIdType>
   return taken;
 }
 
-/** Around the points of all ranks. */
-void FindBox(vtkSPHRanks& ranks, vtkPolyData* points, double margin, double box[6])
+/** Around the places of all ranks. */
+void FindBox(
+  vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, double margin, double box[6])
 {
   double sides[6];
-  points->GetBounds(sides);
-  for (int side = 0; side < 6; ++side)
+  std::fill_n(sides, 6, std::numeric_limits<double>::infinity());
+  for (const vtkSPHRanksPlace& place : places)
   {
-    sides[side] = points->GetNumberOfPoints() == 0 ? std::numeric_limits<double>::infinity()
-      : side % 2 == 0                              ? sides[side]
-                                                   : -sides[side];
+    for (int a = 0; a < 3; ++a)
+    {
+      sides[2 * a] = std::min(sides[2 * a], place.At[a]);
+      sides[2 * a + 1] = std::min(sides[2 * a + 1], -place.At[a]);
+    }
   }
   ranks.Reduce(vtkSPHRanks::LEAST, sides, 6);
   for (int side = 0; side < 6; ++side)
@@ -72,12 +75,14 @@ void FindBox(vtkSPHRanks& ranks, vtkPolyData* points, double margin, double box[
   }
 }
 
-std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points)
+/** Where points are within the period. */
+std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points, const vtkSPHRanksPeriod& period)
 {
   std::vector<vtkSPHRanksPlace> places(static_cast<std::size_t>(points->GetNumberOfPoints()));
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     points->GetPoint(static_cast<vtkIdType>(i), places[i].At);
+    period.Take(places[i].At);
     places[i].Work = 1;
   }
   return places;
@@ -182,16 +187,17 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
   std::vector<vtkIdType> numbers;
   const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
   options.has_box = 1;
-  FindBox(ranks, places, MarginCubes * globals.cube_size, options.box);
+  const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, globals });
+  FindBox(ranks, within, MarginCubes * globals.cube_size, options.box);
   const vtkSPHRanksRoute route =
-    vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, ListPlaces(places) });
+    vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, within });
   const auto count = static_cast<std::size_t>(ranks.GetCount());
   std::vector<std::vector<vtkIdType>> to(count), home(count);
   for (std::size_t i = 0; i < numbers.size(); ++i)
   {
     double at[3];
     places->GetPoint(static_cast<vtkIdType>(i), at);
-    const auto owner = static_cast<std::size_t>(route.Partition->FindOwner(at));
+    const auto owner = static_cast<std::size_t>(route.FindOwner(at));
     to[owner].push_back(static_cast<vtkIdType>(i));
     home[owner].push_back(numbers[i]);
   }

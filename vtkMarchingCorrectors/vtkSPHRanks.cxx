@@ -3,7 +3,8 @@
 #include "vtkSPHRanks.h"
 
 #include "vtkDIYUtilities.h"
-#include "vtkMultiProcessController.h"
+#include "vtkMPIController.h"
+#include "vtkSPHRanksWait.h"
 
 #include "vtk_diy2.h"
 
@@ -49,6 +50,7 @@ public:
 //------------------------------------------------------------------------------
 vtkSPHRanks::vtkSPHRanks(vtkMultiProcessController* controller)
   : Internals(new vtkInternals(controller))
+  , Controller(vtkMPIController::SafeDownCast(controller))
   , Rank(controller->GetLocalProcessId())
   , Count(controller->GetNumberOfProcesses())
 {
@@ -76,14 +78,26 @@ bool vtkSPHRanks::Agree(std::string& sentence)
 }
 
 //------------------------------------------------------------------------------
+void vtkSPHRanks::FindNeighbors(int& place, int& count)
+{
+  const std::string name = vtkMPIController::GetProcessorName();
+  const Bytes mine(name.begin(), name.end());
+  const std::vector<Bytes> all = this->Gather(mine);
+  place = static_cast<int>(std::count(all.begin(), all.begin() + this->Rank, mine));
+  count = static_cast<int>(std::count(all.begin(), all.end(), mine));
+}
+
+//------------------------------------------------------------------------------
 void vtkSPHRanks::Reduce(Operation operation, double* values, int count)
 {
+  vtkSPHAwaitRanks(this->Controller);
   this->Internals->Reduce(operation, values, count);
 }
 
 //------------------------------------------------------------------------------
 void vtkSPHRanks::Reduce(Operation operation, std::int64_t* values, int count)
 {
+  vtkSPHAwaitRanks(this->Controller);
   std::vector<long long> same(values, values + count); // MPI's types have no name for the other
   this->Internals->Reduce(operation, same.data(), count);
   std::copy(same.begin(), same.end(), values);
@@ -93,6 +107,7 @@ void vtkSPHRanks::Reduce(Operation operation, std::int64_t* values, int count)
 std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Gather(const Bytes& mine)
 {
   std::vector<Bytes> all;
+  vtkSPHAwaitRanks(this->Controller);
   diy::mpi::all_gather(this->Internals->Communicator, mine, all);
   return all;
 }
@@ -103,6 +118,7 @@ std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Exchange(std::vector<Bytes> message
   struct Block
   {
   };
+  vtkSPHAwaitRanks(this->Controller);
   using Proxy = diy::Master::ProxyWithLink;
   std::vector<Bytes> received(messages.size());
   const auto self = static_cast<std::size_t>(this->Rank);

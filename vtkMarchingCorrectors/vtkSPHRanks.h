@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+class vtkMPIController;
 class vtkMultiProcessController;
 
 class vtkSPHRanks
@@ -35,6 +36,9 @@ public:
    * the first one that failed, which it names where not all say the same.
    */
   bool Agree(std::string& sentence);
+
+  /** Of the `count` ranks on this machine, by its name, this one is number `place`. */
+  void FindNeighbors(int& place, int& count);
 
   enum Operation
   {
@@ -59,6 +63,7 @@ private:
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
+  vtkMPIController* Controller;
   int Rank, Count;
   std::int64_t BytesSent = 0;
 };

@@ -67,6 +67,7 @@ public:
     : Input(input)
     , Options(options)
     , Globals(globals)
+    , Period(options, globals)
   {
     const double factor = mcor_support_factor(options.sph_kernel);
     this->Factor = options.h_scale * factor;
@@ -75,13 +76,11 @@ public:
     this->ComputesVolumes = !input.has_volume && !(input.has_mass && input.has_density);
     for (int a = 0; a < 3; ++a)
     {
-      const double first = options.periodic[2 * a];
-      this->First[a] = first;
-      this->Period[a] = std::max(0.0, options.periodic[2 * a + 1] - first);
-      const bool isPeriodic = this->Period[a] > 0.0;
+      const double first = this->Period.First[a];
+      const bool isPeriodic = this->Period.Length[a] > 0.0;
       const double infinity = std::numeric_limits<double>::infinity();
       double low = isPeriodic ? first : -infinity;
-      double high = isPeriodic ? first + this->Period[a] : infinity;
+      double high = isPeriodic ? first + this->Period.Length[a] : infinity;
       if (options.has_box)
       {
         low = std::min(std::max(low, options.box[2 * a]), high);
@@ -99,11 +98,8 @@ public:
     for (int a = 0; a < 3; ++a)
     {
       at[a] = ValueOf(positions, 3 * i + a);
-      if (this->Period[a] > 0.0)
-      {
-        at[a] -= std::floor((at[a] - this->First[a]) / this->Period[a]) * this->Period[a];
-      }
     }
+    this->Period.Take(at);
   }
 
   bool IsInWhole(const double at[3]) const
@@ -173,7 +169,7 @@ public:
   void FindReached(const vtkSPHRanksPartition& partition, const double at[3], double radius,
     std::vector<int>& found) const
   {
-    FindBoxes(partition, this->Period, at, radius + this->LeastMargin, found);
+    FindBoxes(partition, this->Period.Length, at, radius + this->LeastMargin, found);
   }
 
   /**
@@ -222,15 +218,47 @@ public:
   double Factor;  ///< scaled support radius / smoothing length
   double LeastMargin;
   bool ComputesVolumes;
-  double First[3], Period[3];
+  vtkSPHRanksPeriod Period;
   vtkSPHRanksBox Whole;
 };
 }
 
 //------------------------------------------------------------------------------
+vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals)
+{
+  const double cube = globals.cube_size;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double first = options.periodic[2 * a];
+    this->Length[a] = std::max(0.0, options.periodic[2 * a + 1] - first);
+    this->First[a] = this->Length[a] > 0.0 ? cube * std::ceil(first / cube - 0.5) : 0.0;
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHRanksPeriod::Take(double at[3]) const
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    if (this->Length[a] > 0.0)
+    {
+      at[a] -= std::floor((at[a] - this->First[a]) / this->Length[a]) * this->Length[a];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHRanksRoute::FindOwner(const double at[3]) const
+{
+  double place[3] = { at[0], at[1], at[2] };
+  this->Period.Take(place);
+  return this->Partition->FindOwner(place);
+}
+
+//------------------------------------------------------------------------------
 void vtkSPHRanksRoute::FindReached(const double at[3], double reach, std::vector<int>& found) const
 {
-  FindBoxes(*this->Partition, this->Period, at, reach, found);
+  FindBoxes(*this->Partition, this->Period.Length, at, reach, found);
 }
 
 //------------------------------------------------------------------------------
@@ -238,11 +266,9 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {
   const Router router(input, options, globals);
-  vtkSPHRanksRoute route;
+  vtkSPHRanksRoute route = { {}, {}, 0, 0, nullptr, router.Period, 0, 0 };
   route.Partition = router.Divide(ranks, balance);
-  std::copy(router.Period, router.Period + 3, route.Period);
   const vtkSPHRanksPartition& partition = *route.Partition;
-  route.Work = route.WorkBefore = 0;
   if (balance.HasWork)
   {
     route.Work = router.SumWork(ranks, partition, balance.Work);

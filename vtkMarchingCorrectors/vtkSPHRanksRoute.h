@@ -16,9 +16,23 @@
 
 class vtkSPHRanks;
 
+/** One period, as the core has it: it begins at a node of the lattice. */
+struct vtkSPHRanksPeriod
+{
+  vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals);
+
+  /** Moves a place into it. */
+  void Take(double at[3]) const;
+
+  double First[3], Length[3]; ///< 0: open
+};
+
 /** To whom this rank's particles go, and what this rank will have. */
 struct vtkSPHRanksRoute
 {
+  /** The rank whose box holds a place, or an image of it. */
+  int FindOwner(const double at[3]) const;
+
   /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
   void FindReached(const double at[3], double reach, std::vector<int>& found) const;
 
@@ -27,7 +41,7 @@ struct vtkSPHRanksRoute
   std::int64_t OwnedParticles;            ///< those in its box
   std::int64_t Particles;                 ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
-  double Period[3];        ///< 0: open
+  vtkSPHRanksPeriod Period;
   std::int64_t Work;       ///< expected in its box; 0 where that was not asked for
   std::int64_t WorkBefore; ///< the same, if boxes had as many particles each
 };

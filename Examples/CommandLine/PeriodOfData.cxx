@@ -4,102 +4,27 @@
 #include "PeriodOfData.h"
 #include "SafeText.h"
 
-#include <vtkDataArray.h>
-#include <vtkDataObject.h>
-#include <vtkFieldData.h>
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkSPHPeriod.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace
 {
 
-bool IsNamed(const char* name, const char* wanted)
+std::string Lower(std::string text)
 {
-  return name && std::strlen(name) == std::strlen(wanted) &&
-    std::equal(name, name + std::strlen(name), wanted,
-      [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
+  std::transform(text.begin(), text.end(), text.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
-/// The values of a numeric array, in whatever tuples; `name` becomes as it is written. Empty: there is
-/// none of so many values.
-std::vector<double> ValuesOf(
-  vtkFieldData* data, const char* wanted, std::size_t count, std::string* name = nullptr)
-{
-  for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    if (array && IsNamed(array->GetName(), wanted) &&
-      static_cast<std::size_t>(array->GetNumberOfValues()) == count)
-    {
-      const int components = array->GetNumberOfComponents();
-      std::vector<double> values(count);
-      for (std::size_t v = 0; v < count; ++v)
-      {
-        values[v] = array->GetComponent(
-          static_cast<vtkIdType>(v) / components, static_cast<int>(v) % components);
-      }
-      if (name)
-      {
-        *name = array->GetName();
-      }
-      return values;
-    }
-  }
-  return {};
-}
-
-/// Whether there are periods, of which some may be 0.
-bool ArePeriods(const std::vector<double>& period)
-{
-  const std::size_t step = period.size() / 3;
-  bool some = false;
-  for (std::size_t a = 0; a < 3 && step > 0; ++a)
-  {
-    const double length = period[step * a + step - 1] - (step == 2 ? period[2 * a] : 0.0);
-    if (!std::isfinite(length) || length < 0.0)
-    {
-      return false;
-    }
-    some = some || length > 0.0;
-  }
-  return some;
-}
-
-} // namespace
-
-//------------------------------------------------------------------------------
-PeriodOfData FindPeriod(vtkDataObject* particles)
-{
-  vtkFieldData* data = particles->GetFieldData();
-  PeriodOfData found;
-  found.Period = ValuesOf(data, "PeriodicBounds", 6, &found.Array);
-  if (!ArePeriods(found.Period))
-  {
-    found.Period = ValuesOf(data, "BoxSize", 3, &found.Array);
-  }
-  if (!ArePeriods(found.Period))
-  {
-    const std::vector<double> edge = ValuesOf(data, "BoxSize", 1, &found.Array);
-    found.Period.assign(edge.empty() ? 0 : 3, edge.empty() ? 0.0 : edge.front());
-  }
-  if (!ArePeriods(found.Period))
-  {
-    found.Period = ValuesOf(data, "box", 6, &found.Array);
-    const std::vector<double> type = ValuesOf(data, "boundaryType", 3);
-    for (std::size_t a = 0; a < 3 && !found.Period.empty(); ++a)
-    {
-      if (type.empty() || type[a] != 1.0) // 0: open, 2: fixed
-      {
-        found.Period[2 * a] = found.Period[2 * a + 1] = 0.0;
-      }
-    }
-  }
-  return ArePeriods(found.Period) ? found : PeriodOfData();
 }
 
 //------------------------------------------------------------------------------
@@ -109,9 +34,9 @@ void PassPeriod(vtkDataObject* from, vtkDataObject* to)
   for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    for (const char* name : { "PeriodicBounds", "BoxSize", "box", "boundaryType" })
+    for (const char* name : { "periodicbounds", "boxsize", "box", "boundarytype" })
     {
-      if (array && IsNamed(array->GetName(), name))
+      if (array && array->GetName() && Lower(array->GetName()) == name)
       {
         to->GetFieldData()->AddArray(array);
       }
@@ -122,7 +47,7 @@ void PassPeriod(vtkDataObject* from, vtkDataObject* to)
 //------------------------------------------------------------------------------
 std::vector<double> DetectPeriod(vtkDataObject* particles)
 {
-  const PeriodOfData found = FindPeriod(particles);
+  const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
   if (found.Period.empty())
   {
     throw std::runtime_error("The particles' field data tell of no period: there is no array "
@@ -135,7 +60,7 @@ std::vector<double> DetectPeriod(vtkDataObject* particles)
 //------------------------------------------------------------------------------
 std::string HintOfPeriod(vtkDataObject* particles)
 {
-  const PeriodOfData found = FindPeriod(particles);
+  const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
   std::ostringstream hint;
   for (std::size_t i = 0; i < found.Period.size(); ++i)
   {

@@ -11,16 +11,6 @@
 
 class vtkDataObject;
 
-struct PeriodOfData
-{
-  std::vector<double> Period; ///< three lengths or six bounds, like --periodic; empty: none is told
-  std::string Array;          ///< that tells of it
-};
-
-/// Of an array PeriodicBounds, of BoxSize (GADGET, SWIFT), or of box where boundaryType says that it
-/// repeats (SPH-EXA); whatever the case. One that is no period tells of none.
-PeriodOfData FindPeriod(vtkDataObject* particles);
-
 /// Gives the field data that may tell of a period, and no other.
 void PassPeriod(vtkDataObject* from, vtkDataObject* to);
 

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankLaunch.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <initializer_list>
-#include <string>
-#include <thread>
 
 namespace
 {
@@ -43,19 +40,11 @@ int LaunchedRank()
 }
 
 //------------------------------------------------------------------------------
-// PoCL starts a thread for each processor of the machine, in each process.
-void ShareProcessors()
+void CompileOnce()
 {
-  const int here = Number({ "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS" }, 1);
-  if (LaunchedCount() == 1 || here <= 1)
+  if (LaunchedCount() > 1 && Number({ "OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID" }, 0) > 0)
   {
-    return;
-  }
-  const int processors = static_cast<int>(std::thread::hardware_concurrency());
-  const bool keep = false; // what the user has set stays
-  setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(std::max(1, processors / here)).c_str(), keep);
-  if (Number({ "OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID" }, 0) > 0)
-  {
+    const bool keep = false; // what the user has set stays
     setenv("MCOR_COMPILER", "", keep);
   }
 }

@@ -11,8 +11,8 @@ int LaunchedCount();
 /// The number of this process, 0 where it was started alone.
 int LaunchedRank();
 
-/// Leaves each of the processes on this machine its share of the processors, and the compiling of
-/// kernels ahead to the first of them, unless the user's environment says otherwise.
-void ShareProcessors();
+/// Leaves the compiling of kernels ahead to the first of the processes on this machine, unless the user's
+/// environment says otherwise.
+void CompileOnce();
 
 #endif

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankParticles.h"
 
+#include "CommandLineOptions.h"
 #include "ParticleFile.h"
 #include "RankSession.h"
 
@@ -9,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHPeriod.h"
 
 #include <stdexcept>
 
@@ -60,4 +62,26 @@ vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
   session.Together(
     [&] { particles = ReadParticlesPart(file, session.GetRank(), session.GetCount(), messages); });
   return GiveArrays(session, particles);
+}
+
+//------------------------------------------------------------------------------
+void ResolvePeriod(CommandLineOptions& options, const RankSession& session, vtkPointSet* particles)
+{
+  if (options.Periodic.size() != 3)
+  {
+    return;
+  }
+  double ends[6], all[6];
+  particles->GetBounds(ends);
+  const bool isEmpty = particles->GetNumberOfPoints() == 0;
+  for (int side = 0; side < 6; ++side)
+  {
+    ends[side] = isEmpty ? 1e300 : side % 2 == 0 ? ends[side] : -ends[side];
+  }
+  session.GetController()->AllReduce(ends, all, 6, vtkCommunicator::MIN_OP);
+  for (int side = 1; side < 6; side += 2)
+  {
+    all[side] = -all[side];
+  }
+  options.Periodic = vtkSPHBoundsOfPeriod(options.Periodic, all);
 }

@@ -10,10 +10,14 @@
 class MessageCapture;
 class RankSession;
 class vtkPointSet;
+struct CommandLineOptions;
 
 /// Each process's part of a file, with the same arrays in all of them; a single file is the first one's.
 /// Throws std::runtime_error on all of them alike.
 vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
   RankSession& session, const std::string& file, MessageCapture* messages);
+
+/// --periodic with lengths alone asks where all particles are.
+void ResolvePeriod(CommandLineOptions& options, const RankSession& session, vtkPointSet* particles);
 
 #endif

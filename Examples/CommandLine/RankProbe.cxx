@@ -15,7 +15,7 @@
 #include "vtkSPHProbe.h"
 
 //------------------------------------------------------------------------------
-void ShareProbe(const CommandLineOptions& options, RankSession& session, MessageCapture* messages)
+void ShareProbe(CommandLineOptions options, RankSession& session, MessageCapture* messages)
 {
   vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New();
   session.Together(
@@ -29,6 +29,7 @@ void ShareProbe(const CommandLineOptions& options, RankSession& session, Message
     });
   const vtkSmartPointer<vtkPointSet> particles =
     ReadParticlesTogether(session, options.Inputs.front(), messages);
+  ResolvePeriod(options, session, particles);
   vtkNew<vtkSPHProbe> probe;
   double seconds = 0.0;
   session.Together([&] { SetUpProbe(probe, options, points, particles); });

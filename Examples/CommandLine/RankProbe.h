@@ -9,6 +9,6 @@ struct CommandLineOptions;
 
 /// A probe that all processes share; the first one reads the points and writes the result. Throws
 /// std::runtime_error on all of them alike.
-void ShareProbe(const CommandLineOptions& options, RankSession& session, MessageCapture* messages);
+void ShareProbe(CommandLineOptions options, RankSession& session, MessageCapture* messages);
 
 #endif

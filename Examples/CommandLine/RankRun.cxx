@@ -62,28 +62,6 @@ void CheckUse(const CommandLineOptions& options, const RankSession& session)
   }
 }
 
-/// --periodic with lengths alone asks where all particles are.
-void ResolvePeriod(CommandLineOptions& options, const RankSession& session, vtkPointSet* particles)
-{
-  if (options.Periodic.size() != 3)
-  {
-    return;
-  }
-  double ends[6], all[6];
-  particles->GetBounds(ends);
-  const bool isEmpty = particles->GetNumberOfPoints() == 0;
-  for (int side = 0; side < 6; ++side)
-  {
-    ends[side] = isEmpty ? 1e300 : side % 2 == 0 ? ends[side] : -ends[side];
-  }
-  session.GetController()->AllReduce(ends, all, 6, vtkCommunicator::MIN_OP);
-  for (int side = 1; side < 6; side += 2)
-  {
-    all[side] = -all[side];
-  }
-  options.Periodic = BoundsOfPeriod(options.Periodic, all);
-}
-
 void WriteResult(const CommandLineOptions& options, RankSession& session, vtkPolyData* surface,
   MessageCapture* messages)
 {

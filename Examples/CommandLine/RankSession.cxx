@@ -3,6 +3,7 @@
 #include "RankSession.h"
 
 #include "vtkMPIController.h"
+#include "vtkSPHRanksWait.h"
 
 #include <exception>
 #include <new>
@@ -54,6 +55,7 @@ void RankSession::Together(const std::function<void()>& work)
   }
   const int self = sentence.empty() ? this->GetCount() : this->GetRank();
   int failed = self;
+  vtkSPHAwaitRanks(this->Controller);
   this->Controller->AllReduce(&self, &failed, 1, vtkCommunicator::MIN_OP);
   if (failed == this->GetCount())
   {

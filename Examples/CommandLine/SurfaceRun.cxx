@@ -13,6 +13,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHDerivatives.h"
+#include "vtkSPHPeriod.h"
 
 #include <algorithm>
 #include <chrono>
@@ -157,6 +158,16 @@ void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
                                             : vtkAlgorithm::DEFAULT_PRECISION);
 }
 
+void SetPeriod(vtkSPHAlgorithm* filter, const CommandLineOptions& options, vtkPointSet* particles)
+{
+  const std::vector<double> period =
+    options.DetectPeriod ? DetectPeriod(particles) : options.Periodic;
+  if (!period.empty())
+  {
+    filter->SetPeriodicBounds(vtkSPHBoundsOfPeriod(period, particles->GetBounds()).data());
+  }
+}
+
 /// The particles with the arrays that are made of one of theirs, if that is asked for, by the filter.
 vtkSmartPointer<vtkPointSet> AddDerivedArrays(
   const CommandLineOptions& options, vtkPointSet* particles, vtkSPHDerivatives* filter)
@@ -166,6 +177,7 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(
     return particles;
   }
   SetParticles(filter, options, particles);
+  SetPeriod(filter, options, particles);
   SetDevice(filter, options);
   filter->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, options.Derive.c_str());
@@ -180,33 +192,6 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(
   auto derived = vtk::TakeSmartPointer(particles->NewInstance());
   derived->ShallowCopy(filter->GetOutput()); // the next step has the output itself
   return derived;
-}
-
-/// Where a period begins of which only the length is known: so that the particles lie in it, at 0 or
-/// around 0 if they can.
-double BeginOfPeriod(double length, double low, double high)
-{
-  const double rounding = 1e-6 * length;
-  const auto holds = [&](double begin)
-  { return low >= begin - rounding && high <= begin + length + rounding; };
-  return holds(0.0) ? 0.0 : holds(-0.5 * length) ? -0.5 * length : low;
-}
-
-void SetPeriod(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, vtkPointSet* particles)
-{
-  std::vector<double> bounds = options.DetectPeriod ? DetectPeriod(particles) : options.Periodic;
-  if (bounds.size() == 3)
-  {
-    double extent[6];
-    particles->GetBounds(extent);
-    bounds = BoundsOfPeriod(bounds, extent);
-  }
-  if (!bounds.empty())
-  {
-    filter->SetPeriodicBounds(bounds.data());
-    filter->SetCapping(options.Capping);
-  }
 }
 
 /// All arrays, or those that are named.
@@ -270,19 +255,6 @@ void PrintProgress(vtkObject* caller, unsigned long, void* data, void*)
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> BoundsOfPeriod(const std::vector<double>& lengths, const double extent[6])
-{
-  std::vector<double> bounds(6, 0.0);
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    const double length = lengths[a];
-    bounds[2 * a] = length > 0.0 ? BeginOfPeriod(length, extent[2 * a], extent[2 * a + 1]) : 0.0;
-    bounds[2 * a + 1] = bounds[2 * a] + length;
-  }
-  return bounds;
-}
-
-//------------------------------------------------------------------------------
 bool ShowsProgress(const CommandLineOptions& options)
 {
   return !options.Quiet && isatty(STDERR_FILENO);
@@ -308,6 +280,7 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(vtkSPHAlgorithm* filter,
   vtkSmartPointer<vtkPointSet> particles =
     AddDerivedArrays(options, input, derivatives ? derivatives : own.Get());
   SetParticles(filter, options, particles);
+  SetPeriod(filter, options, input);
   SetDevice(filter, options);
   SetAttributes(filter, options, particles);
   return particles;
@@ -322,7 +295,7 @@ void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& option
   bare->SetPoints(particles->GetPoints());
   bare->GetPointData()->ShallowCopy(particles->GetPointData());
   filter->SetInputData(bare);
-  SetPeriod(filter, options, input);
+  filter->SetCapping(options.Capping);
   filter->SetInterpolateAttributes(options.Attributes);
   SetSolids(filter, options);
   SetContour(filter, options);

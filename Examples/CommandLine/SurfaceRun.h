@@ -53,7 +53,4 @@ std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages
 void AddHintOfPeriod(
   const CommandLineOptions& options, vtkPointSet* particles, std::vector<std::string>& warnings);
 
-/// Where periods of these lengths (0: open) begin and end, for particles within `extent`.
-std::vector<double> BoundsOfPeriod(const std::vector<double>& lengths, const double extent[6]);
-
 #endif

@@ -236,7 +236,7 @@ int main(int argc, char* argv[])
   {
     return status;
   }
-  ShareProcessors();
+  CompileOnce();
   TemporaryCache cache;
   return RunSupervised([&](int first)
     { return Status([&] { return Execute(options, first, record.get()); }); },

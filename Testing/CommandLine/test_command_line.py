@@ -374,6 +374,18 @@ class Options(CommandLineTest):
         divergence = text[text.index('Name="Divergence"'):]
         self.assertAlmostEqual(float(divergence.split('RangeMax="')[1].split('"')[0]), 3, places=4)
 
+    def test_probe_of_period(self):
+        """Points periods away from the particles."""
+        self.write_points()
+        length = 10 * files.SPACING
+        (self.directory / "far.vtk").write_text((self.directory / "points.vtk").read_text().replace(
+            "ORIGIN -0.2", f"ORIGIN {3 * length - 0.2!r}"))
+        for arguments, valid in ([], 0), (["--periodic", f"{length!r},0,0"], 5):
+            result = self.run_program(self.input, self.directory / "far_out.vtk", "--probe", "far.vtk", "--derive",
+                                      "Velocity", *arguments)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn(f"points      5, {valid} of them valid", result.stdout)
+
     def test_wrong_probes(self):
         self.write_points()
         for arguments, status, sentence in [

@@ -96,6 +96,23 @@ const std::vector<Case> Cases = {
       probe->ComputeGradientsOn();
       return ProbeWith(probe, particles, points, controller);
     } },
+  { "probe, periods", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHProbe> probe;
+      probe->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
+      probe->ComputeGradientsOn();
+      return ProbeWith(probe, particles, points, controller);
+    } },
+  { "derivatives, periods, computed volumes", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHDerivatives> filter;
+      filter->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
+      filter->DetectArraysOff();
+      filter->SetSmoothingLength(0.06);
+      return DeriveWith(filter, "Velocity", particles, controller);
+    } },
   { "derivatives", "double_dam_break_small", false,
     [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
     {

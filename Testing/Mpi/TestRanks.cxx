@@ -139,6 +139,15 @@ const std::vector<Case> Cases = {
       f->SetCubeSizeFactor(0.8);
       f->SetCubeSizeModeToAdaptive();
     } },
+  { "adaptive cubes, periods", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourDamBreak(f);
+      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      f->SetCubeSizeFactor(0.8);
+      f->SetCubeSizeModeToAdaptive();
+      f->SetPeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+    } },
   { "smoothing lengths that differ", "dam_break_45k",
     [](vtkMarchingCorrectors* f)
     {

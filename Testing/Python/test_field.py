@@ -74,6 +74,86 @@ def vortex_errors(n):
     return [math.sqrt(s / count) for s in sums]
 
 
+def bytes_of(data):
+    """Of the points and all their arrays."""
+    arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
+    return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays)]
+
+
+class TestPeriod(unittest.TestCase):
+    """The Taylor-Green vortex repeats: its period is given, or found in the field data."""
+
+    def make_filters(self, particles):
+        plane = vtkImageData()
+        plane.SetDimensions(9, 9, 1)
+        plane.SetOrigin(-0.5, -0.5, 0)
+        plane.SetSpacing(0.25, 0.25, 1)
+        probe, surface, derivatives = vtkSPHProbe(), vtkMarchingCorrectors(), vtkSPHDerivatives()
+        probe.SetInputData(plane)
+        probe.SetSourceData(particles)
+        for filter_ in (surface, derivatives):
+            filter_.SetInputData(particles)
+            filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Velocity")
+        surface.SetValue(0, 0.5)
+        return probe, surface, derivatives
+
+    def test_derivatives_at_sides(self):
+        derivatives = self.make_filters(make_vortex(16))[2]
+        derivatives.CorrectGradientsOff()  # which are far off where neighbors are missing
+        worst = []
+        for sides in ((0,) * 6, (0, 1) * 3):
+            derivatives.SetPeriodicBounds(*sides)
+            derivatives.Update()
+            data = derivatives.GetOutput()
+            vorticity = data.GetPointData().GetArray("Vorticity")
+            worst.append(max(
+                abs(vorticity.GetComponent(i, 2) / (4 * math.pi)
+                    + math.cos(2 * math.pi * data.GetPoint(i)[0]) * math.cos(2 * math.pi * data.GetPoint(i)[1]))
+                for i in range(data.GetNumberOfPoints())))
+        self.assertGreater(worst[0], 0.4)
+        self.assertLess(worst[1], 0.2)
+
+    def test_points_a_period_apart(self):
+        probe = self.make_filters(make_vortex(16))[0]
+        probe.SetPeriodicBounds(*(0, 1) * 3)
+        probe.Update()
+        data = probe.GetOutput().GetPointData()
+        self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (1, 1))
+        for name in ("Velocity", "Weight"):
+            array = data.GetArray(name)
+            for i in range(81):
+                x, y = i % 9, i // 9
+                self.assertEqual(array.GetTuple(i), array.GetTuple(x % 4 + 9 * (y % 4)), (name, i))
+
+    def test_found_in_field_data(self):
+        particles = make_vortex(12)
+        for filter_ in self.make_filters(particles):
+            filter_.SetPeriodicBounds(*(0, 1) * 3)
+            filter_.Update()
+            expected = bytes_of(filter_.GetOutput()) if filter_.GetOutput().IsA("vtkPointSet") else None
+            weight = filter_.GetOutput().GetPointData().GetArray("Weight")
+            filter_.SetPeriodicBounds(*(0,) * 6)
+            filter_.DetectPeriodOn()
+            errors = []
+            filter_.AddObserver("ErrorEvent", lambda *_, errors=errors: errors.append(1))
+            filter_.Update()
+            self.assertIn("tell of no period", filter_.GetErrorMessage())
+            self.assertTrue(errors)
+            size = vtkFloatArray()
+            size.SetName("BoxSize")
+            size.InsertNextValue(1)
+            particles.GetFieldData().AddArray(size)
+            filter_.Modified()
+            filter_.Update()
+            self.assertEqual(filter_.GetErrorMessage() or "", "")
+            if expected:
+                self.assertEqual(bytes_of(filter_.GetOutput()), expected)
+            else:
+                found = filter_.GetOutput().GetPointData().GetArray("Weight")
+                self.assertEqual(bytes(memoryview(found)), bytes(memoryview(weight)))
+            particles.GetFieldData().RemoveArray("BoxSize")
+
+
 class TestDerivatives(unittest.TestCase):
     def test_something_weird(self):
         filter_ = vtkSPHDerivatives()

@@ -10,7 +10,7 @@ from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHProbe
 PLUGIN = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
-NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray"}
+NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds"}
 # Setters without a property: (automatic) in the panel's lists stands for the first.
 NOT_IN_XML = {"SetController", "SetDetectArrays"}
 

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the project: the period that particles' field data tell of.
+ */
+#ifndef vtkSPHPeriod_h
+#define vtkSPHPeriod_h
+
+#include "vtkMarchingCorrectorsModule.h"
+
+#include <string>
+#include <vector>
+
+class vtkFieldData;
+
+struct vtkSPHPeriod
+{
+  std::vector<double> Period; ///< three lengths or six bounds; empty: none is told
+  std::string Array;          ///< that tells of it
+};
+
+/**
+ * Of an array PeriodicBounds, of BoxSize (GADGET, SWIFT), or of box where boundaryType says that it
+ * repeats (SPH-EXA); whatever the case. One that is no period tells of none.
+ */
+VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
+
+/** Six bounds, also of lengths alone: where the particles, of this extent, lie in them. */
+VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
+  const std::vector<double>& period, const double extent[6]);
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: waiting for other ranks without keeping a processor busy, as MPI's own calls do,
+ * to the loss of ranks that compute on the same one.
+ */
+#ifndef vtkSPHRanksWait_h
+#define vtkSPHRanksWait_h
+
+#include "vtkMPIController.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+/** Looks at once, then less and less often. */
+inline void vtkSPHAwait(vtkMPICommunicator::Request& request)
+{
+  std::chrono::microseconds pause(10);
+  while (!request.Test())
+  {
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::microseconds(1000));
+  }
+}
+
+/** Returns when all ranks have called it. Each hears of twice as many with every message. */
+inline void vtkSPHAwaitRanks(vtkMPIController* controller)
+{
+  constexpr int tag = 1719;
+  const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
+  for (int step = 1; step < count; step *= 2)
+  {
+    const int sent = 0;
+    int received;
+    vtkMPICommunicator::Request sending, receiving;
+    controller->NoBlockReceive(&received, 1, (rank - step + count) % count, tag, receiving);
+    controller->NoBlockSend(&sent, 1, (rank + step) % count, tag, sending);
+    vtkSPHAwait(receiving);
+    vtkSPHAwait(sending);
+  }
+}
+
+#endif

@@ -366,19 +366,29 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-static mcor_status mcor_cap_side(
-  mcor_cap_job* job, int axis, int upper, double iso, mcor_cap_points* points)
+static mcor_status mcor_cap_squares(mcor_cap_job* job, const mcor_cap_face* face)
 {
-  mcor_cap_face face = { 0 };
-  mcor_status status = mcor_load_cap_face(job->context, axis, upper, iso, points, &face);
-  for (int v = 0; v + 1 < face.count[1] && status == MCOR_OK; ++v)
+  for (int v = 0; v + 1 < face->count[1]; ++v)
   {
-    for (int u = 0; u + 1 < face.count[0] && status == MCOR_OK; ++u)
+    for (int u = 0; u + 1 < face->count[0]; ++u)
     {
-      status = mcor_cap_square(job, &face, u, v);
+      MCOR_TRY(mcor_cap_square(job, face, u, v));
     }
   }
-  mcor_free_cap_face(&face);
+  return MCOR_OK;
+}
+
+/* The lower and the upper side of an axis. */
+static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis, double iso, mcor_cap_points* points)
+{
+  mcor_cap_face lower = { 0 }, upper = { 0 };
+  mcor_status status = mcor_load_cap_face(job->context, axis, NULL, iso, points, &lower);
+  status = status == MCOR_OK ? mcor_cap_squares(job, &lower) : status;
+  status = status == MCOR_OK ? mcor_load_cap_face(job->context, axis, &lower, iso, points, &upper)
+                             : status;
+  status = status == MCOR_OK ? mcor_cap_squares(job, &upper) : status;
+  mcor_free_cap_face(&lower);
+  mcor_free_cap_face(&upper);
   return status;
 }
 
@@ -404,12 +414,9 @@ static mcor_status mcor_make_caps(mcor_cap_job* job, double iso, mcor_cap_points
     MCOR_TRY(
       mcor_map(context, &context->trim.distinct, cuts * sizeof(cl_ulong), false, &job->distinct));
   }
-  for (int side = 0; side < 6; ++side)
+  for (int axis = 0; axis < 3; ++axis)
   {
-    if (context->lattice.period[side / 2] > 0)
-    {
-      MCOR_TRY(mcor_cap_side(job, side / 2, side % 2, iso, points));
-    }
+    MCOR_TRY(context->lattice.period[axis] > 0 ? mcor_cap_sides(job, axis, iso, points) : MCOR_OK);
   }
   return MCOR_OK;
 }

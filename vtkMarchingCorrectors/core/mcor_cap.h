@@ -54,9 +54,9 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
   return (int64_t)v * face->count[0] + u;
 }
 
-/* Axis a's lower or upper side. */
-mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper, double iso,
-  mcor_cap_points* points, mcor_cap_face* face);
+/* Axis a's lower side, or the upper one, where the lower one is known. */
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, const mcor_cap_face* opposite,
+  double iso, mcor_cap_points* points, mcor_cap_face* face);
 void mcor_free_cap_face(mcor_cap_face* face);
 void mcor_release_cap_points(mcor_context* context, mcor_cap_points* points);
 

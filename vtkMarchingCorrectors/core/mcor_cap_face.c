@@ -305,11 +305,31 @@ static mcor_status mcor_fill_cap_nodes(
   return status;
 }
 
-mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper, double iso,
-  mcor_cap_points* points, mcor_cap_face* face)
+/* A period apart the sums have the same bits: takes from the side opposite what marching does not know of
+ * this one's nodes, and how far they are inside. */
+static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* face)
 {
-  MCOR_TRY(mcor_make_cap_face(context, axis, upper, face));
+  const int64_t nodes = (int64_t)face->count[0] * face->count[1];
+  for (int64_t i = 0; i < nodes; ++i)
+  {
+    const int signs = opposite->state[i] & (MCOR_CAP_ABOVE | MCOR_CAP_VALID);
+    face->state[i] |= (uint8_t)(face->state[i] & MCOR_CAP_KNOWN ? 0 : signs);
+    face->margin[i] = opposite->margin[i];
+  }
+}
+
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, const mcor_cap_face* opposite,
+  double iso, mcor_cap_points* points, mcor_cap_face* face)
+{
+  MCOR_TRY(mcor_make_cap_face(context, axis, opposite != NULL, face));
   MCOR_TRY(mcor_take_bricks(context, face));
-  MCOR_TRY(mcor_fill_cap_nodes(context, false, iso, points, face));
+  if (opposite)
+  {
+    mcor_take_opposite(opposite, face);
+  }
+  else
+  {
+    MCOR_TRY(mcor_fill_cap_nodes(context, false, iso, points, face));
+  }
   return mcor_fill_cap_nodes(context, true, iso, points, face);
 }

@@ -530,6 +530,7 @@ extern const char mcor_source_mcor_gather_lanes_cl[];
 extern const char mcor_source_mcor_gather_point_cl[];
 extern const char mcor_source_mcor_node_lanes_cl[];
 extern const char mcor_source_mcor_node_point_cl[];
+extern const char mcor_source_mcor_end_cl[];
 extern const char mcor_source_mcor_evaluate_cl[];
 extern const char mcor_source_mcor_field_cl[];
 extern const char mcor_source_mcor_scan_cl[];

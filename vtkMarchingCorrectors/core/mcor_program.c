@@ -63,7 +63,8 @@ int mcor_program_sources(
     { vectors ? mcor_source_mcor_probe_lanes_cl : mcor_source_mcor_probe_point_cl, PROBE },
     { mcor_source_mcor_derive_cl, PROBE }, { mcor_source_mcor_graded_cell_h, GRADED },
     { mcor_source_mcor_graded_seed_cl, GRADED }, { mcor_source_mcor_graded_cl, GRADED },
-    { mcor_source_mcor_graded_march_cl, GRADED }, { mcor_source_mcor_graded_topology_cl, GRADED } };
+    { mcor_source_mcor_graded_march_cl, GRADED }, { mcor_source_mcor_graded_topology_cl, GRADED },
+    { mcor_source_mcor_end_cl, LATTICE } };
   int count = 0;
   for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
   {

@@ -68,15 +68,24 @@ void Append(vtkPolyData* part, vtkPolyData* whole, vtkCellArray* triangles)
 {
   vtkDataArray* numbers = part->GetPointData()->GetGlobalIds();
   vtkPointData *from = part->GetPointData(), *to = whole->GetPointData();
-  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+  const vtkIdType count = part->GetNumberOfPoints();
+  if (count == 0)
   {
-    const auto number = static_cast<vtkIdType>(numbers->GetComponent(i, 0));
-    whole->GetPoints()->SetPoint(number, part->GetPoint(i));
-    for (int a = 0; a < to->GetNumberOfArrays(); ++a)
-    {
-      to->GetAbstractArray(a)->SetTuple(
-        number, i, from->GetAbstractArray(to->GetAbstractArray(a)->GetName()));
-    }
+    return; // VTK sends no arrays then
+  }
+  vtkNew<vtkIdList> own, places;
+  own->SetNumberOfIds(count);
+  places->SetNumberOfIds(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    own->SetId(i, i);
+    places->SetId(i, static_cast<vtkIdType>(numbers->GetComponent(i, 0)));
+  }
+  whole->GetPoints()->GetData()->InsertTuples(places, own, part->GetPoints()->GetData());
+  for (int a = 0; a < to->GetNumberOfArrays(); ++a)
+  {
+    vtkAbstractArray* array = to->GetAbstractArray(a);
+    array->InsertTuples(places, own, from->GetAbstractArray(array->GetName()));
   }
   vtkNew<vtkIdList> corners;
   for (vtkIdType i = 0; i < part->GetNumberOfPolys(); ++i)
@@ -85,8 +94,7 @@ void Append(vtkPolyData* part, vtkPolyData* whole, vtkCellArray* triangles)
     triangles->InsertNextCell(3);
     for (vtkIdType c = 0; c < corners->GetNumberOfIds(); ++c)
     {
-      triangles->InsertCellPoint(
-        static_cast<vtkIdType>(numbers->GetComponent(corners->GetId(c), 0)));
+      triangles->InsertCellPoint(places->GetId(corners->GetId(c)));
     }
   }
 }

@@ -35,8 +35,8 @@
 #define MCOR_ONE_COPY __attribute__((noinline))
 #endif
 
-/* The lattice's kernels are many, and as fast when compiled for size, which takes PoCL an eighth less
- * time. mcor_end.cl ends this. */
+/* The lattice's kernels are many, and as fast when compiled for size, which takes PoCL about a tenth
+ * less time. mcor_end.cl ends this. */
 #if MCOR_OF_LATTICE && MCOR_LANES > 1 && defined(__clang__)
 #define MCOR_FOR_SIZE 1
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)

@@ -327,7 +327,8 @@ void TestRunStatistics()
   auto filter = test::MakeSphereFilter(MakeParticles());
   filter->Update();
   vtkSmartPointer<vtkFieldData> run = filter->GetRunStatistics();
-  for (const char* name : { "Seconds", "DeviceBytesPeak", "Bricks", "NodesEvaluated", "MarchRounds" })
+  for (const char* name :
+    { "Seconds", "DeviceBytesPeak", "Bricks", "NodesEvaluated", "MarchRounds" })
   {
     CHECK(run->GetArray(name) && run->GetArray(name)->GetComponent(0, 0) > 0.0);
     CHECK(!filter->GetOutput()->GetFieldData()->HasArray(name));

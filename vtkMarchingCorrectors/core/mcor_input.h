@@ -97,7 +97,6 @@ typedef enum mcor_sampled
 mcor_status mcor_choose_samples(
   mcor_context* context, const mcor_input* input, mcor_sampled which, mcor_samples_found* chosen);
 
-
 /* One for all particles, from their spacing. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);

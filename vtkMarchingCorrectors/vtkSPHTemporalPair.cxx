@@ -3,21 +3,17 @@
 #include "vtkSPHTemporalPair.h"
 
 #include "mcor.h"
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHNumbers.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <sstream>
 #include <utility>
@@ -73,105 +69,12 @@ vtkDataArray* Detect(vtkPointSet* particles, mcor_quantity quantity, int compone
   return found;
 }
 
-bool IsReal(vtkAbstractArray* array)
-{
-  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-}
-
-/** Itself where it is of a type and layout for Reals, else a copy. */
-vtkSmartPointer<vtkDataArray> AsReal(vtkDataArray* array)
-{
-  const bool plain = vtkAOSDataArrayTemplate<float>::FastDownCast(array) ||
-    vtkAOSDataArrayTemplate<double>::FastDownCast(array);
-  return plain ? vtkSmartPointer<vtkDataArray>(array) : vtkMarchingCorrectorsCopyAsDouble(array);
-}
-
-/** The values of an array that AsReal() has returned. */
-class Reals
-{
-public:
-  explicit Reals(vtkDataArray* array)
-    : Components(array->GetNumberOfComponents())
-    , Floats(
-        array->GetDataType() == VTK_FLOAT ? static_cast<float*>(array->GetVoidPointer(0)) : nullptr)
-    , Doubles(this->Floats ? nullptr : static_cast<double*>(array->GetVoidPointer(0)))
-  {
-  }
-
-  double operator()(vtkIdType tuple, int component) const
-  {
-    const vtkIdType i = tuple * this->Components + component;
-    return this->Floats ? static_cast<double>(this->Floats[i]) : this->Doubles[i];
-  }
-
-  const int Components;
-
-private:
-  const float* const Floats;
-  const double* const Doubles;
-};
-
-/** An array of the wider type of two, with value(tuple, component), in parallel. */
-template <typename ValueT>
-vtkSmartPointer<vtkDataArray> MakeArray(
-  vtkDataArray* a, vtkDataArray* b, vtkIdType count, const ValueT& value)
-{
-  const bool isFloat = a->GetDataType() == VTK_FLOAT && b->GetDataType() == VTK_FLOAT;
-  vtkSmartPointer<vtkDataArray> array;
-  array.TakeReference(isFloat ? static_cast<vtkDataArray*>(vtkFloatArray::New())
-                              : static_cast<vtkDataArray*>(vtkDoubleArray::New()));
-  const int components = a->GetNumberOfComponents();
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(count);
-  array->SetName(a->GetName());
-  array->CopyComponentNames(a);
-  const auto fill = [&](auto* typed)
-  {
-    auto* const to = typed->GetPointer(0);
-    using T = std::decay_t<decltype(*to)>;
-    vtkSMPTools::For(0, count, Grain,
-      [&](vtkIdType begin, vtkIdType end)
-      {
-        for (vtkIdType i = begin; i < end; ++i)
-        {
-          for (int c = 0; c < components; ++c)
-          {
-            to[i * components + c] = static_cast<T>(value(i, c));
-          }
-        }
-      });
-  };
-  if (isFloat)
-  {
-    fill(static_cast<vtkFloatArray*>(array.Get()));
-  }
-  else
-  {
-    fill(static_cast<vtkDoubleArray*>(array.Get()));
-  }
-  return array;
-}
-
 void Sign(std::vector<std::uint64_t>& signature, vtkObject* object)
 {
   signature.push_back(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(object)));
   signature.push_back(object ? object->GetMTime() : 0);
 }
 
-/** The two cubic polynomials of Hermite for positions, and the two for tangents. */
-struct HermiteWeights
-{
-  explicit HermiteWeights(double s)
-    : Second(s * s * (3.0 - 2.0 * s))
-    , FirstTangent(s * (1.0 - s) * (1.0 - s))
-    , SecondTangent(s * s * (s - 1.0))
-  {
-  }
-
-  const double Second; // that of the first position is 1 - Second
-  const double FirstTangent;
-  const double SecondTangent;
-};
 }
 
 //------------------------------------------------------------------------------
@@ -365,10 +268,10 @@ void vtkSPHTemporalPair::CheckVelocities()
   {
     return;
   }
-  const auto x0 = AsReal(first.Particles->GetPoints()->GetData()),
-             x1 = AsReal(second.Particles->GetPoints()->GetData()), v0 = AsReal(first.Velocities),
-             v1 = AsReal(second.Velocities);
-  const Reals from(x0), to(x1), begun(v0), ended(v1);
+  const auto x0 = vtkSPHAsReal(first.Particles->GetPoints()->GetData()),
+             x1 = vtkSPHAsReal(second.Particles->GetPoints()->GetData()),
+             v0 = vtkSPHAsReal(first.Velocities), v1 = vtkSPHAsReal(second.Velocities);
+  const vtkSPHReals from(x0), to(x1), begun(v0), ended(v1);
   const double duration = this->TimeScale * (second.Time - first.Time);
   std::vector<std::pair<double, double>> sums(static_cast<size_t>(count / Grain + 1));
   vtkSMPTools::For(0, static_cast<vtkIdType>(sums.size()), 1,
@@ -440,91 +343,10 @@ bool vtkSPHTemporalPair::IsInBoth(vtkAbstractArray* array) const
     vtkAbstractArray* own = step.Particles->GetPointData()->GetAbstractArray(array->GetName());
     if (!own || own->GetNumberOfComponents() != array->GetNumberOfComponents() ||
       own->GetNumberOfTuples() != step.Particles->GetNumberOfPoints() ||
-      IsReal(own) != IsReal(array))
+      vtkSPHIsReal(own) != vtkSPHIsReal(array))
     {
       return false;
     }
   }
   return true;
-}
-
-//------------------------------------------------------------------------------
-void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
-{
-  const double s = (time - this->Steps[0].Time) / (this->Steps[1].Time - this->Steps[0].Time);
-  const Step& near = this->Steps[s < 0.5 ? 0 : 1];
-  vtkSPHTemporalCopy(near.Particles, output);
-  output->GetFieldData()->RemoveArray("TimeValue"); // that of the step
-  if (!near.Ids)
-  {
-    return; // one step has no particles, and the other nothing to interpolate with
-  }
-  this->InterpolatePositions(s, time, output);
-  this->InterpolateArrays(s, output);
-}
-
-//------------------------------------------------------------------------------
-// In double, from the step that is nearer, so that a particle at rest stays where it is.
-void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData* output) const
-{
-  const bool early = s < 0.5;
-  const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
-  const double share = early ? s : 1.0 - s;
-  const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 for the later half
-  const double toTime = this->TimeScale * (time - near.Time);
-  const auto x0 = AsReal(near.Particles->GetPoints()->GetData()),
-             x1 = AsReal(far.Particles->GetPoints()->GetData());
-  const bool curved = this->FollowsVelocities;
-  const auto v0 = curved ? AsReal(near.Velocities) : x0, v1 = curved ? AsReal(far.Velocities) : x1;
-  const Reals from(x0), to(x1), begun(v0), ended(v1);
-  const HermiteWeights weight(share);
-  const auto position = [&](vtkIdType i, int c)
-  {
-    const vtkIdType j = near.Partners[static_cast<size_t>(i)];
-    const double x = from(i, c);
-    if (j < 0)
-    {
-      return curved ? x + toTime * begun(i, c) : x;
-    }
-    const double way = to(j, c) - x;
-    return curved ? x + weight.Second * way +
-        toFar * (weight.FirstTangent * begun(i, c) + weight.SecondTangent * ended(j, c))
-                  : x + share * way;
-  };
-  vtkNew<vtkPoints> points;
-  points->SetData(MakeArray(x0, x1, near.Particles->GetNumberOfPoints(), position));
-  output->SetPoints(points);
-}
-
-//------------------------------------------------------------------------------
-// What the output has is that of the nearer step already.
-void vtkSPHTemporalPair::InterpolateArrays(double s, vtkPolyData* output) const
-{
-  const bool early = s < 0.5;
-  const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
-  const double share = early ? s : 1.0 - s;
-  vtkPointData* own = near.Particles->GetPointData();
-  for (int k = 0; k < own->GetNumberOfArrays(); ++k)
-  {
-    vtkAbstractArray* array = own->GetAbstractArray(k);
-    if (!this->IsInBoth(array))
-    {
-      output->GetPointData()->RemoveArray(array->GetName());
-      continue;
-    }
-    vtkDataArray* other = far.Particles->GetPointData()->GetArray(array->GetName());
-    if (!IsReal(array) || array == near.Ids)
-    {
-      continue;
-    }
-    const auto a = AsReal(vtkDataArray::SafeDownCast(array)), b = AsReal(other);
-    const Reals from(a), to(b);
-    output->GetPointData()->AddArray(MakeArray(a, b, near.Particles->GetNumberOfPoints(),
-      [&](vtkIdType i, int c)
-      {
-        const vtkIdType j = near.Partners[static_cast<size_t>(i)];
-        const double value = from(i, c);
-        return j < 0 ? value : value + share * (to(j, c) - value);
-      }));
-  }
 }

@@ -127,4 +127,10 @@ FAULTS = [
     # Last, as kernels of the other precision may run on such data for ever.
     Fault("reuse: a changed precision is ignored", ["core_reuse"],
           "&& options->precision == o->precision &&", "&&"),
+    # ---- adaptive cubes: decisions of the field, progress ----
+    Fault("graded: the field decides on faces beside finer cells, too", ["core_graded_topology"],
+          "const ulong reached = between & (u[0]", "const ulong reached = (u[0]"),
+    Fault("tree: nobody is asked while particles split bricks", ["core_tree"],
+          "MCOR_TRY(job->failed[s] ? mcor_fail_leaves(context) : MCOR_OK); } MCOR_TRY(mcor_report_launch(context));",
+          "MCOR_TRY(job->failed[s] ? mcor_fail_leaves(context) : MCOR_OK); }"),
 ]

@@ -266,7 +266,7 @@ void core_check_flags(const mcor_surface* surface)
   free(on_boundary);
 }
 
-static uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)
+uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)
 {
   for (size_t i = 0; data && i < bytes; ++i)
   {
@@ -278,7 +278,7 @@ static uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)
 uint64_t core_hash(const mcor_surface* s)
 {
   const size_t n = (size_t)s->point_count;
-  uint64_t hash = core_hash_bytes(0xCBF29CE484222325u, &s->point_count, sizeof s->point_count);
+  uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, &s->point_count, sizeof s->point_count);
   hash = core_hash_bytes(hash, s->points, n * 3 * sizeof(double));
   hash = core_hash_bytes(hash, s->triangles, (size_t)s->triangle_count * 3 * sizeof(int32_t));
   hash = core_hash_bytes(hash, s->normals, n * 3 * sizeof(float));

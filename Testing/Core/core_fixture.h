@@ -98,6 +98,9 @@ mcor_surface core_extract(
 mesh_report core_check_mesh(const mcor_surface* surface);
 /* The same; and points of the mesh's boundary, and no others, must be flagged. */
 void core_check_flags(const mcor_surface* surface);
+/* Of nothing, for a start; and with more bytes, if data is not NULL. */
+#define CORE_HASH_OF_NOTHING 0xCBF29CE484222325u
+uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
 /* Point count, points, triangles and every optional array. */
 uint64_t core_hash(const mcor_surface* surface);
 

@@ -1,0 +1,200 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The smallest runs that reach all kernels of adaptive cubes, probe, derivatives, box and period. Prints
+ * a hash of all bits of their results, for same_bits.cmake; whether these are right is tested elsewhere.
+ * With words: those of these runs. */
+
+#include "core_fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double rooms_weight = 0.4, rooms_isos[2] = { 0.6, 1.1 };
+
+/* Particles of spacing 1, and beside them some of spacing 4. */
+static core_set rooms_set(void)
+{
+  core_set set = core_make_set(27 + 27);
+  for (int i = 0; i < 54; ++i)
+  {
+    const int coarse = i >= 27, at = i % 27;
+    const double spacing = coarse ? 4 : 1;
+    const int cell[3] = { at % 3, at / 3 % 3, at / 9 };
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = spacing * cell[a] + (coarse && a == 0 ? 10 : 0);
+    }
+    set.smoothing_length[i] = 1.3 * spacing;
+    set.volume[i] = spacing * spacing * spacing;
+    set.scalar[i] = set.position[3 * i + 1] + 0.1 * (i * 7 % 13);
+    set.solid[i] = i % 9 == 4;
+  }
+  return set;
+}
+
+static void rooms_print(const mcor_context* context, const char* name, int64_t count, uint64_t hash)
+{
+  printf("form %d lanes, %s\n", context->cl.lanes, context->cl.is_cpu ? "CPU" : "GPU");
+  printf("%s: %lld, %016llx %s\n", name, (long long)count, (unsigned long long)hash,
+    mcor_last_error(context));
+  fflush(stdout);
+}
+
+static int rooms_surface(
+  mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
+{
+  mcor_surface surface;
+  const mcor_status status = mcor_extract(context, input, options, &surface);
+  int levels = 0;
+  for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
+  {
+    levels += surface.statistics.cells_of_level[l] > 0;
+  }
+  rooms_print(context, name, surface.triangle_count, core_hash(&surface));
+  const int good = status == MCOR_OK && surface.triangle_count > 0 &&
+    (levels > 1 || options->cube_size_mode == MCOR_CUBES_UNIFORM) &&
+    (surface.statistics.cap_triangles > 0 || !options->capping);
+  mcor_free_surface(&surface);
+  return good;
+}
+
+static mcor_options rooms_options(mcor_field field)
+{
+  mcor_options options = core_options(field == MCOR_WEIGHT_SUM ? &rooms_weight : rooms_isos);
+  options.field = field;
+  options.cube_size_factor = 1;
+  options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
+  options.boundary_flag = options.nearest_particle = options.iso_value = options.point_keys = 1;
+  return options;
+}
+
+static int rooms_adaptive(mcor_context* context, const mcor_input* input)
+{
+  mcor_options options = rooms_options(MCOR_WEIGHT_SUM);
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  int good = rooms_surface(context, "adaptive, free surface", input, &options);
+  options.iso_values = rooms_isos;
+  options.field = MCOR_SHEPARD;
+  options.iso_count = 2;
+  options.wall_share = 0.5;
+  options.vertex_threshold = 0.3;
+  good = rooms_surface(context, "adaptive, scalar", input, &options) && good;
+  options.has_box = 1;
+  for (int s = 0; s < 6; ++s)
+  {
+    options.box[s] = s % 2 == 0 ? -10 : (s == 1 ? 14 : 20);
+  }
+  return rooms_surface(context, "adaptive, box", input, &options) && good;
+}
+
+static int rooms_uniform(mcor_context* context, const mcor_input* input)
+{
+  mcor_options options = rooms_options(MCOR_SHEPARD);
+  mcor_input fine = *input;
+  fine.count = 27;
+  options.cube_size_factor = 0.6;
+  options.vertex_threshold = 0.1;
+  options.has_box = 1;
+  for (int s = 0; s < 6; ++s)
+  {
+    options.box[s] = s % 2 == 0 ? -3 : (s == 1 ? 1 : 5);
+  }
+  const int good = rooms_surface(context, "box", &fine, &options);
+  options.has_box = options.point_keys = 0;
+  options.field = MCOR_WEIGHT_SUM;
+  options.iso_values = &rooms_weight;
+  options.capping = 1;
+  for (int s = 0; s < 4; ++s)
+  {
+    options.periodic[s] = s % 2 == 0 ? 1 : 9;
+  }
+  return rooms_surface(context, "period, caps", &fine, &options) && good;
+}
+
+static int rooms_probe(mcor_context* context, const mcor_input* input)
+{
+  const double at[15] = { 0, 0, 0, 1.2, 0.3, 0.7, 10.5, 2, 3, 60, 0, 0, 2, 2, 2 };
+  double* points = core_copy(at, sizeof at);
+  const mcor_array array = core_array(points, 3);
+  int good = 1;
+  for (int field = MCOR_SHEPARD; field <= MCOR_SUM; ++field)
+  {
+    mcor_options options = rooms_options((mcor_field)field);
+    mcor_samples samples;
+    const mcor_status status = mcor_probe(context, input, &options, &array, 5, &samples);
+    good = status == MCOR_OK && samples.valid[0] && !samples.valid[3] && good;
+    uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, samples.weight_sum, 5 * sizeof(double));
+    hash = core_hash_bytes(hash, samples.weight_gradient, 15 * sizeof(double));
+    for (int a = 0; a < samples.attribute_count; ++a)
+    {
+      const size_t bytes = (a == 0 ? 15 : 5) * sizeof(double);
+      hash = core_hash_bytes(hash, samples.values[a], bytes);
+      hash = core_hash_bytes(hash, samples.gradients[a], 3 * bytes);
+    }
+    rooms_print(context, "probe", samples.count, hash);
+    mcor_free_samples(&samples);
+  }
+  free(points);
+  return good;
+}
+
+static int rooms_derive(mcor_context* context, const mcor_input* input)
+{
+  int good = 1;
+  for (int form = MCOR_GRADIENT_CORRECTED; form <= MCOR_GRADIENT_STANDARD; ++form)
+  {
+    const mcor_options options = rooms_options(MCOR_SHEPARD);
+    mcor_derivatives d;
+    const mcor_status status = mcor_derive(context, input, &options, (mcor_gradient)form, &d);
+    good = status == MCOR_OK && d.gradients[0] && d.gradients[1] && good;
+    const size_t n = (size_t)d.count;
+    uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, d.corrected, n);
+    for (int a = 0; a < d.attribute_count; ++a)
+    {
+      hash = core_hash_bytes(hash, d.gradients[a], n * (a == 0 ? 9 : 3) * sizeof(double));
+    }
+    rooms_print(context, "derive", d.count, hash);
+    mcor_free_derivatives(&d);
+  }
+  return good;
+}
+
+typedef struct rooms_run
+{
+  const char* name;
+  int (*run)(mcor_context*, const mcor_input*);
+} rooms_run;
+
+int main(int argc, char** argv)
+{
+  static const rooms_run runs[] = { { "adaptive", rooms_adaptive }, { "uniform", rooms_uniform },
+    { "probe", rooms_probe }, { "derive", rooms_derive } };
+  mcor_context* context = NULL;
+  if (mcor_create_context(NULL, &context) != MCOR_OK)
+  {
+    fprintf(stderr, "%s\n", mcor_last_error(context));
+    mcor_free_context(context);
+    return 1;
+  }
+  core_set set = rooms_set();
+  set.has_solids = 1;
+  const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
+  mcor_input input = core_input(&set);
+  input.attributes = attributes;
+  input.attribute_count = 2;
+  int good = 1;
+  for (size_t i = 0; i < sizeof runs / sizeof runs[0]; ++i)
+  {
+    int wanted = argc == 1;
+    for (int a = 1; a < argc; ++a)
+    {
+      wanted = wanted || strcmp(argv[a], runs[i].name) == 0;
+    }
+    good = (!wanted || runs[i].run(context, &input)) && good;
+  }
+  mcor_free_context(context);
+  core_free_set(&set);
+  return good ? 0 : 1;
+}

@@ -47,6 +47,7 @@ typedef struct fuzz_call
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
 int fuzz_finite(const double* values, int64_t count);
 void fuzz_check_bits(const void* a, const void* b, size_t bytes);
+void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
 
 /* fuzz_rooms.c. Sets box, period, walls and cubes; then globals, ranks, probe and derivatives of the same
  * call. */

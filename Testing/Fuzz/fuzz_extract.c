@@ -231,7 +231,7 @@ void fuzz_check_bits(const void* a, const void* b, size_t bytes)
   FUZZ_CHECK(!a || bytes == 0 || memcmp(a, b, bytes) == 0);
 }
 
-static void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
+void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
 {
   FUZZ_CHECK(a->point_count == b->point_count && a->triangle_count == b->triangle_count);
   const mcor_statistics *p = &a->statistics, *q = &b->statistics;
@@ -249,6 +249,7 @@ static void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
   fuzz_check_bits(a->boundary_flag, b->boundary_flag, n);
   fuzz_check_bits(a->iso_value, b->iso_value, n * sizeof(double));
   fuzz_check_bits(a->nearest_particle, b->nearest_particle, n * sizeof(int64_t));
+  fuzz_check_bits(a->point_keys, b->point_keys, n * MCOR_POINT_KEY * sizeof(uint64_t));
   FUZZ_CHECK(a->attribute_count == b->attribute_count);
   for (int i = 0; i < a->attribute_count; ++i)
   {

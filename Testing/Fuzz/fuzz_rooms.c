@@ -45,36 +45,34 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   }
 }
 
-/* Levels that are not allowed are uniform cubes. */
-static void fuzz_one_level(const fuzz_call* call)
-{
-  mcor_context* context = fuzz_context(call, 1);
-  mcor_options options = call->options;
-  mcor_surface surfaces[2];
-  mcor_status status[2];
-  options.seeds = MCOR_COMPLETE; /* adaptive cubes go with nothing else */
-  options.point_keys = options.capping = 0;
-  memset(options.periodic, 0, sizeof options.periodic);
-  for (int uniform = 0; uniform < 2; ++uniform)
-  {
-    options.cube_size_mode = uniform ? MCOR_CUBES_UNIFORM : MCOR_CUBES_ADAPTIVE;
-    options.level_limit = 0;
-    status[uniform] = mcor_extract(context, &call->input, &options, &surfaces[uniform]);
-  }
-  FUZZ_CHECK(status[0] == status[1]);
-  FUZZ_CHECK(surfaces[0].point_count == surfaces[1].point_count);
-  fuzz_check_bits(
-    surfaces[0].points, surfaces[1].points, (size_t)surfaces[0].point_count * 3 * sizeof(double));
-  fuzz_check_bits(surfaces[0].triangles, surfaces[1].triangles,
-    (size_t)surfaces[0].triangle_count * 3 * sizeof(int32_t));
-  mcor_free_surface(&surfaces[0]);
-  mcor_free_surface(&surfaces[1]);
-}
-
 static void fuzz_check_failure(const mcor_context* context, mcor_status status)
 {
   FUZZ_CHECK(status > MCOR_OK && status < MCOR_CANCELLED && status != MCOR_DEVICE_ERROR);
   FUZZ_CHECK(mcor_last_error(context)[0] != '\0');
+}
+
+/* Two ways to one surface, or to one failure. */
+static void fuzz_check_alike(
+  const fuzz_call* call, const mcor_options* options, const mcor_options* others)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  mcor_surface surfaces[2];
+  const mcor_status status = mcor_extract(context, &call->input, options, &surfaces[0]);
+  FUZZ_CHECK(mcor_extract(context, &call->input, others, &surfaces[1]) == status);
+  fuzz_check_same(&surfaces[0], &surfaces[1]);
+  mcor_free_surface(&surfaces[0]);
+  mcor_free_surface(&surfaces[1]);
+}
+
+/* Levels that are not allowed are uniform cubes. */
+static void fuzz_one_level(const fuzz_call* call)
+{
+  mcor_options uniform = call->options, adaptive = call->options;
+  adaptive.seeds = uniform.seeds = MCOR_COMPLETE;
+  adaptive.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  adaptive.level_limit = 0;
+  uniform.cube_size_mode = MCOR_CUBES_UNIFORM;
+  fuzz_check_alike(call, &adaptive, &uniform);
 }
 
 /* A run with globals measured of its own input is a run without. */
@@ -82,34 +80,48 @@ static void fuzz_globals(const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
   mcor_globals globals;
-  mcor_surface surfaces[2] = { { 0 } };
-  mcor_options options = call->options;
-  options.cube_size_mode = MCOR_CUBES_UNIFORM; /* neither adaptive ones nor caps go with them */
-  options.capping = 0;
-  const mcor_status measured = mcor_measure_globals(context, &call->input, &options, &globals);
+  mcor_options alone = call->options;
+  alone.capping = 0; /* caps do not go with them */
+  mcor_options given = alone;
+  given.globals = &globals;
+  const mcor_status measured = mcor_measure_globals(context, &call->input, &alone, &globals);
   if (measured != MCOR_OK)
   {
     fuzz_check_failure(context, measured);
-    FUZZ_CHECK(!globals.components && globals.fluid_particles == 0);
+    FUZZ_CHECK(!globals.components && !globals.splits && globals.fluid_particles == 0);
     return;
   }
-  mcor_status status[2];
-  for (int given = 0; given < 2; ++given)
-  {
-    options.globals = given ? &globals : NULL;
-    status[given] = mcor_extract(context, &call->input, &options, &surfaces[given]);
-  }
-  FUZZ_CHECK(status[0] == status[1]);
-  FUZZ_CHECK(surfaces[0].point_count == surfaces[1].point_count);
-  fuzz_check_bits(
-    surfaces[0].points, surfaces[1].points, (size_t)surfaces[0].point_count * 3 * sizeof(double));
-  fuzz_check_bits(surfaces[0].triangles, surfaces[1].triangles,
-    (size_t)surfaces[0].triangle_count * 3 * sizeof(int32_t));
-  for (int given = 0; given < 2; ++given)
-  {
-    mcor_free_surface(&surfaces[given]);
-  }
+  fuzz_check_alike(call, &alone, &given);
   mcor_free_globals(&globals);
+}
+
+/* The cells' centres on either side of a plane: their surfaces make the whole. */
+static void fuzz_halves(const fuzz_call* call)
+{
+  mcor_context* context = fuzz_context(call, 1);
+  mcor_options options = call->options;
+  int64_t triangles[3] = { 0 }, cells[3] = { 0 };
+  options.seeds = MCOR_COMPLETE; /* pairs go with boxes where there are ranks */
+  options.capping = 0;
+  for (int part = 0; part < 3; ++part)
+  {
+    mcor_surface surface;
+    options.has_box = part > 0;
+    for (int s = 0; s < 6; ++s)
+    {
+      options.box[s] = s % 2 == 0 ? -INFINITY : INFINITY;
+    }
+    options.box[part == 1] = part == 0 ? -INFINITY : call->iso[0];
+    if (mcor_extract(context, &call->input, &options, &surface) != MCOR_OK)
+    {
+      return; /* one may need more memory than another */
+    }
+    triangles[part] = surface.triangle_count;
+    cells[part] = surface.statistics.cells_used;
+    mcor_free_surface(&surface);
+  }
+  FUZZ_CHECK(cells[1] + cells[2] == cells[0]);
+  FUZZ_CHECK(triangles[1] + triangles[2] == triangles[0]);
 }
 
 /* A rank alone; one of its callbacks fails. */
@@ -177,16 +189,14 @@ static void fuzz_ranks(unsigned failing, const fuzz_call* call)
   {
     options.globals = &globals;
     status = mcor_extract(context, &call->input, &options, &surface);
-    FUZZ_CHECK(status != MCOR_OK || surface.point_count == alone.point_count);
     if (status == MCOR_OK)
     {
-      fuzz_check_bits(surface.points, alone.points, (size_t)alone.point_count * 3 * sizeof(double));
+      fuzz_check_same(&surface, &alone);
     }
     mcor_free_surface(&surface);
   }
   const int failed = rank.calls > rank.failing;
-  FUZZ_CHECK(failed ? status == MCOR_CANCELLED
-                    : status == expected || options.cube_size_mode != MCOR_CUBES_UNIFORM);
+  FUZZ_CHECK(status == (failed ? MCOR_CANCELLED : expected));
   FUZZ_CHECK(status == MCOR_OK || mcor_last_error(context)[0] != '\0');
   mcor_free_globals(&globals);
   mcor_free_surface(&alone);
@@ -290,6 +300,7 @@ void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   if (rooms >> 3 & 1)
   {
     fuzz_globals(call);
+    fuzz_halves(call);
   }
   if (rooms >> 4 & 1)
   {

@@ -211,6 +211,8 @@ static void test_lattice_limits(void** state)
   CAPACITY("cube size|axis 0|larger", call.set.position[0] = 1e9);
   CAPACITY("cube size|axis 2|larger", call.set.position[2] = -1e300);
   CAPACITY("cube size 1e-09|larger", call.options.cube_size = 1e-9);
+  CAPACITY("1e+15 away from the origin|digits",
+    for (int64_t i = 0; i < 3 * call.set.count; ++i) { call.set.position[i] += 1e15; });
   CAPACITY("cube size", call.options.cube_size_factor = 1e-300);
   CAPACITY("cube size", call.set.smoothing_length[5] = 1e-30);
   CAPACITY("cube size", call.set.smoothing_length[5] = 1e300);

@@ -335,6 +335,8 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 
 /* Elements that kernels count: rounded up to any work-group or batch, it still is an int. */
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
+/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-9 cubes. */
+#define MCOR_LATTICE_LIMIT (1 << 20)
 
 /* Whether vertex v is put out, being used by a triangle: as point scanned[v] of its mesh. */
 static inline bool mcor_is_output(const cl_int* scanned, int64_t v)

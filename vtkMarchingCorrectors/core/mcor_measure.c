@@ -12,9 +12,6 @@
 #include <float.h>
 #include <math.h>
 
-/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-9 cubes. */
-#define MCOR_LATTICE_LIMIT (1 << 20)
-
 /* Support radius in cubes at least: below, no node is likely to see a particle. */
 #define MCOR_LEAST_SUPPORT 1e-3
 
@@ -219,6 +216,8 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
   return MCOR_OK;
 }
 
+#define MCOR_FARTHEST 1e15 /* from the origin, in cubes: nodes are whole numbers of them */
+
 /* The virtual grid that covers what the particles' supports reach. */
 static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
 {
@@ -242,12 +241,15 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   for (int a = 0; a < 3; ++a)
   {
     const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
-    MCOR_RETURN_IF(
-      !(fabs(first) < 1e15) || !(fabs(last) < 1e15) || last - first > MCOR_LATTICE_LIMIT, context,
-      MCOR_OUT_OF_CAPACITY,
+    MCOR_RETURN_IF(!(last - first <= MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
       "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
       "Use a larger cube size, or remove particles that are far away from the rest.",
       cube, last - first, a, MCOR_LATTICE_LIMIT);
+    MCOR_RETURN_IF(!(fabs(first) < MCOR_FARTHEST) || !(fabs(last) < MCOR_FARTHEST), context,
+      MCOR_OUT_OF_CAPACITY,
+      "The particles are about %g away from the origin, but a number has no digits for cubes of size "
+      "%g there. Move the particles towards the origin.",
+      fmax(fabs(m->low[a]), fabs(m->high[a])), cube);
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
     if (unit > 0)
     {

@@ -84,10 +84,13 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     return MCOR_OK;
   }
   const double least = ceil(length[axis] / *cube * (1 - MCOR_PERIOD_ERROR));
-  const int64_t fewest = least < 1e6 ? (int64_t)least : 0;
-  int64_t count = fewest > 0 ? mcor_count_graded_cubes(length, axis, fewest, &lattice->top) : 0;
-  count =
-    count == 0 && fewest > 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
+  MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_INVALID_ARGUMENT,
+    "With cube size %g there would be %.3g cubes in the period along %c; %d is the limit. Use a "
+    "larger cube size, or a shorter period.",
+    *cube, least, 'x' + axis, MCOR_LATTICE_LIMIT);
+  const int64_t fewest = (int64_t)least;
+  int64_t count = mcor_count_graded_cubes(length, axis, fewest, &lattice->top);
+  count = count == 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
     "The periods %g, %g and %g (0: open) are not all whole numbers of a cube size near %g. Give "
     "another cube size, or periods to all their digits.",

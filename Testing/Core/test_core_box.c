@@ -262,11 +262,53 @@ static void bad_boxes(void** state)
   core_free_set(&set);
 }
 
+/* Values that no measure gives are refused, whoever made them up. */
+static void impossible_globals(void** state)
+{
+  const double iso = 0;
+  core_set set = core_make_block(5, 0.2, 3, core_ball);
+  mcor_input input = core_input(&set);
+  const mcor_array attribute = input.scalar;
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(&iso);
+  mcor_globals measured;
+  mcor_surface surface;
+  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &measured));
+#define IMPOSSIBLE(change)                                                                         \
+  do                                                                                               \
+  {                                                                                                \
+    mcor_globals globals = measured;                                                               \
+    globals.change;                                                                                \
+    options.globals = &globals;                                                                    \
+    assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);     \
+    CORE_CHECK(!surface.points && mcor_last_error(*state)[0], #change);                            \
+  } while (0)
+  IMPOSSIBLE(components = NULL);
+  IMPOSSIBLE(component_count = -1);
+  IMPOSSIBLE(split_count = -1);
+  IMPOSSIBLE(fluid_particles = -1);
+  IMPOSSIBLE(low[1] = NAN);
+  IMPOSSIBLE(high[2] = -100);
+  IMPOSSIBLE(smoothing_length_min = 0);
+  IMPOSSIBLE(smoothing_length_max = 1e-3);
+  IMPOSSIBLE(support_max = 0.01);
+  IMPOSSIBLE(scalar_shift = INFINITY);
+  IMPOSSIBLE(wall_share = NAN);
+#undef IMPOSSIBLE
+  options.globals = &measured;
+  CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
+  mcor_free_surface(&surface);
+  mcor_free_globals(&measured);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(trimmed_surfaces),
     cmocka_unit_test(rough_surfaces), cmocka_unit_test(other_fields),
     cmocka_unit_test(kept_particles), cmocka_unit_test(given_globals),
-    cmocka_unit_test(small_boxes), cmocka_unit_test(bad_boxes) };
+    cmocka_unit_test(impossible_globals), cmocka_unit_test(small_boxes),
+    cmocka_unit_test(bad_boxes) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -58,6 +58,27 @@ static mcor_status mcor_check_capping(mcor_context* context, const mcor_options*
   return MCOR_OK;
 }
 
+/* What no measure gives; of nothing, ranges are empty. */
+static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
+{
+  bool good = g->fluid_particles >= 0 && g->solid_particles >= 0 && g->component_count >= 0 &&
+    (g->components || g->component_count == 0) && g->split_count >= 0;
+  for (int a = 0; a < 3 && good && g->fluid_particles > 0; ++a)
+  {
+    good = g->low[a] <= g->high[a];
+  }
+  if (good && g->fluid_particles > 0)
+  {
+    good = g->smoothing_length_min > 0 && g->smoothing_length_min <= g->smoothing_length_max &&
+      g->support_min > 0 && g->support_min <= g->support_max && g->smoothing_length >= 0 &&
+      isfinite(g->scalar_shift) && g->mass_max >= 0 && g->wall_share >= 0 && g->wall_share <= 1;
+  }
+  MCOR_RETURN_IF(!good, context, MCOR_INVALID_ARGUMENT,
+    "The given global values are none of an input. Take those that mcor_measure_globals has "
+    "measured.");
+  return MCOR_OK;
+}
+
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
 #define MCOR_NEED(condition, ...)                                                                  \
@@ -114,6 +135,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
   }
 #undef MCOR_NEED
   MCOR_TRY(mcor_check_adaptive(context, options));
+  MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
   return mcor_check_box(context, options);
 }
 

@@ -296,8 +296,8 @@ public:
    * that reach a brick of 4^3 cubes have at least 2, 4, ... times the smallest smoothing length, its
    * cubes are as many times larger; bricks that touch differ by a factor of 2 at most. The surface is
    * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
-   * for all, the same as UNIFORM. Ambiguous cells are then connected as the table says. Not with
-   * pairs as seeds. CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The field data have
+   * for all, the same as UNIFORM. Ambiguous cells are then connected as the table says.
+   * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The field data have
    * CellsOfLevel, TrianglesOfLevel, FlatCaps, and HighestLevel, to which periods may limit it.
    */
   vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);

@@ -199,7 +199,8 @@ public:
     }
     const double h = this->Globals.smoothing_length_max;
     const double pairs = o.seeds == MCOR_PAIRS && o.field != MCOR_WEIGHT_SUM
-      ? h + std::max(h, this->Globals.support_max)
+      ? h + std::max(h, this->Globals.support_max) +
+        mcor_reach_margin(&this->Options, &this->Globals, h) - this->LeastMargin
       : 0.0;
     for (double& radius : radii)
     {

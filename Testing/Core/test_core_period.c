@@ -264,6 +264,34 @@ static void adaptive_cubes(void** state)
   }
 }
 
+/* Pairs in one place alone, off the sides, as of uniform cubes; from there across sides, and levels. */
+static void adaptive_pairs(void** state)
+{
+  const double iso = 0.27;
+  const int length[3] = { 16, 16, 8 };
+  const double along[6] = { 0, 16, 0, 16, 0, 0 };
+  core_set set = make_period(length, 6);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double x = set.position[3 * i];
+    set.smoothing_length[i] = x > 4 && x < 6 ? 1.3 : x > 13 || x < 1 ? 0.3 : 0.6;
+    set.scalar[i] = sin(2 * PI * (x + set.position[3 * i + 1]) / 16);
+  }
+  mcor_options options = period_options(&iso, along);
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.seeds = MCOR_PAIRS;
+  options.h_scale = 3;
+  options.cube_size = 0.25;
+  const mcor_input input = core_input(&set);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const mcor_statistics* s = &surface.statistics;
+  assert_true(s->cells_of_level[0] > 100 && s->cells_of_level[1] > 100);
+  assert_true(s->seed_cells - s->seed_cells_not_intersected < s->cells_used / 4);
+  mcor_free_surface(&surface);
+  check_images(*state, "pairs, adaptive", &set, &options, 0);
+  core_free_set(&set);
+}
+
 /* Particles shifted by whole cubes, and taken out of the period by some: the same surface, shifted.
  * Lengths are powers of 2, so that nothing is rounded. */
 static void shifts(void** state)
@@ -497,7 +525,7 @@ static void derivatives_see_images(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
-    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
+    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
     cmocka_unit_test(lengths), cmocka_unit_test(points_see_images),
     cmocka_unit_test(derivatives_see_images) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

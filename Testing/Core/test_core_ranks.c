@@ -410,6 +410,20 @@ static void check_pairs(mcor_context* context, const core_set* set, const mcor_o
   mcor_free_globals(&job.globals);
 }
 
+/* A rank without memory: the other is told. */
+static void check_thirsty(
+  mcor_context* context, const core_set* set, const mcor_options* options, const double* side)
+{
+  pairs_job job = { .set = set, .options = options, .sides = side, .thirsty = 1 };
+  const mcor_input input = core_input(set);
+  CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
+  core_world world;
+  core_run_ranks(2, extract_part, &job, &world);
+  assert_int_equal(job.status[0], MCOR_CANCELLED);
+  assert_int_equal(job.status[1], MCOR_OUT_OF_CAPACITY);
+  mcor_free_globals(&job.globals);
+}
+
 static void pairs_in_rounds(void** state)
 {
   const double iso[2] = { 0.3, 2 };
@@ -424,14 +438,30 @@ static void pairs_in_rounds(void** state)
   check_pairs(*state, &set, &options, 2, two);
   check_pairs(*state, &set, &options, 3, three);
   check_pairs(*state, &set, &options, 8, eight);
-  pairs_job job = { .set = &set, .options = &options, .sides = two, .thirsty = 1 };
-  const mcor_input input = core_input(&set);
-  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
-  core_world world;
-  core_run_ranks(2, extract_part, &job, &world);
-  assert_int_equal(job.status[0], MCOR_CANCELLED);
-  assert_int_equal(job.status[1], MCOR_OUT_OF_CAPACITY);
-  mcor_free_globals(&job.globals);
+  check_thirsty(*state, &set, &options, two);
+  core_free_set(&set);
+}
+
+/* The same of adaptive cubes: across sides that cut cells, of three levels. */
+static void adaptive_pairs_in_rounds(void** state)
+{
+  const double iso[2] = { 0.3, 2 };
+  const double two[] = { 0.4 }, eight[] = { -1000, -7, -3, -0.05, 0.1, 4.4, 1000 };
+  core_set set = make_band();
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] *= set.position[3 * i] > 3 ? 0.5 : 1;
+  }
+  mcor_options options = core_options(iso);
+  options.iso_count = 2;
+  options.seeds = MCOR_PAIRS;
+  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.cube_size_factor = 1;
+  options.h_scale = 3.5;
+  check_pairs(*state, &set, &options, 1, NULL);
+  check_pairs(*state, &set, &options, 2, two);
+  check_pairs(*state, &set, &options, 8, eight);
+  check_thirsty(*state, &set, &options, two);
   core_free_set(&set);
 }
 
@@ -439,6 +469,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
     cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults),
-    cmocka_unit_test(pairs_in_rounds) };
+    cmocka_unit_test(pairs_in_rounds), cmocka_unit_test(adaptive_pairs_in_rounds) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -148,6 +148,15 @@ const std::vector<Case> Cases = {
       f->SetCubeSizeModeToAdaptive();
       f->SetPeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
     } },
+  { "adaptive cubes, pairs", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourDamBreak(f);
+      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      f->SetCubeSizeFactor(0.8);
+      f->SetCubeSizeModeToAdaptive();
+      f->SetSeedModeToPairs();
+    } },
   { "smoothing lengths that differ", "dam_break_45k",
     [](vtkMarchingCorrectors* f)
     {

@@ -190,7 +190,7 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
     at.options.boundary_eigenvalue = 1;
   }
   at.options.cube_size_mode = one.Graded ? MCOR_CUBES_ADAPTIVE : MCOR_CUBES_UNIFORM;
-  at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0 || one.Graded;
+  at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;
   at.no_table = one.Graded;
   if (one.PeriodAxis)
   {

@@ -99,7 +99,7 @@ extern "C"
    * to the last bit. With MCOR_TOPOLOGY_FIELD the field decides on faces between two cubes that no
    * finer cube touches, and in such cubes; other ambiguous faces are as with MCOR_TOPOLOGY_TABLE.
    * With a period, which is a whole number of the largest bricks, there may be fewer levels: see
-   * mcor_statistics.highest_level. Not with MCOR_PAIRS. */
+   * mcor_statistics.highest_level. */
   typedef enum mcor_cube_size_mode
   {
     MCOR_CUBES_UNIFORM = 0, /* all alike; the default */

@@ -54,8 +54,9 @@
 /* ---- Cells ---- */
 
 /* The box's sides for cells of all levels, whose centres are at whole numbers of halves. Without end where the
- * box is not: large cells stick out of the lattice. */
-static void mcor_place_halves(mcor_context* context, const mcor_options* options, int axis)
+ * box is not: large cells stick out of the lattice. everywhere: all particles are on the device. */
+static void mcor_place_halves(
+  mcor_context* context, const mcor_options* options, int axis, bool everywhere)
 {
   mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
@@ -66,10 +67,10 @@ static void mcor_place_halves(mcor_context* context, const mcor_options* options
   {
     const int side = s == 0 ? box->first[axis] : box->last[axis], end = s == 0 ? first : last;
     const double at = options->has_box ? ceil(2 * (options->box[2 * axis + s] / lattice->cube)) : 0;
-    box->halves[3 * s + axis] = side != end ? (int)(at - 2 * (double)lattice->origin[axis])
-      : periodic                            ? 2 * end
-      : s == 0                              ? -(1 << 30)
-                                            : 1 << 30;
+    const int open = periodic ? 2 * end : s == 0 ? -(1 << 30) : 1 << 30;
+    const int half = side == end ? open : (int)(at - 2 * (double)lattice->origin[axis]);
+    box->halves[3 * s + axis] = half;
+    box->near[3 * s + axis] = everywhere ? open : half;
   }
 }
 
@@ -114,7 +115,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
-    mcor_place_halves(context, options, a);
+    mcor_place_halves(context, options, a, everywhere);
     box->begin[a] = everywhere ? (int)first : box->first[a];
     box->end[a] = everywhere ? (int)last : box->last[a];
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;

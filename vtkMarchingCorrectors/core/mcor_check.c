@@ -36,15 +36,6 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   return MCOR_OK;
 }
 
-/* What adaptive cubes do not go with. */
-static mcor_status mcor_check_adaptive(mcor_context* context, const mcor_options* options)
-{
-  MCOR_RETURN_IF(options->cube_size_mode == MCOR_CUBES_ADAPTIVE && mcor_wants_pairs(options),
-    context, MCOR_INVALID_ARGUMENT,
-    "Adaptive cubes do not go with pairs as seeds. Use uniform cubes.");
-  return MCOR_OK;
-}
-
 /* Caps are made of the whole of each side. */
 static mcor_status mcor_check_capping(mcor_context* context, const mcor_options* options)
 {
@@ -134,7 +125,6 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       options->iso_values[i]);
   }
 #undef MCOR_NEED
-  MCOR_TRY(mcor_check_adaptive(context, options));
   MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
   return mcor_check_box(context, options);
 }

@@ -11,6 +11,7 @@
 
 #include "mcor_graded.h"
 #include "mcor_graded_box.h"
+#include "mcor_graded_pair.h"
 #include "mcor_graded_seed.h"
 #include "mcor_graded_topology.h"
 #include "mcor_tree.h"
@@ -274,15 +275,24 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
     MCOR_BUFFER(&(c)->case_table)
 
 /* Finds the used cells; counts vertices and triangles. */
-static mcor_status mcor_count_leaves(mcor_context* context)
+static mcor_status mcor_count_leaves(mcor_context* context, double iso)
 {
   mcor_graded* graded = &context->graded;
   mcor_mesh* mesh = &context->mesh;
   const int count = graded->count, slots = context->bricks.now.count;
   const size_t n = (size_t)count, s = (size_t)slots;
+  int64_t seeds;
   MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_limit_leaves(context));
+  MCOR_TRY(mcor_limit_leaves(context, &seeds));
+  if (mcor_uses_pairs(context))
+  {
+    int marked;
+    MCOR_TRY(mcor_keep_reached(context, iso, &marked));
+    seeds = marked;
+  }
+  context->statistics->seed_cells += seeds;
+  context->statistics->seed_cells_not_intersected += seeds;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
@@ -308,12 +318,11 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   mcor_graded* graded = &context->graded;
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->statistics;
-  int caps, used;
+  int caps, used, hits;
   MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
   MCOR_TRY(mcor_count_owned(context, &used));
   s->flat_caps += caps;
   s->cells_used += used;
-  s->seed_cells_not_intersected -= used;
   cl_int cells[2] = { 0, 0 };
   for (int l = 0; l <= context->tree.top; ++l)
   {
@@ -325,6 +334,9 @@ static mcor_status mcor_count_by_level(mcor_context* context)
     cells[0] = cells[1];
   }
   mesh->level_first[0][0] = 0;
+  hits = used;
+  MCOR_TRY(mcor_uses_pairs(context) ? mcor_count_pair_hits(context, &hits) : MCOR_OK);
+  s->seed_cells_not_intersected -= hits;
   return MCOR_OK;
 }
 
@@ -389,9 +401,9 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
   ++context->statistics->march_rounds;
   if (context->graded.count == 0)
   {
-    return MCOR_OK;
+    return mcor_uses_pairs(context) ? mcor_attend_growth(context) : MCOR_OK;
   }
-  MCOR_TRY(mcor_count_leaves(context));
+  MCOR_TRY(mcor_count_leaves(context, iso));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_leaves(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, context->bricks.now.count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, context->graded.count, &mesh->triangle_count));
@@ -412,5 +424,6 @@ void mcor_release_graded(mcor_context* context)
     &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
     &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
     &context->grid.view_levels, &context->grid.view_inv_h);
+  mcor_release_graded_pairs(context);
   mcor_release_tree(&context->tree);
 }

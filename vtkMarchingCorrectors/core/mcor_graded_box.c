@@ -7,30 +7,24 @@
 
 #include "mcor_graded_box.h"
 
-/* Limits the cells that may be used; counts seeds. */
-mcor_status mcor_limit_leaves(mcor_context* context)
+/* Limits the cells that may be used; *owned: how many are in the box. */
+mcor_status mcor_limit_leaves(mcor_context* context, int64_t* owned)
 {
   const mcor_graded* graded = &context->graded;
   const size_t bytes = (size_t)graded->count * sizeof(cl_ulong);
   mcor_buffer *used = &context->mesh.used, *clipped = &context->box.clipped;
-  int64_t seeds = 64 * (int64_t)graded->count;
+  *owned = 64 * (int64_t)graded->count;
   if (!context->box.is_part)
   {
-    MCOR_TRY(mcor_fill(context, used, 0xff, bytes));
+    return mcor_fill(context, used, 0xff, bytes);
   }
-  else
-  {
-    int owned;
-    MCOR_TRY(mcor_reserve(context, used, bytes));
-    MCOR_TRY(mcor_reserve(context, clipped, bytes));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, graded->count,
-      MCOR_LEAF_BOX_ARGS(context), MCOR_INT(graded->count), MCOR_BUFFER(used),
-      MCOR_BUFFER(clipped)));
-    MCOR_TRY(mcor_count_bits(context, clipped, clipped, graded->count, &owned));
-    seeds = owned;
-  }
-  context->statistics->seed_cells += seeds;
-  context->statistics->seed_cells_not_intersected += seeds;
+  int count;
+  MCOR_TRY(mcor_reserve(context, used, bytes));
+  MCOR_TRY(mcor_reserve(context, clipped, bytes));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, graded->count,
+    MCOR_LEAF_BOX_ARGS(context), MCOR_INT(graded->count), MCOR_BUFFER(used), MCOR_BUFFER(clipped)));
+  MCOR_TRY(mcor_count_bits(context, clipped, clipped, graded->count, &count));
+  *owned = count;
   return MCOR_OK;
 }
 

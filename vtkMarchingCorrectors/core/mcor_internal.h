@@ -190,6 +190,18 @@ typedef struct mcor_graded
   mcor_buffer flat;      /* int, of each leaf, scanned */
 } mcor_graded;
 
+/* Of adaptive cubes, which cells pairs reach; see mcor_graded_pair.c. Masks are of the leaves where there
+ * may be surface. */
+typedef struct mcor_graded_pairs
+{
+  int place_count;
+  mcor_buffer place_keys, place_leaves; /* ulong, sorted; int */
+  mcor_buffer seeds, reached, grown;    /* ulong: marked by pairs; by now; when last looked at */
+  mcor_buffer domain;                   /* ulong: where growth may go */
+  mcor_buffer heard;                    /* int4: cells that other boxes have reached */
+  mcor_buffer found;                    /* int: what a kernel found in any leaf */
+} mcor_graded_pairs;
+
 /* Of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
 {
@@ -252,13 +264,14 @@ typedef struct mcor_box
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
   int halves[6]; /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
+  int near[6];   /* the same of those whose particles are on the device */
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
   int begin[3], end[3]; /* the same of those whose particles are on the device */
   mcor_buffer owned;    /* uchar per triangle of the mesh: 1 of an owned cell */
   mcor_buffer clipped;  /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;        /* per triangle of the surface: as owned; NULL: all are */
-  cl_ulong* told;       /* per brick, cells that others know of; see mcor_pair_rounds.c */
+  cl_ulong* told;       /* per brick or leaf, cells that others know of; see mcor_pair_rounds.c */
   int told_count;
 } mcor_box;
 
@@ -282,6 +295,7 @@ struct mcor_context
   mcor_box box;
   mcor_tree tree;
   mcor_graded graded;
+  mcor_graded_pairs graded_pairs;
   int32_t* source;           /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift;        /* A0 */
   double largest_weight;     /* no particle has a greater V / (scaled h)^3 */
@@ -561,6 +575,7 @@ extern const char mcor_source_mcor_graded_seed_cl[];
 extern const char mcor_source_mcor_graded_cl[];
 extern const char mcor_source_mcor_graded_march_cl[];
 extern const char mcor_source_mcor_graded_topology_cl[];
+extern const char mcor_source_mcor_graded_pair_cl[];
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \

@@ -5,19 +5,39 @@
  * grown to its end, cells near its sides that are new are told to the boxes there, which go on from those in
  * them and in the ring around them, until none is new anywhere. Then each box has, of its cells and its
  * ring, those that one run over all would have examined: a step of growth begins in a used cell, whose
- * box has right values at its nodes, and ends in a cell of that box or of its ring. */
+ * box has right values at its nodes, and ends in a cell of that box or of its ring. Cells of adaptive cubes
+ * have a level; uniform ones have level 0. */
 
 #include "mcor_box.h"
+#include "mcor_graded.h"
+#include "mcor_graded_pair.h"
 #include "mcor_ranks.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A cell of the world's lattice. */
+/* A cell of the world's lattice of a level. */
 typedef struct mcor_world_cell
 {
-  int64_t at[3];
+  int64_t at[3], level;
 } mcor_world_cell;
+
+/* Cells as they are known here: masks of bricks, which are leaves of adaptive cubes. */
+typedef struct mcor_known_cells
+{
+  int count;
+  const mcor_buffer *bricks, *cells;
+} mcor_known_cells;
+
+static mcor_known_cells mcor_find_known(const mcor_context* context)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  const mcor_graded* graded = &context->graded;
+  return mcor_is_graded(context)
+    ? (mcor_known_cells){ graded->count, &graded->cells, &context->graded_pairs.reached }
+    : (mcor_known_cells){ now->count, &now->bricks, &now->cells };
+}
 
 typedef struct mcor_cell_list
 {
@@ -42,21 +62,27 @@ static mcor_status mcor_add_cell(
 }
 
 /* Whether other boxes may want to know of a cell: all beside it are not in this one. */
-static bool mcor_is_near_side(const mcor_box* box, const int64_t at[3])
+static bool mcor_is_near_side(const mcor_context* context, const int64_t at[3], int level)
 {
+  const mcor_box* box = &context->box;
+  const bool graded = mcor_is_graded(context);
+  const int64_t edge = INT64_C(2) << level; /* in halves of the smallest cubes */
   bool near = false;
   for (int a = 0; a < 3; ++a)
   {
-    near = near || at[a] <= box->begin[a] || at[a] >= box->end[a] - 1;
+    const int64_t begin = graded ? box->near[a] : 2 * (int64_t)box->begin[a];
+    const int64_t end = graded ? box->near[3 + a] : 2 * (int64_t)box->end[a];
+    near = near || (at[a] - 1) * edge < begin || (at[a] + 2) * edge > end;
   }
   return near;
 }
 
 /* Where it is in the period, from the lattice's origin. */
-static int64_t mcor_wrap_cell(const mcor_lattice* lattice, int axis, int64_t at)
+static int64_t mcor_wrap_cell(const mcor_lattice* lattice, int axis, int64_t at, int level)
 {
-  const int64_t period = lattice->period[axis], from = at - lattice->period_first[axis];
-  return period > 0 ? (from % period + period) % period + lattice->period_first[axis] : at;
+  const int64_t period = lattice->period[axis] / (1 << level);
+  const int64_t first = lattice->period_first[axis] / (1 << level), from = at - first;
+  return period > 0 ? (from % period + period) % period + first : at;
 }
 
 /* Lists a brick's cells near the sides of the box. */
@@ -64,16 +90,17 @@ static mcor_status mcor_list_brick(
   mcor_context* context, const cl_int brick[4], cl_ulong cells, mcor_cell_list* list)
 {
   const mcor_lattice* lattice = &context->lattice;
+  const int level = mcor_is_graded(context) ? brick[3] : 0;
   for (int c = 0; c < MCOR_BRICK_NODES; ++c)
   {
     const int64_t at[3] = { brick[0] * MCOR_BRICK + (c & 3), brick[1] * MCOR_BRICK + (c >> 2 & 3),
       brick[2] * MCOR_BRICK + (c >> 4) };
-    if (cells >> c & 1 && mcor_is_near_side(&context->box, at))
+    if (cells >> c & 1 && mcor_is_near_side(context, at, level))
     {
-      mcor_world_cell cell;
+      mcor_world_cell cell = { .level = level };
       for (int a = 0; a < 3; ++a)
       {
-        cell.at[a] = mcor_wrap_cell(lattice, a, at[a]) + lattice->origin[a];
+        cell.at[a] = mcor_wrap_cell(lattice, a, at[a], level) + lattice->origin[a] / (1 << level);
       }
       MCOR_TRY(mcor_add_cell(context, list, &cell));
     }
@@ -85,41 +112,51 @@ static mcor_status mcor_list_brick(
 static mcor_status mcor_list_new_cells(mcor_context* context, mcor_cell_list* list)
 {
   mcor_box* box = &context->box;
-  const mcor_brick_data* now = &context->bricks.now;
-  const size_t count = (size_t)now->count;
+  const mcor_known_cells known = mcor_find_known(context);
+  const size_t count = (size_t)known.count;
   void *bricks, *cells;
-  if (box->told_count < now->count)
+  if (box->told_count < known.count)
   {
     cl_ulong* told = realloc(box->told, count * sizeof *told);
     MCOR_RETURN_IF(
-      !told, context, MCOR_OUT_OF_CAPACITY, "Host memory for %d bricks ran out.", now->count);
+      !told, context, MCOR_OUT_OF_CAPACITY, "Host memory for %d bricks ran out.", known.count);
     memset(told + box->told_count, 0, (count - (size_t)box->told_count) * sizeof *told);
     box->told = told;
-    box->told_count = now->count;
+    box->told_count = known.count;
   }
   if (count == 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_map(context, &now->bricks, count * 4 * sizeof(cl_int), false, &bricks));
-  mcor_status status = mcor_map(context, &now->cells, count * sizeof(cl_ulong), false, &cells);
+  MCOR_TRY(mcor_map(context, known.bricks, count * 4 * sizeof(cl_int), false, &bricks));
+  mcor_status status = mcor_map(context, known.cells, count * sizeof(cl_ulong), false, &cells);
   for (size_t i = 0; i < count && status == MCOR_OK; ++i)
   {
     const cl_ulong mask = ((const cl_ulong*)cells)[i], fresh = mask & ~box->told[i];
     status = fresh ? mcor_list_brick(context, (const cl_int*)bricks + 4 * i, fresh, list) : MCOR_OK;
     box->told[i] = mask;
   }
-  const mcor_status unmapped = mcor_unmap(context, &now->cells, &cells);
-  const mcor_status last = mcor_unmap(context, &now->bricks, &bricks);
+  const mcor_status unmapped = mcor_unmap(context, known.cells, &cells);
+  const mcor_status last = mcor_unmap(context, known.bricks, &bricks);
   return status != MCOR_OK ? status : unmapped != MCOR_OK ? unmapped : last;
 }
 
-/* Of a cell's images at whole periods, those in the box and its ring, as the device wants them: four
- * numbers each. At most 27; returns how many. */
-static int mcor_place_cell(const mcor_context* context, const mcor_world_cell* cell, cl_int* to)
+/* Whether a cell is in the box or its ring, along an axis. */
+static bool mcor_is_near(const mcor_context* context, int axis, int64_t at, int level)
 {
   const mcor_box* box = &context->box;
+  const int64_t edge = INT64_C(2) << level; /* see mcor_graded_limit */
+  return mcor_is_graded(context)
+    ? (at + 2) * edge >= box->near[axis] && (at - 1) * edge <= box->near[3 + axis]
+    : at >= box->begin[axis] - MCOR_BOX_RING && at < box->end[axis] + MCOR_BOX_RING;
+}
+
+/* Of a cell's images at whole periods, those in the box and its ring, as the device wants them: four
+ * numbers each, the last one the level. At most 27; returns how many. */
+static int mcor_place_cell(const mcor_context* context, const mcor_world_cell* cell, cl_int* to)
+{
   const mcor_lattice* lattice = &context->lattice;
+  const int level = (int)cell->level;
   int count = 0;
   for (int image = 0; image < 27; ++image)
   {
@@ -127,12 +164,12 @@ static int mcor_place_cell(const mcor_context* context, const mcor_world_cell* c
     bool in = true;
     for (int a = 0; a < 3; ++a)
     {
-      const int64_t at = cell->at[a] - lattice->origin[a] + k[a] * (int64_t)lattice->period[a];
-      in = in && (k[a] == 0 || lattice->period[a] > 0) && at >= box->begin[a] - MCOR_BOX_RING &&
-        at < box->end[a] + MCOR_BOX_RING;
+      const int64_t at =
+        cell->at[a] + (k[a] * (int64_t)lattice->period[a] - lattice->origin[a]) / (1 << level);
+      in = in && (k[a] == 0 || lattice->period[a] > 0) && mcor_is_near(context, a, at, level);
       to[4 * count + a] = in ? (cl_int)at : 0;
     }
-    to[4 * count + 3] = 0;
+    to[4 * count + 3] = level;
     count += in;
   }
   return count;
@@ -182,8 +219,9 @@ static mcor_status mcor_hear_cells(
     }
     found += mcor_place_cell(context, told + i, places + 4 * found);
   }
-  const mcor_status status =
-    found > 0 ? mcor_take_cells(context, places, (int)found, fresh) : MCOR_OK;
+  const mcor_status status = found == 0 ? MCOR_OK
+    : mcor_is_graded(context)           ? mcor_take_reached(context, places, (int)found, fresh)
+                                        : mcor_take_cells(context, places, (int)found, fresh);
   free(places);
   return status;
 }
@@ -198,11 +236,12 @@ static mcor_status mcor_tell_cells(
     (long long)list->count);
   for (int64_t i = 0; i < 3 * list->count; ++i)
   {
-    places[i] = ((double)list->cells[i / 3].at[i % 3] + 0.5) * lattice->cube;
+    const mcor_world_cell* cell = &list->cells[i / 3];
+    places[i] = ((double)cell->at[i % 3] + 0.5) * ldexp(lattice->cube, (int)cell->level);
   }
   /* Boxes' sides are rounded to cells. */
   const mcor_status status = mcor_pass(context, list->cells, list->count, sizeof *list->cells,
-    places, (MCOR_BOX_RING + 1) * lattice->cube, all, count);
+    places, (MCOR_BOX_RING + 1) * ldexp(lattice->cube, lattice->top), all, count);
   free(places);
   return status;
 }
@@ -222,7 +261,8 @@ mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
   {
     status = mcor_tell_cells(context, &list, &all, &count);
   }
-  if (status == MCOR_OK && context->grid.count > 0)
+  const bool has_leaves = !mcor_is_graded(context) || context->graded.count > 0;
+  if (status == MCOR_OK && context->grid.count > 0 && has_leaves)
   {
     bool some;
     status = mcor_hear_cells(context, all, count, &some);
@@ -248,6 +288,7 @@ mcor_status mcor_attend_rounds(mcor_context* context, int first)
 {
   const bool all = context->options->ranks && mcor_uses_pairs(context);
   context->bricks.now.count = all ? 0 : context->bricks.now.count;
+  context->graded.count = all ? 0 : context->graded.count;
   for (int i = first; i < context->options->iso_count && all; ++i)
   {
     for (bool grown = true; grown;)

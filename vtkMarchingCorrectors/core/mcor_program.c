@@ -51,7 +51,6 @@ int mcor_program_sources(
     { mcor_source_mcor_seed_cl, LATTICE | FIELD | OPTIONS | GRADED },
     { mcor_source_mcor_block_cl, LATTICE | FIELD },
     { mcor_source_mcor_march_cl, LATTICE | FIELD | OPTIONS | GRADED },
-    { mcor_source_mcor_pair_cl, OPTIONS },
     { mcor_source_mcor_attribute_cl, FIELD | OPTIONS | PROBE },
     { mcor_source_mcor_evaluate_cl, FIELD | OPTIONS },
     { mcor_source_mcor_correct_cl, FIELD | OPTIONS },
@@ -64,6 +63,7 @@ int mcor_program_sources(
     { mcor_source_mcor_derive_cl, PROBE }, { mcor_source_mcor_graded_cell_h, GRADED },
     { mcor_source_mcor_graded_seed_cl, GRADED }, { mcor_source_mcor_graded_cl, GRADED },
     { mcor_source_mcor_graded_march_cl, GRADED }, { mcor_source_mcor_graded_topology_cl, GRADED },
+    { mcor_source_mcor_graded_pair_cl, GRADED }, { mcor_source_mcor_pair_cl, OPTIONS | GRADED },
     { mcor_source_mcor_end_cl, LATTICE } };
   int count = 0;
   for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)

@@ -111,6 +111,19 @@ ulong mcor_cell_all(const ulong* corners)
   return all;
 }
 
+/* Cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on both sides.
+ * */
+ulong mcor_cell_faces(const ulong* corners, int axis, int side)
+{
+  ulong some = 0, all = ~0UL;
+  for (int c = 0; c < 8; ++c)
+  {
+    some |= (c >> axis & 1) == side ? corners[c] : 0;
+    all &= (c >> axis & 1) == side ? corners[c] : ~0UL;
+  }
+  return some & ~all;
+}
+
 /* Cells that are valid at all nodes and have nodes on both sides. above: of their corners. */
 ulong mcor_cell_crossed(
   const ulong* above, __global const int* neighbours, __global const ulong* valid, int slot)

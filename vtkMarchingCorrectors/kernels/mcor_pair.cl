@@ -5,6 +5,11 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
+#if MCOR_OF_OPTIONS
+/* What marking takes, last among a kernel's parameters; mcor_graded_pair.cl has that of adaptive cubes. */
+#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint *cells
+#define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, cells
+
 /* Cells are found before their bricks have slots: `cells` has two words, 64 bits, for each brick
  * of each block. */
 void mcor_pair_seed_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* cells)
@@ -51,6 +56,26 @@ void mcor_pair_seed_line(
   }
 }
 
+/* Marks the cells between particles j and k. */
+void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
+{
+  const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
+  const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
+  real p[3], q[3];
+  int cell[3], end[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    /* Relative to the first cell, so that single precision suffices. */
+    cell[c] = (int)(own[c] >> grid->fix_bits);
+    end[c] = (int)(other[c] >> grid->fix_bits);
+    p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
+    q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
+  }
+  mcor_pair_seed_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
+}
+
+#endif
+
 /* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that
  * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
@@ -96,28 +121,9 @@ bool mcor_pair_is_chosen(const mcor_grid* grid, int j, int k, real iso, real h_s
   return r2 * own * own < 1 && (grid->value[j] >= iso || r2 * other * other >= 1);
 }
 
-/* Marks the cells between particles j and k. */
-void mcor_pair_seed_pair(
-  const mcor_grid* grid, MCOR_BLOCK_PARAMS, int j, int k, __global uint* cells)
-{
-  const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
-  const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
-  real p[3], q[3];
-  int cell[3], end[3];
-  for (int c = 0; c < 3; ++c)
-  {
-    /* Relative to the first cell, so that single precision suffices. */
-    cell[c] = (int)(own[c] >> grid->fix_bits);
-    end[c] = (int)(other[c] >> grid->fix_bits);
-    p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
-    q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
-  }
-  mcor_pair_seed_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
-}
-
 /* Marks the cells between particle j and the particles of the tile that pair with it. */
-void mcor_pair_seed_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mcor_query* query,
-  const mcor_tile* tile, int j, real iso, real h_scale, __global uint* cells)
+void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
+  int j, real iso, real h_scale, MCOR_MARK_PARAMS)
 {
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
@@ -129,7 +135,7 @@ void mcor_pair_seed_particle(const mcor_grid* grid, MCOR_BLOCK_PARAMS, const mco
       const int k = MCOR_INDEX(tile, i + lanes[c]);
       if (mcor_pair_is_chosen(grid, j, k, iso, h_scale))
       {
-        mcor_pair_seed_pair(grid, MCOR_BLOCK_ARGS, j, k, cells);
+        mcor_pair_seed_pair(grid, MCOR_MARK_ARGS, j, k);
       }
     }
   }
@@ -162,8 +168,8 @@ real mcor_pair_finest(const mcor_tile* tile)
 }
 
 /* Marks cells for particles [begin, end), which the query was fitted to. */
-void mcor_pair_seed_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_query* query,
-  int begin, int end, real iso, real h_scale, __global uint* cells)
+void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begin, int end,
+  real iso, real h_scale, MCOR_MARK_PARAMS)
 {
   mcor_tile tile;
   mcor_tile_init(&tile);
@@ -177,7 +183,7 @@ void mcor_pair_seed_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
-        mcor_pair_seed_particle(grid, MCOR_BLOCK_ARGS, query, &tile, j, iso, h_scale, cells);
+        mcor_pair_seed_particle(grid, query, &tile, j, iso, h_scale, MCOR_MARK_ARGS);
       }
     }
   }
@@ -186,8 +192,13 @@ void mcor_pair_seed_particles(const mcor_grid* grid, MCOR_BLOCK_PARAMS, mcor_que
 /* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
  * together first, as most particles are far from the surface. Reads the particles within the
  * smoothing length of each. Marks the cells between pairs that straddle the iso value. */
-__kernel void mcor_pair_seed(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const uchar* side_flags,
-  const real iso, const real h_scale, __global uint* cells)
+#if MCOR_OF_GRADED
+#define MCOR_PAIR_SEED mcor_graded_pair_seed
+#else
+#define MCOR_PAIR_SEED mcor_pair_seed
+#endif
+__kernel void MCOR_PAIR_SEED(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
+  const real h_scale, MCOR_MARK_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;
   const int most = MCOR_PAIR_VECTORS_OF(MCOR_LANES) * MCOR_LANES;
@@ -202,12 +213,13 @@ __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS, __global const
       next = i + mcor_pair_query(&grid, i, min(i + MCOR_LANES, row_end), h_scale, &query);
       if (mcor_query_side_flags(&grid, &query, side_flags) == 3)
       {
-        mcor_pair_seed_particles(&grid, MCOR_BLOCK_ARGS, &query, i, next, iso, h_scale, cells);
+        mcor_pair_seed_particles(&grid, &query, i, next, iso, h_scale, MCOR_MARK_ARGS);
       }
     }
   }
 }
 
+#if MCOR_OF_OPTIONS
 /* One work-item = one brick of a block. Reads its cells. Requests the bricks that have their
  * nodes. */
 __kernel void mcor_pair_request(
@@ -241,19 +253,6 @@ __kernel void mcor_pair_fill(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     const int4 brick = bricks[slot];
     cells[slot] = pair_cells[mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
   }
-}
-
-/* Cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on both sides.
- * corners: see mcor_cell_corners. */
-ulong mcor_pair_faces(const ulong* corners, int axis, int side)
-{
-  ulong some = 0, all = ~0UL;
-  for (int c = 0; c < 8; ++c)
-  {
-    some |= (c >> axis & 1) == side ? corners[c] : 0;
-    all &= (c >> axis & 1) == side ? corners[c] : ~0UL;
-  }
-  return some & ~all;
 }
 
 /* Hands cells to a brick; false where it has no slot yet. flags: 1 a cell is new, 2 a brick must be
@@ -310,8 +309,8 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   mcor_cell_corners(m);
   for (int a = 0; a < 3; ++a)
   {
-    faces[a] = mcor_pair_faces(m, a, 0);
-    upper[a] = mcor_pair_faces(m, a, 1);
+    faces[a] = mcor_cell_faces(m, a, 0);
+    upper[a] = mcor_cell_faces(m, a, 1);
   }
   const ulong crossed = mcor_cell_crossed(m, neighbours, valid, slot);
   ulong now = before;
@@ -388,3 +387,4 @@ __kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int count, __global const 
     atomic_or(flags, 1);
   }
 }
+#endif

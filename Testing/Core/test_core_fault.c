@@ -360,6 +360,11 @@ static void test_adaptive_cubes(void** state)
   s.options.field = MCOR_WEIGHT_SUM;
   s.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
   sweep_room(*state, &s, 7, 150);
+  s.options.field = MCOR_SHEPARD;
+  s.options.seeds = MCOR_PAIRS;
+  s.options.periodic[0] = -8;
+  s.options.periodic[1] = 8;
+  sweep_room(*state, &s, 11, 100);
   core_free_set(&set);
 }
 

@@ -292,11 +292,11 @@ public:
 
   ///@{
   /**
-   * Whether cubes are alike, see CubeSizeModeType; UNIFORM by default. ADAPTIVE: where all particles
+   * Whether cubes are alike, see CubeSizeModeType; ADAPTIVE by default: where all particles
    * that reach a brick of 4^3 cubes have at least 2, 4, ... times the smallest smoothing length, its
    * cubes are as many times larger; bricks that touch differ by a factor of 2 at most. The surface is
    * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
-   * for all, the same as UNIFORM. Ambiguous cells are then connected as the table says.
+   * for all, the same as UNIFORM. TOPOLOGY_FIELD decides between cubes that no finer one touches.
    * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The field data have
    * CellsOfLevel, TrianglesOfLevel, FlatCaps, and HighestLevel, to which periods may limit it.
    */
@@ -631,7 +631,7 @@ protected:
   double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   vtkTypeBool Capping = 0;
   int SeedMode = COMPLETE;
-  int CubeSizeMode = UNIFORM;
+  int CubeSizeMode = ADAPTIVE;
   int CubeLevelLimit = 24;
   int Partition = BY_PARTICLES;
   int Topology = TOPOLOGY_TABLE;

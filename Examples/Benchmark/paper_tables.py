@@ -117,7 +117,7 @@ def run_columns(benchmark, data, count, iso):
     def run(column, field, *more):
         return benchmark.program.run(path, (
             "--scalar", data.scalar, "--iso", iso, *which.options, "--no-attributes",
-            "--field", field, "--seeds", "pairs", "--h-scale", column["h_scale"],
+            "--field", field, "--seeds", "pairs", "--cubes", "uniform", "--h-scale", column["h_scale"],
             "--cube-factor", column["cube_factor"], *more))
 
     columns = []

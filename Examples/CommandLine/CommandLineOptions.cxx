@@ -106,7 +106,7 @@ const std::vector<Option>& AllOptions()
       [](Options& o, Text n, Text v) { o.CubeFactor = ToPositive(n, v); } },
     { "--cube-size", "D", "cube size itself, in the unit of the positions",
       [](Options& o, Text n, Text v) { o.CubeSize = ToPositive(n, v); } },
-    { "--cubes", "uniform|adaptive", "cubes alike (default), or as fine as the particles are",
+    { "--cubes", "uniform|adaptive", "cubes alike, or as fine as the particles are (default)",
       [](Options& o, Text n, Text v) {
         o.Cubes = ToChoice(n, v, { "uniform", "adaptive" });
       } },

@@ -45,7 +45,7 @@ struct CommandLineOptions
   double HScale = 1.0;
   double CubeFactor = 0.5;
   double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
-  std::string Cubes = "uniform";
+  std::string Cubes = "adaptive";
   int MaxLevel = 24;                   ///< of adaptive cubes
   std::string Partition = "particles"; ///< what processes have alike
   std::vector<double> Box;             ///< x0, x1, y0, y1, z0, z1; empty: all

@@ -44,7 +44,7 @@ PROPERTIES = {
     "VolumeArrayName": ("", "text"), "MassArrayName": ("", "text"), "DensityArrayName": ("", "text"),
     "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"), "Kernel": (0, "int", 0, 4),
     "HScaleFactor": (1.0, "real"), "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
-    "CubeSizeMode": (0, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
+    "CubeSizeMode": (1, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),

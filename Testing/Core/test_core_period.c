@@ -259,6 +259,15 @@ static void adaptive_cubes(void** state)
     assert_int_equal(surface.statistics.highest_level, i < 2 ? 2 : 1);
     assert_true(surface.statistics.cells_of_level[1] > 100);
     mcor_free_surface(&surface);
+    if (i == 0) /* flat sides are to be closed */
+    {
+      options.capping = 1;
+      surface = core_extract(*state, &input, &options);
+      assert_int_equal(surface.statistics.highest_level, 0);
+      assert_true(surface.statistics.cap_triangles > 0);
+      mcor_free_surface(&surface);
+      options.capping = 0;
+    }
     check_images(*state, i == 0 ? "adaptive" : i == 1 ? "free" : "fewer levels", &set, &options, 0);
     core_free_set(&set);
   }

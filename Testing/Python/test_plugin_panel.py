@@ -67,7 +67,7 @@ def first_apply(folder):
         APPLY, FILTERS, PAUSE,
         change("FreeSurface/CheckBox", "set_boolean", "true"),
         change("FluidArray/ComboBox", "set_string", "ParticleType"),
-        change("CubeSizeMode/ComboBox", "set_string", "Adaptive"), PAUSE,
+        change("CubeSizeMode/ComboBox", "set_string", "Uniform"), PAUSE,
         shown("sph_in_use/NextCells", "text", "163423"),
         shown("InteractiveBox", "visible", "false"),
         change("UseBox/CheckBox", "set_boolean", "true"),
@@ -87,11 +87,11 @@ def later_applies(folder):
     """Undo and redo of an Apply with several changes; a second array chosen and given up again."""
     return [
         change("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "set_string", "1"),
-        change("CubeSizeMode/ComboBox", "set_string", "Uniform"),
+        change("CubeSizeMode/ComboBox", "set_string", "Adaptive"),
         change("InteractiveBox/translateX", "set_string", "0.5"),
         APPLY, *save_state(f"{folder}/changed.pvsm"),
         UNDO, shown("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "text", "0.5"),
-        shown("CubeSizeMode/ComboBox", "currentText", "Adaptive"),
+        shown("CubeSizeMode/ComboBox", "currentText", "Uniform"),
         shown("InteractiveBox/translateX", "text", "0.75"), *save_state(f"{folder}/undone.pvsm"),
         REDO, shown("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "text", "1"), *save_state(f"{folder}/redone.pvsm"),
         change("FreeSurface/CheckBox", "set_boolean", "false"),
@@ -119,7 +119,7 @@ def differing(states, one, other):
 
 def check_states(states):
     applied = states["applied"]
-    wanted = {"FreeSurface": ["1"], "FluidArray": ["ParticleType"], "CubeSizeMode": ["1"], "CubeSize": ["0"], "UseBox": ["1"]}
+    wanted = {"FreeSurface": ["1"], "FluidArray": ["ParticleType"], "CubeSizeMode": ["0"], "CubeSize": ["0"], "UseBox": ["1"]}
     assert {name: applied[name] for name in wanted} == wanted, applied
     # The box began as the particles' bounds.
     assert applied["BoxPosition"] == ["0.75", "0", "-0.5"] and applied["BoxLength"][0] == "1.5", applied

@@ -102,8 +102,8 @@ extern "C"
    * mcor_statistics.highest_level. */
   typedef enum mcor_cube_size_mode
   {
-    MCOR_CUBES_UNIFORM = 0, /* all alike; the default */
-    MCOR_CUBES_ADAPTIVE = 1
+    MCOR_CUBES_UNIFORM = 0, /* all alike */
+    MCOR_CUBES_ADAPTIVE = 1 /* the default */
   } mcor_cube_size_mode;
 
 #define MCOR_CUBE_LEVELS 25 /* of adaptive cubes, 0 to 24 */
@@ -297,8 +297,9 @@ extern "C"
     /* Nonzero: the surface is closed at periodic sides by flat triangles there, around the particles'
      * side of it: where values are above the iso value. Its border's points are shared; the others
      * are nodes of the virtual grid, with normals out of the period, boundary flag 8, and a residual
-     * that means nothing. Trimming cuts caps, too, and leaves its border open. Not with a box, MCOR_PAIRS,
-     * ranks, given globals or point keys; of no effect without a period. */
+     * that means nothing. Trimming cuts caps, too, and leaves its border open. All cubes are then of the
+     * smallest size. Not with a box, MCOR_PAIRS, ranks, given globals or point keys; of no effect without
+     * a period. */
     int capping;
 
     /* NULL: measured over the input. Else of all particles, of which the input holds some: at least

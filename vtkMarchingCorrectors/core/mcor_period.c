@@ -89,14 +89,14 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     "larger cube size, or a shorter period.",
     *cube, least, 'x' + axis, MCOR_LATTICE_LIMIT);
   const int64_t fewest = (int64_t)least;
+  /* Large cubes stick out of the period: no flat side would be left to close. */
+  lattice->top = options->capping ? 0 : lattice->top;
   int64_t count = mcor_count_graded_cubes(length, axis, fewest, &lattice->top);
   count = count == 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
     "The periods %g, %g and %g (0: open) are not all whole numbers of a cube size near %g. Give "
     "another cube size, or periods to all their digits.",
     length[0], length[1], length[2], *cube);
-  MCOR_RETURN_IF(options->capping && lattice->top > 0, context, MCOR_INVALID_ARGUMENT,
-    "Capping does not go with adaptive cubes of several sizes. Use uniform cubes, or turn it off.");
   *cube = length[axis] / (double)count;
   const double reach = mcor_image_reach(context, options, *cube);
   const double margin = lattice->top > 0 ? ldexp(8 * *cube, lattice->top) : 0;

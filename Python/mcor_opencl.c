@@ -188,6 +188,8 @@ FORWARD(cl_int, clGetPlatformInfo, (cl_platform_id o, cl_platform_info w, size_t
 FORWARD(cl_int, clGetDeviceIDs, (cl_platform_id o, cl_device_type t, cl_uint n, cl_device_id* d, cl_uint* r), (o, t, n, d, r), o)
 FORWARD(cl_int, clGetDeviceInfo, (cl_device_id o, cl_device_info w, size_t n, void* v, size_t* r), (o, w, n, v, r), o)
 FORWARD(cl_context, clCreateContext, (const cl_context_properties* p, cl_uint n, const cl_device_id* o, void (CL_CALLBACK* f)(const char*, const void*, size_t, void*), void* u, cl_int* e), (p, n, o, f, u, e), *o)
+FORWARD(cl_int, clCreateSubDevices, (cl_device_id o, const cl_device_partition_property* p, cl_uint n, cl_device_id* d, cl_uint* r), (o, p, n, d, r), o)
+FORWARD(cl_int, clReleaseDevice, (cl_device_id o), (o), o)
 FORWARD(cl_int, clReleaseContext, (cl_context o), (o), o)
 FORWARD(cl_command_queue, clCreateCommandQueue, (cl_context o, cl_device_id d, cl_command_queue_properties p, cl_int* e), (o, d, p, e), o)
 FORWARD(cl_int, clReleaseCommandQueue, (cl_command_queue o), (o), o)

@@ -31,6 +31,7 @@ from marchingcorrectors._library import lib
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._vtk_ahead import Ahead
 from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of
+from marchingcorrectors._vtk_period import find_period
 from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
 from marchingcorrectors._vtk_surface import (add_run_statistics, build_field_data, build_mesh, computed_arrays,
                                              left_out)
@@ -48,7 +49,7 @@ PROPERTIES = {
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
-    "WallShare": (0.0, "real"), "UseBox": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
+    "WallShare": (0.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
     "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
     "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
     "ComputeCorrectionLength": (0, "flag"), "ComputeResidual": (0, "flag"), "ComputeBoundaryFlag": (0, "flag"),
@@ -291,6 +292,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options = self._options(choice)
         particles = Particles(choice, data)
         try:
+            if choice.DetectPeriod:
+                options.periodic[:] = self._period_of(data)
             particles.collect((Request(self, 0, data), Request(self, 1, data)), computed_arrays(options))
         except Unusable as sentence:
             self._fail(str(sentence))
@@ -303,6 +306,14 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
                       "no surface.", "Warning")
             return
         self._extract(particles, options, output)
+
+    @staticmethod
+    def _period_of(data):
+        period = find_period(data)
+        if not period:
+            raise Unusable("The particles' field data tell of no period: there is no array PeriodicBounds, BoxSize, or box "
+                           "with boundaryType. Set the periodic bounds, and turn their detection off.")
+        return period
 
     def _choice(self):
         return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), EndAtSolids=self.EndAtSolids, Box=self.Box,

@@ -83,6 +83,21 @@ class Test(unittest.TestCase):
             self.assertEqual(found.points.tobytes(), expected.points.tobytes())
             self.assertNotEqual(found.points.tobytes(), small.sph.isosurface("Speed", 1.5).points.tobytes())
             self.assertIn("Box" if "box" in words else "PeriodicBounds", found.field_data.keys())
+        told = small.copy()
+        for name, values in {"PeriodicBounds": words["periodic"], "BoxSize": (x1 - x0 + 0.05, 0, 0),
+                             "box": (x0 - 0.05, x1, -9, 9, -9, 9)}.items():
+            told.field_data.clear()
+            extract, _ = run_filter(told, scalar="Speed", value=1.5, DetectPeriod=1)
+            self.assertIn("tell of no period", extract.GetErrorMessage())
+            told.field_data["boundaryType"] = (1, 0, 2)
+            told.field_data[name] = values
+            extract, again = run_filter(told, scalar="Speed", value=1.5, OutputPointsPrecision=1, DetectPeriod=1)
+            self.assertEqual(extract.GetErrorMessage(), "")
+            if name != "BoxSize":  # of which only the length is told
+                self.assertEqual(again.points.tobytes(), found.points.tobytes())
+            sides = np.ravel(again.field_data["PeriodicBounds"])
+            self.assertAlmostEqual(sides[1] - sides[0], x1 - x0 + 0.05)
+            self.assertEqual(list(sides[2:]), [0] * 4)
 
     def test_other_methods(self):
         self.assertGreater(self.dam.sph.free_surface(fluid=FLUID, attributes=[]).n_cells, 10000)

@@ -230,7 +230,7 @@ mcor_surface core_extract(
   return surface;
 }
 
-mesh_report core_check_mesh(const mcor_surface* surface)
+static mesh_report check_mesh(const mcor_surface* surface, bool may_coincide)
 {
   mesh_report report;
   CORE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
@@ -238,10 +238,29 @@ mesh_report core_check_mesh(const mcor_surface* surface)
     "out of memory");
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
-    CORE_CHECK(report.faults[fault] == 0, "%lld of: %s; %s", (long long)report.faults[fault],
-      mesh_fault_name(fault), report.first[fault]);
+    CORE_CHECK((may_coincide && fault == MESH_COINCIDENT_POINT) || report.faults[fault] == 0,
+      "%lld of: %s; %s", (long long)report.faults[fault], mesh_fault_name(fault),
+      report.first[fault]);
   }
   return report;
+}
+
+mesh_report core_check_mesh(const mcor_surface* surface)
+{
+  return check_mesh(surface, false);
+}
+
+mesh_report core_check_pinched_mesh(const mcor_surface* surface)
+{
+  return check_mesh(surface, true);
+}
+
+void core_check_decisions(const mcor_statistics* s)
+{
+  CORE_CHECK(s->ambiguous_faces > 200 && s->joined_faces > 50 && s->ambiguous_cells > 30 &&
+      s->tunnels > 0 && s->joined_faces < s->ambiguous_faces && s->tunnels < s->ambiguous_cells,
+    "%lld faces, %lld joined, %lld cells, %lld tunnels", (long long)s->ambiguous_faces,
+    (long long)s->joined_faces, (long long)s->ambiguous_cells, (long long)s->tunnels);
 }
 
 void core_check_flags(const mcor_surface* surface)

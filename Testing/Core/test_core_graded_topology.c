@@ -52,29 +52,6 @@ static mcor_options noise_options(const double* iso, double cube_factor)
   return options;
 }
 
-/* Fails unless it is an oriented manifold; the two vertices of a pinched edge coincide. */
-static mesh_report check_manifold(const mcor_surface* surface)
-{
-  mesh_report report;
-  CORE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
-               surface->triangle_count, &report),
-    "out of memory");
-  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
-  {
-    CORE_CHECK(fault == MESH_COINCIDENT_POINT || report.faults[fault] == 0, "%lld of: %s; %s",
-      (long long)report.faults[fault], mesh_fault_name(fault), report.first[fault]);
-  }
-  return report;
-}
-
-static void check_decisions(const mcor_statistics* s)
-{
-  CORE_CHECK(s->ambiguous_faces > 200 && s->joined_faces > 50 && s->ambiguous_cells > 30 &&
-      s->tunnels > 0 && s->joined_faces < s->ambiguous_faces && s->tunnels < s->ambiguous_cells,
-    "%lld faces, %lld joined, %lld cells, %lld tunnels", (long long)s->ambiguous_faces,
-    (long long)s->joined_faces, (long long)s->ambiguous_cells, (long long)s->tunnels);
-}
-
 /* The same vertices as by the table, connected in another way. */
 static void noise_on_levels(void** state)
 {
@@ -88,8 +65,9 @@ static void noise_on_levels(void** state)
     mcor_surface field = core_extract(*state, &input, &options);
     options.topology = MCOR_TOPOLOGY_TABLE;
     mcor_surface table = core_extract(*state, &input, &options);
-    mesh_report by_field = check_manifold(&field), by_table = check_manifold(&table);
-    check_decisions(&field.statistics);
+    mesh_report by_field = core_check_pinched_mesh(&field),
+                by_table = core_check_pinched_mesh(&table);
+    core_check_decisions(&field.statistics);
     assert_true(field.statistics.triangles_of_level[0] > 100);
     assert_true(field.statistics.triangles_of_level[1] > 100);
     assert_int_equal(table.statistics.ambiguous_faces, 0);
@@ -116,7 +94,7 @@ static void order_form_and_boxes(void** state)
   options.vertex_threshold = 0.5;
   mcor_surface whole = core_extract(*state, &input, &options);
   const uint64_t hash = core_hash(&whole);
-  mesh_report report = check_manifold(&whole);
+  mesh_report report = core_check_pinched_mesh(&whole);
   mesh_free_report(&report);
   const char* forms[] = { "cpu", "gpu" };
   for (int f = 0; f < 2; ++f)
@@ -168,7 +146,7 @@ static void one_level_alone(void** state)
   mcor_surface one = core_extract(*state, &input, &options);
   mcor_surface two = core_extract(*state, &graded, &options);
   const mcor_statistics *s = &one.statistics, *t = &two.statistics;
-  check_decisions(t);
+  core_check_decisions(t);
   assert_int_equal(s->highest_level, 0);
   assert_int_equal(t->highest_level, 2);
   assert_int_equal(s->ambiguous_faces, t->ambiguous_faces);
@@ -176,7 +154,7 @@ static void one_level_alone(void** state)
   assert_int_equal(s->ambiguous_cells, t->ambiguous_cells);
   assert_int_equal(s->tunnels, t->tunnels);
   assert_int_equal(one.triangle_count, two.triangle_count);
-  mesh_report report = check_manifold(&one), other = check_manifold(&two);
+  mesh_report report = core_check_pinched_mesh(&one), other = core_check_pinched_mesh(&two);
   CORE_CHECK(
     fabs(report.area - other.area) < 1e-6 * report.area, "area %g, %g", report.area, other.area);
   mesh_free_report(&report);

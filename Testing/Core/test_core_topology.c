@@ -167,35 +167,11 @@ static core_set make_noise(const noise_case* at)
   return set;
 }
 
-/* An oriented manifold without degenerate triangles; the two vertices of an edge at which only two
- * opposite cells are valid coincide. */
-static mesh_report check_manifold(const mcor_surface* surface)
-{
-  mesh_report report;
-  CORE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
-               surface->triangle_count, &report),
-    "out of memory");
-  for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
-  {
-    CORE_CHECK(fault == MESH_COINCIDENT_POINT || report.faults[fault] == 0, "%lld of: %s; %s",
-      (long long)report.faults[fault], mesh_fault_name(fault), report.first[fault]);
-  }
-  return report;
-}
-
-static void check_counts(const mcor_statistics* s)
-{
-  CORE_CHECK(s->ambiguous_faces > 200 && s->joined_faces > 50 && s->ambiguous_cells > 30 &&
-      s->tunnels > 0 && s->joined_faces < s->ambiguous_faces && s->tunnels < s->ambiguous_cells,
-    "%lld faces, %lld joined, %lld cells, %lld tunnels", (long long)s->ambiguous_faces,
-    (long long)s->joined_faces, (long long)s->ambiguous_cells, (long long)s->tunnels);
-}
-
 /* Compares the surfaces of table and field before trimming. */
 static void check_noise(const mcor_surface* table, const mcor_surface* field)
 {
-  mesh_report by_table = check_manifold(table), by_field = check_manifold(field);
-  check_counts(&field->statistics);
+  mesh_report by_table = core_check_pinched_mesh(table), by_field = core_check_pinched_mesh(field);
+  core_check_decisions(&field->statistics);
   assert_int_equal(table->statistics.ambiguous_faces, 0);
   assert_int_equal(table->point_count, field->point_count);
   assert_memory_equal(
@@ -230,7 +206,7 @@ static void test_noise(void** state)
     check_noise(whole, whole + 1);
     options.vertex_threshold = 0.5;
     mcor_surface trimmed = core_extract(*state, &input, &options);
-    mesh_report report = check_manifold(&trimmed);
+    mesh_report report = core_check_pinched_mesh(&trimmed);
     mesh_free_report(&report);
     mcor_free_surface(&trimmed);
     mcor_free_surface(whole);

@@ -108,6 +108,13 @@ vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
 }
 
 //------------------------------------------------------------------------------
+bool vtkSPHTellsOfPeriod(const char* name)
+{
+  return IsNamed(name, "PeriodicBounds") || IsNamed(name, "BoxSize") || IsNamed(name, "box") ||
+    IsNamed(name, "boundaryType");
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> vtkSPHBoundsOfPeriod(const std::vector<double>& period, const double extent[6])
 {
   if (period.size() != 3)

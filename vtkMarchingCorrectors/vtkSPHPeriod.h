@@ -25,6 +25,9 @@ struct vtkSPHPeriod
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 
+/** Whether an array of this name has a part in that. */
+VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
+
 /** Six bounds, also of lengths alone: where the particles, of this extent, lie in them. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);

@@ -9,23 +9,8 @@
 #include "vtkFieldData.h"
 #include "vtkSPHPeriod.h"
 
-#include <algorithm>
-#include <cctype>
 #include <sstream>
 #include <stdexcept>
-#include <string>
-
-namespace
-{
-
-std::string Lower(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(),
-    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-}
 
 //------------------------------------------------------------------------------
 void PassPeriod(vtkDataObject* from, vtkDataObject* to)
@@ -34,12 +19,9 @@ void PassPeriod(vtkDataObject* from, vtkDataObject* to)
   for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    for (const char* name : { "periodicbounds", "boxsize", "box", "boundarytype" })
+    if (array && vtkSPHTellsOfPeriod(array->GetName()))
     {
-      if (array && array->GetName() && Lower(array->GetName()) == name)
-      {
-        to->GetFieldData()->AddArray(array);
-      }
+      to->GetFieldData()->AddArray(array);
     }
   }
 }

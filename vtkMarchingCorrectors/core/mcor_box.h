@@ -61,6 +61,7 @@ bool mcor_is_limited(const mcor_context* context);
 
 /* mcor_pair_rounds.c. *grown is false when no box has a new cell. */
 mcor_status mcor_exchange_cells(mcor_context* context, bool* grown);
+mcor_status mcor_attend_growth(mcor_context* context);
 mcor_status mcor_attend_rounds(mcor_context* context, int first);
 void mcor_end_rounds(mcor_context* context);
 

@@ -10,6 +10,7 @@
  * in cells of that level (mcor_view_level). */
 
 #include "mcor_graded.h"
+#include "mcor_box.h"
 #include "mcor_graded_box.h"
 #include "mcor_graded_pair.h"
 #include "mcor_graded_seed.h"

@@ -259,15 +259,6 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso, int* seeds)
     MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&context->mesh.used));
 }
 
-mcor_status mcor_attend_growth(mcor_context* context)
-{
-  for (bool grown = true; grown;)
-  {
-    MCOR_TRY(mcor_exchange_cells(context, &grown));
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_count_pair_hits(mcor_context* context, int* hits)
 {
   const mcor_box* box = &context->box;

@@ -283,6 +283,16 @@ void mcor_end_rounds(mcor_context* context)
   context->box.told_count = 0;
 }
 
+/* Of a box without cells, while others grow. */
+mcor_status mcor_attend_growth(mcor_context* context)
+{
+  for (bool grown = true; grown;)
+  {
+    MCOR_TRY(mcor_exchange_cells(context, &grown));
+  }
+  return MCOR_OK;
+}
+
 /* Of a rank that has nothing to do, for all iso values from number `first` on. */
 mcor_status mcor_attend_rounds(mcor_context* context, int first)
 {
@@ -291,10 +301,7 @@ mcor_status mcor_attend_rounds(mcor_context* context, int first)
   context->graded.count = all ? 0 : context->graded.count;
   for (int i = first; i < context->options->iso_count && all; ++i)
   {
-    for (bool grown = true; grown;)
-    {
-      MCOR_TRY(mcor_exchange_cells(context, &grown));
-    }
+    MCOR_TRY(mcor_attend_growth(context));
   }
   return MCOR_OK;
 }

@@ -25,8 +25,9 @@ while [ $# -gt 0 ]; do
   esac
 done
 [ ${#names[@]} -gt 0 ] || names=(rusticl intel pocl3)
-program=$build/bin/core_bits
-[ -x "$program" ] || mcor_die "$program is missing; Testing/run-tests.sh builds it"
+for program in core_bits core_rooms; do
+  [ -x "$build/bin/$program" ] || mcor_die "$build/bin/$program is missing; Testing/run-tests.sh builds it"
+done
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -43,7 +44,10 @@ run() { # NAME SETTING...
   local name=$1 begin=$SECONDS
   shift
   # shellcheck disable=SC2086  # no argument where size is empty
-  timeout 3000 env "$@" "$program" $size >"$scratch/$name.txt" 2>"$scratch/$name.log"
+  {
+    timeout 3000 env "$@" "$build"/bin/core_bits $size
+    timeout 3000 env "$@" "$build"/bin/core_rooms
+  } >"$scratch/$name.txt" 2>"$scratch/$name.log"
   echo $((SECONDS - begin)) >"$scratch/$name.seconds"
   grep -v -e '^form' -e ': 0 points' "$scratch/$name.txt" >"$scratch/$name.hashes"
 }

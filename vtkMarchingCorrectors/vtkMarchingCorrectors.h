@@ -71,8 +71,9 @@
  * With MPI, where the Controller has more than one process, these share the surface: all update, each
  * with some of the particles (marks of vtkGhostType as duplicates are heeded) or none. Space is divided
  * among them, particles travel to where they are needed, and each process gets the part of the surface
- * in its share of space, to the last bit as one process would make it. "GlobalPointIds" are the numbers
- * that points have there: merged by these, the parts are that surface. Field data are of the whole;
+ * in its share of space, to the last bit as one process would make it. "GlobalPointIds" and
+ * "GlobalCellIds" are the numbers that points and triangles have there: put where these say, the parts are
+ * that surface. Field data are of the whole;
  * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankWork" and
  * "RankWorkByParticles" (where work was expected), "RankNodesEvaluated",
  * "RankTriangles" and "RankSeconds", one component for each process. An error of one is an error of all.

@@ -3,9 +3,10 @@
 
 // A run that many processes share. Each hands over the particles that it has; space is divided among
 // them; particles go to where they are needed; each process extracts its box's part of the surface, as
-// the core does for any box; points get the numbers that they have in the whole.
+// the core does for any box; points and triangles get the numbers that they have in the whole.
 #include "vtkMarchingCorrectors.h"
 
+#include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
@@ -156,7 +157,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = mine.FromNearest.empty() ? 0 : 1;
-  options.point_keys = 1;
+  options.point_keys = options.triangle_keys = 1;
 
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
@@ -206,18 +207,15 @@ void vtkMarchingCorrectors::FinishTogether(
   vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output)
 {
   mcor_surface& surface = run.Surface;
-  vtkIdType points = 0;
+  vtkIdType points = 0, triangles = 0;
   const vtkSmartPointer<vtkIdTypeArray> numbers = vtkSPHNumberPoints(ranks, surface, points);
+  const vtkSmartPointer<vtkIdTypeArray> triangleNumbers =
+    vtkSPHNumberTriangles(ranks, surface, triangles);
   const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks,
     { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
       run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work,
       run.Route.WorkBefore });
   surface.statistics = vtkSPHMergeShares(shares);
-  std::int64_t triangles = 0;
-  for (const vtkSPHRanksShare& share : shares)
-  {
-    triangles += share.Triangles;
-  }
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
@@ -238,5 +236,6 @@ void vtkMarchingCorrectors::FinishTogether(
   vtkSPHAddShares(this->RunStatistics, shares);
   builder.BuildMesh(output, this->OutputPointsPrecision);
   output->GetPointData()->SetGlobalIds(numbers);
+  output->GetCellData()->SetGlobalIds(triangleNumbers);
   vtkSPHMatchEmpty(ranks, output);
 }

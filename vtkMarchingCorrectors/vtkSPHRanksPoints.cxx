@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace
@@ -62,11 +64,26 @@ std::vector<Key> FindEnds(vtkSPHRanks& ranks, const std::vector<Key>& keys)
   return ends;
 }
 
-/** The numbers of a range of keys from `first` on, in place of the keys that each rank sent. */
-std::vector<Bytes> Number(
-  const std::vector<std::vector<Key>>& sent, const std::vector<Key>& distinct, std::int64_t first)
+/** What numbers a key takes. */
+using Weight = std::int64_t (*)(const Key& key);
+
+/** Of a range of distinct keys the first number of each, from `first` on. */
+std::vector<std::int64_t> AddUp(const std::vector<Key>& distinct, Weight weight, std::int64_t first)
 {
-  std::vector<Bytes> numbers;
+  std::vector<std::int64_t> numbers;
+  for (const Key& key : distinct)
+  {
+    numbers.push_back(first);
+    first += weight(key);
+  }
+  return numbers;
+}
+
+/** The numbers of a range of keys in place of the keys that each rank sent. */
+std::vector<Bytes> Number(const std::vector<std::vector<Key>>& sent,
+  const std::vector<Key>& distinct, const std::vector<std::int64_t>& numbers)
+{
+  std::vector<Bytes> answers;
   for (const std::vector<Key>& keys : sent)
   {
     std::vector<std::int64_t> found(keys.size());
@@ -74,11 +91,11 @@ std::vector<Bytes> Number(
     for (std::size_t i = 0; i < keys.size(); ++i)
     {
       from = std::lower_bound(from, distinct.end(), keys[i]);
-      found[i] = first + (from - distinct.begin());
+      found[i] = numbers[static_cast<std::size_t>(from - distinct.begin())];
     }
-    numbers.push_back(Pack(found.data(), found.data() + found.size()));
+    answers.push_back(Pack(found.data(), found.data() + found.size()));
   }
-  return numbers;
+  return answers;
 }
 
 /** How many of all ranks' numbers are before this rank's `mine`; `total` of all. */
@@ -95,15 +112,14 @@ std::int64_t CountBefore(vtkSPHRanks& ranks, std::int64_t mine, std::int64_t& to
   }
   return before;
 }
-}
 
-//------------------------------------------------------------------------------
-// Each rank sorts a range of the keys; a rank's own keys ascend already.
-vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
-  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
+/**
+ * Of each of this rank's keys, which ascend, the first of the numbers that it takes where all ranks'
+ * distinct keys are numbered in order; `total` of all numbers. Each rank sorts a range of the keys.
+ */
+std::vector<std::int64_t> NumberKeys(
+  vtkSPHRanks& ranks, const std::vector<Key>& keys, Weight weight, vtkIdType& total)
 {
-  const auto* first = reinterpret_cast<const Key*>(surface.point_keys);
-  const std::vector<Key> keys(first, first + (first ? surface.point_count : 0));
   const std::vector<Key> ends = FindEnds(ranks, keys);
   std::vector<Bytes> messages(static_cast<std::size_t>(ranks.GetCount()));
   const Key* from = keys.data();
@@ -123,17 +139,69 @@ vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
   }
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  std::int64_t sum = 0;
-  const std::int64_t before = CountBefore(ranks, static_cast<std::int64_t>(distinct.size()), sum);
+  std::int64_t mine = 0, sum = 0;
+  for (const Key& key : distinct)
+  {
+    mine += weight(key);
+  }
+  const std::vector<std::int64_t> first = AddUp(distinct, weight, CountBefore(ranks, mine, sum));
   total = static_cast<vtkIdType>(sum);
-  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
-  numbers->SetName("GlobalPointIds");
-  numbers->SetNumberOfTuples(static_cast<vtkIdType>(keys.size()));
-  vtkIdType* to = numbers->GetPointer(0);
-  for (const Bytes& bytes : ranks.Exchange(Number(sent, distinct, before)))
+  std::vector<std::int64_t> numbers;
+  for (const Bytes& bytes : ranks.Exchange(Number(sent, distinct, first)))
   {
     const std::vector<std::int64_t> found = Unpack<std::int64_t>(bytes);
-    to = std::copy(found.begin(), found.end(), to);
+    numbers.insert(numbers.end(), found.begin(), found.end());
+  }
+  return numbers;
+}
+
+vtkSmartPointer<vtkIdTypeArray> MakeNumbers(const char* name, vtkIdType count)
+{
+  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+  numbers->SetName(name);
+  numbers->SetNumberOfTuples(count);
+  return numbers;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
+  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
+{
+  const auto* first = reinterpret_cast<const Key*>(surface.point_keys);
+  const std::vector<Key> keys(first, first + (first ? surface.point_count : 0));
+  const std::vector<std::int64_t> found = NumberKeys(
+    ranks, keys, [](const Key&) { return std::int64_t(1); }, total);
+  auto numbers = MakeNumbers("GlobalPointIds", static_cast<vtkIdType>(found.size()));
+  std::copy(found.begin(), found.end(), numbers->GetPointer(0));
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+// A cell's triangles are on one rank, beside each other: one key tells of all.
+vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
+  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
+{
+  static_assert(MCOR_TRIANGLE_KEY + 1 == MCOR_POINT_KEY, "a key and how many have it");
+  const std::uint64_t* from = surface.triangle_keys;
+  const vtkIdType count = from ? surface.triangle_count : 0;
+  std::vector<Key> cells;
+  for (vtkIdType i = 0; i < count; ++i, from += MCOR_TRIANGLE_KEY)
+  {
+    if (cells.empty() || cells.back()[0] != from[0] || cells.back()[1] != from[1])
+    {
+      cells.push_back({ from[0], from[1], 0 });
+    }
+    ++cells.back()[2];
+  }
+  const std::vector<std::int64_t> found = NumberKeys(
+    ranks, cells, [](const Key& cell) { return static_cast<std::int64_t>(cell[2]); }, total);
+  auto numbers = MakeNumbers("GlobalCellIds", count);
+  vtkIdType* to = numbers->GetPointer(0);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+  {
+    std::iota(to, to + cells[i][2], static_cast<vtkIdType>(found[i]));
+    to += cells[i][2];
   }
   return numbers;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: numbers of the whole surface's points.
+ * Private to the module: numbers of the whole surface's points and triangles.
  */
 #ifndef vtkSPHRanksPoints_h
 #define vtkSPHRanksPoints_h
@@ -18,6 +18,10 @@ class vtkSPHRanks;
  * are. Collective.
  */
 vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
+  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);
+
+/** The same of this rank's triangles, which ascend. Collective. */
+vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
   vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);
 
 #endif

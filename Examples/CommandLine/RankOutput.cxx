@@ -5,9 +5,11 @@
 #include "SafeText.h"
 
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -50,9 +52,10 @@ void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& na
        << "\" NumberOfComponents=\"" << array->GetNumberOfComponents() << "\"/>\n";
 }
 
-/// Which arrays are the normals, and so on, as VTK's writers say it of a single file.
-void DescribeRoles(std::ostream& text, vtkPointData* arrays)
+/// The arrays and which are the normals, and so on, as VTK's writers say it of a single file.
+void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* arrays)
 {
+  text << "    <" << element;
   for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
   {
     vtkAbstractArray* array = arrays->GetAbstractAttribute(role);
@@ -62,18 +65,26 @@ void DescribeRoles(std::ostream& text, vtkPointData* arrays)
            << EscapedForXml(array->GetName()) << '"';
     }
   }
+  text << ">\n";
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    Describe(text, arrays->GetAbstractArray(i), arrays->GetArrayName(i));
+  }
+  text << "    </" << element << ">\n";
 }
 
-void Append(vtkPolyData* part, vtkPolyData* whole, vtkCellArray* triangles)
+/// Puts a part's points, with their arrays, and triangles where their numbers say.
+void Place(vtkPolyData* part, vtkPolyData* whole, vtkIdTypeArray* corners)
 {
-  vtkDataArray* numbers = part->GetPointData()->GetGlobalIds();
   vtkPointData *from = part->GetPointData(), *to = whole->GetPointData();
   const vtkIdType count = part->GetNumberOfPoints();
   if (count == 0)
   {
     return; // VTK sends no arrays then
   }
-  vtkNew<vtkIdList> own, places;
+  vtkDataArray* numbers = from->GetGlobalIds();
+  vtkDataArray* triangles = part->GetCellData()->GetGlobalIds();
+  vtkNew<vtkIdList> own, places, triangle;
   own->SetNumberOfIds(count);
   places->SetNumberOfIds(count);
   for (vtkIdType i = 0; i < count; ++i)
@@ -87,14 +98,13 @@ void Append(vtkPolyData* part, vtkPolyData* whole, vtkCellArray* triangles)
     vtkAbstractArray* array = to->GetAbstractArray(a);
     array->InsertTuples(places, own, from->GetAbstractArray(array->GetName()));
   }
-  vtkNew<vtkIdList> corners;
   for (vtkIdType i = 0; i < part->GetNumberOfPolys(); ++i)
   {
-    part->GetPolys()->GetCellAtId(i, corners);
-    triangles->InsertNextCell(3);
-    for (vtkIdType c = 0; c < corners->GetNumberOfIds(); ++c)
+    const auto place = static_cast<vtkIdType>(triangles->GetComponent(i, 0));
+    part->GetPolys()->GetCellAtId(i, triangle);
+    for (vtkIdType c = 0; c < 3; ++c)
     {
-      triangles->InsertCellPoint(places->GetId(corners->GetId(c)));
+      corners->SetValue(3 * place + c, places->GetId(triangle->GetId(c)));
     }
   }
 }
@@ -104,14 +114,16 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   auto whole = vtkSmartPointer<vtkPolyData>::New();
   vtkPolyData* first = parts.front();
   whole->GetFieldData()->ShallowCopy(first->GetFieldData());
-  vtkDataArray* total = first->GetFieldData()->GetArray("Points");
-  if (!total || !first->GetPoints())
+  vtkDataArray *pointCount = first->GetFieldData()->GetArray("Points"),
+               *triangleCount = first->GetFieldData()->GetArray("Triangles");
+  if (!pointCount || !triangleCount || !first->GetPoints())
   {
     return whole;
   }
-  const auto count = static_cast<vtkIdType>(total->GetComponent(0, 0));
+  const auto count = static_cast<vtkIdType>(pointCount->GetComponent(0, 0));
   vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> triangles;
+  vtkNew<vtkIdTypeArray> corners;
+  corners->SetNumberOfValues(3 * static_cast<vtkIdType>(triangleCount->GetComponent(0, 0)));
   points->SetDataType(first->GetPoints()->GetDataType());
   points->SetNumberOfPoints(count);
   whole->SetPoints(points);
@@ -122,8 +134,10 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   arrays->SetNumberOfTuples(count);
   for (const auto& part : parts)
   {
-    Append(part, whole, triangles);
+    Place(part, whole, corners);
   }
+  vtkNew<vtkCellArray> triangles;
+  triangles->SetData(3, corners);
   whole->SetPolys(triangles);
   return whole;
 }
@@ -149,15 +163,10 @@ std::string ListPieces(const std::string& file, int count, vtkPolyData* piece)
 {
   std::ostringstream text;
   text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\">\n"
-       << "  <PPolyData GhostLevel=\"0\">\n    <PPointData";
-  vtkPointData* arrays = piece->GetPointData();
-  DescribeRoles(text, arrays);
-  text << ">\n";
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    Describe(text, arrays->GetAbstractArray(i), arrays->GetArrayName(i));
-  }
-  text << "    </PPointData>\n    <PPoints>\n";
+       << "  <PPolyData GhostLevel=\"0\">\n";
+  DescribeAll(text, "PPointData", piece->GetPointData());
+  DescribeAll(text, "PCellData", piece->GetCellData());
+  text << "    <PPoints>\n";
   if (piece->GetPoints())
   {
     Describe(text, piece->GetPoints()->GetData(), "Points");

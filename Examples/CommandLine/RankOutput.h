@@ -19,8 +19,8 @@ std::string PieceName(const std::string& file, int rank);
 /// The text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
 std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
 
-/// On rank 0 the surface of all ranks, its points in the order of "GlobalPointIds", without that array;
-/// null elsewhere.
+/// On rank 0 the surface of all ranks, its points and triangles in the order of "GlobalPointIds" and
+/// "GlobalCellIds", without these arrays; null elsewhere.
 vtkSmartPointer<vtkPolyData> MergeOnFirst(vtkMultiProcessController* controller, vtkPolyData* part);
 
 #endif

@@ -41,6 +41,21 @@ static unsigned char* put_point(
   return to;
 }
 
+/* Its key, and how many before it have the same: so triangles sort as the whole surface has them. */
+static unsigned char* put_place(unsigned char* to, const mcor_surface* s, int64_t i, uint64_t* nth)
+{
+  const uint64_t* key = s->triangle_keys + MCOR_TRIANGLE_KEY * i;
+  *nth = i > 0 && memcmp(key, key - MCOR_TRIANGLE_KEY, MCOR_TRIANGLE_KEY * sizeof *key) == 0
+    ? *nth + 1
+    : 0;
+  const uint64_t place[3] = { key[0], key[1], *nth };
+  for (int byte = 0; byte < 24; ++byte)
+  {
+    *to++ = (unsigned char)(place[byte / 8] >> (56 - byte % 8 * 8));
+  }
+  return to;
+}
+
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s)
 {
   unsigned char point[1024];
@@ -48,14 +63,20 @@ void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_s
   {
     return;
   }
-  triangles->width = 3 * (size_t)(put_point(point, input, s, 0) - point);
+  triangles->width =
+    3 * (size_t)(put_point(point, input, s, 0) - point) + (s->triangle_keys ? 24 : 0);
   const size_t count = (size_t)(triangles->count + s->triangle_count);
   triangles->bytes = realloc(triangles->bytes, count * triangles->width);
   assert_non_null(triangles->bytes);
   unsigned char* to = triangles->bytes + (size_t)triangles->count * triangles->width;
-  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
+  uint64_t nth = 0;
+  for (int64_t i = 0; i < s->triangle_count; ++i)
   {
-    to = put_point(to, input, s, s->triangles[i]);
+    to = s->triangle_keys ? put_place(to, s, i, &nth) : to;
+    for (int c = 0; c < 3; ++c)
+    {
+      to = put_point(to, input, s, s->triangles[3 * i + c]);
+    }
   }
   triangles->count += s->triangle_count;
 }
@@ -102,8 +123,8 @@ static void check_points(const mcor_surface* s)
   free(used);
 }
 
-/* Each point has a key of its own, and they ascend. Boxes' points have those of the whole surface, as
- * they are compared along with all else. */
+/* Each point has a key of its own, and they ascend; so do those of triangles, which share them. Boxes'
+ * points and triangles have those of the whole surface, as they are compared along with all else. */
 static void check_keys(const mcor_surface* s)
 {
   for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)
@@ -111,6 +132,12 @@ static void check_keys(const mcor_surface* s)
     const uint64_t *a = s->point_keys + MCOR_POINT_KEY * (i - 1), *b = a + MCOR_POINT_KEY;
     const int at = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
     CORE_CHECK(a[at] < b[at], "keys of points %lld and the next", (long long)(i - 1));
+  }
+  for (int64_t i = 1; s->triangle_keys && i < s->triangle_count; ++i)
+  {
+    const uint64_t *a = s->triangle_keys + MCOR_TRIANGLE_KEY * (i - 1), *b = a + MCOR_TRIANGLE_KEY;
+    CORE_CHECK(a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1]), "keys of triangles %lld and the next",
+      (long long)(i - 1));
   }
 }
 
@@ -203,7 +230,7 @@ void core_ask_for_all(mcor_options* options)
 {
   options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
   options->boundary_flag = options->nearest_particle = options->iso_value = 1;
-  options->point_keys = 1;
+  options->point_keys = options->triangle_keys = 1;
 }
 
 void core_add_near(

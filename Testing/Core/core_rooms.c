@@ -66,7 +66,8 @@ static mcor_options rooms_options(mcor_field field)
   options.field = field;
   options.cube_size_factor = 1;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
-  options.boundary_flag = options.nearest_particle = options.iso_value = options.point_keys = 1;
+  options.boundary_flag = options.nearest_particle = options.iso_value = 1;
+  options.point_keys = options.triangle_keys = 1;
   return options;
 }
 
@@ -102,7 +103,7 @@ static int rooms_uniform(mcor_context* context, const mcor_input* input)
     options.box[s] = s % 2 == 0 ? -3 : (s == 1 ? 1 : 5);
   }
   const int good = rooms_surface(context, "box", &fine, &options);
-  options.has_box = options.point_keys = 0;
+  options.has_box = options.point_keys = options.triangle_keys = 0;
   options.field = MCOR_WEIGHT_SUM;
   options.iso_values = &rooms_weight;
   options.capping = 1;

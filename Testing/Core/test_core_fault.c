@@ -36,7 +36,7 @@ static mcor_status extract(
   *hash = core_hash(&surface);
   CORE_CHECK(status == MCOR_OK ? surface.triangle_count > 20
                                : !surface.points && !surface.triangles && !surface.attributes &&
-        !surface.point_keys && surface.point_count == 0,
+        !surface.point_keys && !surface.triangle_keys && surface.point_count == 0,
     "%s: %d triangles", mcor_status_name(status), (int)surface.triangle_count);
   mcor_free_surface(&surface);
   return status;
@@ -327,7 +327,7 @@ static void test_regions(void** state)
   sweep box = { .call = extract, .input = core_input(&set), .options = core_options(&iso) };
   sweep period = box, wall = box;
   const double sides[6] = { -9, 0.4, -9, 9, -9, 9 };
-  box.options.has_box = box.options.point_keys = 1;
+  box.options.has_box = box.options.point_keys = box.options.triangle_keys = 1;
   memcpy(box.options.box, sides, sizeof sides);
   sweep_room(*state, &box, 23, 100);
   period.options.periodic[0] = -4;

@@ -42,6 +42,7 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
     o->cube_size_mode = (mcor_cube_size_mode)(b == 255 ? 2 : 1);
     o->level_limit = (int)(b % 29) - 2;
     o->point_keys = b > 250;
+    o->triangle_keys = b > 251;
   }
 }
 

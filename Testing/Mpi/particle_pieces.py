@@ -17,11 +17,9 @@ def read(file):
     return reader.GetOutput()
 
 
-def corners(surface, numbers=None):
-    """Triangles as rows of point numbers, sorted; numbers: those of the points."""
-    rows = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    rows = rows if numbers is None else numbers[rows]
-    return rows[np.lexsort(rows.T[::-1])]
+def corners(surface):
+    """Triangles as rows of points."""
+    return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
 
 
 def arrays_of(surface):
@@ -84,7 +82,10 @@ def difference(union, alone):
     numbers = vtk_to_numpy(union.GetPointData().GetArray("GlobalPointIds"))
     if not np.array_equal(np.unique(numbers), np.arange(alone.GetNumberOfPoints())):
         return "the numbers of the points"
-    if not np.array_equal(corners(union, numbers), corners(alone)):
+    places = vtk_to_numpy(union.GetCellData().GetArray("GlobalCellIds"))
+    if not np.array_equal(np.unique(places), np.arange(alone.GetNumberOfPolys())):
+        return "the numbers of the triangles"
+    if not np.array_equal(numbers[corners(union)], corners(alone)[places]):
         return "the triangles"
     pairs = [("Points", union.GetPoints().GetData(), alone.GetPoints().GetData())]
     pairs += [(a.GetName(), union.GetPointData().GetArray(a.GetName()), a) for a in arrays_of(alone)]

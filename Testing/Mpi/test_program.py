@@ -6,6 +6,7 @@
     test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS
 """
 
+import filecmp
 import os
 import signal
 import subprocess
@@ -69,6 +70,22 @@ class Program(unittest.TestCase):
             self.assertIn("rank_particles", stream.read())
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
 
+    def check_same_file(self, *how):
+        """A file that the first process merges is, byte for byte, that of one process."""
+        alone = self.run_alone(PARTICLES, self.path("alone.ply"), *how)
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        done = self.run_ranks(PARTICLES, self.path("ranks.ply"), *how)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(os.path.getsize(self.path("alone.ply")), 50000)
+        self.assertTrue(filecmp.cmp(self.path("alone.ply"), self.path("ranks.ply"), shallow=False), how)
+
+    def test_same_file(self):
+        """Trimmed, two iso values, pairs, a period in a box: the order of points and triangles, too."""
+        trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]
+        self.check_same_file(*trimmed, "--topology", "field")
+        self.check_same_file(*trimmed, "--seeds", "pairs", "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf")
+        self.check_same_file("--free-surface")
+
     def test_pieces(self):
         """Pieces in, pieces out: more of them than processes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
@@ -79,6 +96,7 @@ class Program(unittest.TestCase):
         self.assertEqual(difference(ranks, alone), "")
         self.assertEqual(ranks.GetPointData().GetNormals().GetName(), "Normals")
         self.assertEqual(ranks.GetPointData().GetGlobalIds().GetName(), "GlobalPointIds")
+        self.assertEqual(ranks.GetCellData().GetGlobalIds().GetName(), "GlobalCellIds")
 
     def test_probe(self):
         """Points of one file, particles in pieces: the arrays are, to the last byte, those of one process."""

@@ -298,7 +298,7 @@ extern "C"
      * side of it: where values are above the iso value. Its border's points are shared; the others
      * are nodes of the virtual grid, with normals out of the period, boundary flag 8, and a residual
      * that means nothing. Trimming cuts caps, too, and leaves its border open. All cubes are then of the
-     * smallest size. Not with a box, MCOR_PAIRS, ranks, given globals or point keys; of no effect without
+     * smallest size. Not with a box, MCOR_PAIRS, ranks, given globals or keys; of no effect without
      * a period. */
     int capping;
 
@@ -324,6 +324,7 @@ extern "C"
     int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag;
     int iso_value, nearest_particle;
     int point_keys;       /* see MCOR_POINT_KEY */
+    int triangle_keys;    /* see MCOR_TRIANGLE_KEY */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
@@ -398,13 +399,20 @@ extern "C"
    * after the other; those of a box's surface have the keys that they have in the whole surface. */
 #define MCOR_POINT_KEY 3
 
+  /* A triangle's key: number of the iso value, then its cell. Keys ascend from triangle to triangle; those of
+   * one cell have the same. A box's triangles have the keys that they have in the whole surface, each
+   * cell being in one box, so that the whole surface's triangles are those of boxes, sorted by key and
+   * otherwise left in order. */
+#define MCOR_TRIANGLE_KEY 2
+
   /* A triangle mesh. Vertices are shared; a triangle's normal (right-hand rule) points to lower
    * values of the field, as vtkContourFilter orients it. Owned; free with mcor_free_surface. */
   typedef struct mcor_surface
   {
     int64_t point_count, triangle_count;
-    double* points;     /* [point_count][3], unit L */
-    int32_t* triangles; /* [triangle_count][3], point indices */
+    double* points;          /* [point_count][3], unit L */
+    int32_t* triangles;      /* [triangle_count][3], point indices */
+    uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
     /* Optional arrays, NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */

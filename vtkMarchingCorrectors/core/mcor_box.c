@@ -7,8 +7,8 @@
  * What is global is measured over all particles: lattice, ranges, shifts, levels. On the device are
  * those alone that reach what is evaluated. One ring of cells around the owned ones is examined as
  * well, with its triangles: pinched edges, the border that the node threshold leaves, and normals
- * from triangles depend on it. Each triangle's flag follows it through trimming; those of the ring,
- * and points that only they use, leave the surface at the very end.
+ * from triangles depend on it. Triangles of the ring leave the surface at the very end, see
+ * mcor_triangle_cell.c.
  *
  * Beyond the ring's nodes sums lack particles and mean nothing; bounds there are lower than they
  * were, but what they say of nodes within holds. Nothing is examined there: cubes and bricks are
@@ -363,176 +363,6 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   return true;
 }
 
-/* ---- Triangles ---- */
-
-/* Flags the triangles of owned cells; *count of them. */
-mcor_status mcor_mark_owned(mcor_context* context, int* count)
-{
-  mcor_box* box = &context->box;
-  const mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
-  const mcor_topology_data* topology = &context->topology;
-  const int bricks_now = bricks->now.count;
-  *count = mesh->triangle_count;
-  if (!box->is_part)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_reserve(context, &box->owned, (size_t)mesh->triangle_count));
-  if (context->options->topology == MCOR_TOPOLOGY_FIELD)
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark_resolved", MCOR_MEDIUM, bricks_now,
-      MCOR_INT(bricks_now), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
-      MCOR_BOX_ARGS(box, 0), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
-      MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->cases),
-      MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->owned)));
-  }
-  else
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark", MCOR_MEDIUM, bricks_now, MCOR_INT(bricks_now),
-      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BOX_ARGS(box, 0),
-      MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&context->case_table),
-      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->owned)));
-  }
-  void* view;
-  const size_t bytes = (size_t)mesh->triangle_count;
-  MCOR_TRY(mcor_map(context, &box->owned, bytes, false, &view));
-  *count = 0;
-  for (size_t i = 0; i < bytes; ++i)
-  {
-    *count += ((const uint8_t*)view)[i];
-  }
-  return mcor_unmap(context, &box->owned, &view);
-}
-
-/* Trimming is about to leave `remaining` triangles; see mcor_box_trim. */
-mcor_status mcor_trim_owned(
-  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining)
-{
-  mcor_box* box = &context->box;
-  const mcor_mesh* mesh = &context->mesh;
-  if (!box->is_part)
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer trimmed = { 0 };
-  MCOR_TRY(mcor_reserve(context, &trimmed, (size_t)remaining));
-  const mcor_status status = MCOR_LAUNCH(context, "mcor_box_trim", MCOR_MEDIUM,
-    mcor_batches(context, mesh->triangle_count), MCOR_INT(mesh->triangle_count),
-    MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity), MCOR_REAL(threshold),
-    MCOR_BUFFER(&context->trim.remaining), MCOR_BUFFER(&box->owned), MCOR_BUFFER(&trimmed));
-  mcor_release(context, &box->owned);
-  box->owned = trimmed;
-  return status;
-}
-
-/* ---- Surface ---- */
-
-/* Takes the flags of the mesh's triangles along with the surface, and of its vertices to
- * *vertices: 1 where an owned triangle uses it; NULL where all are owned. */
-mcor_status mcor_keep_owned(mcor_context* context, const mcor_surface* surface, uint8_t** vertices)
-{
-  mcor_box* box = &context->box;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t triangles = (size_t)mesh->triangle_count, base = (size_t)surface->triangle_count;
-  if (!box->is_part)
-  {
-    return MCOR_OK;
-  }
-  uint8_t* kept = realloc(box->kept, base + triangles + 1);
-  box->kept = kept ? kept : box->kept;
-  *vertices = calloc((size_t)mesh->vertex_count + 1, 1);
-  MCOR_RETURN_IF(!kept || !*vertices, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld triangles could not be allocated.", (long long)(base + triangles));
-  if (triangles == 0)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_read(context, &box->owned, 0, kept + base, triangles));
-  void* view;
-  MCOR_TRY(mcor_map(context, &mesh->triangles, triangles * 3 * sizeof(cl_int), false, &view));
-  const cl_int* corners = view;
-  for (size_t i = 0; i < 3 * triangles; ++i)
-  {
-    (*vertices)[corners[i]] |= kept[base + i / 3];
-  }
-  return mcor_unmap(context, &mesh->triangles, &view);
-}
-
-/* Moves elements of `width` bytes to where their numbers say, which is not behind where they are;
- * -1: dropped. */
-static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t count)
-{
-  char* bytes = array;
-  for (int64_t i = 0; i < count && array; ++i)
-  {
-    if (number[i] >= 0 && number[i] != i)
-    {
-      memcpy(bytes + (size_t)number[i] * width, bytes + (size_t)i * width, width);
-    }
-  }
-}
-
-/* Numbers the points that owned triangles use, in order; drops the other triangles. */
-static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, int32_t* number)
-{
-  int64_t triangles = 0, points = 0;
-  for (int64_t i = 0; i < surface->point_count; ++i)
-  {
-    number[i] = -1;
-  }
-  for (int64_t i = 0; i < 3 * surface->triangle_count; ++i)
-  {
-    if (kept[i / 3])
-    {
-      number[surface->triangles[i]] = 0;
-    }
-  }
-  for (int64_t i = 0; i < surface->point_count; ++i)
-  {
-    number[i] = number[i] < 0 ? -1 : (int32_t)points++;
-  }
-  for (int64_t i = 0; i < surface->triangle_count; ++i)
-  {
-    for (int c = 0; c < 3 && kept[i]; ++c)
-    {
-      surface->triangles[3 * triangles + c] = number[surface->triangles[3 * i + c]];
-    }
-    triangles += kept[i];
-  }
-  surface->triangle_count = triangles;
-  return points;
-}
-
-/* Leaves the owned triangles, and their points. */
-mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
-{
-  const uint8_t* kept = context->box.kept;
-  if (!kept)
-  {
-    return MCOR_OK;
-  }
-  int32_t* number = malloc(((size_t)surface->point_count + 1) * sizeof *number);
-  MCOR_RETURN_IF(!number, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld points could not be allocated.", (long long)surface->point_count);
-  const int64_t points = mcor_drop_triangles(surface, kept, number);
-  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
-  mcor_list_surface_arrays(surface, arrays);
-  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
-  {
-    mcor_pack(*arrays[i].array, arrays[i].width, number, surface->point_count);
-  }
-  for (int a = 0; a < surface->attribute_count; ++a)
-  {
-    mcor_pack(surface->attributes[a],
-      (size_t)mcor_components(&input->attributes[a]) * sizeof(double), number,
-      surface->point_count);
-  }
-  surface->point_count = points;
-  free(number);
-  return MCOR_OK;
-}
-
 /* What a call leaves behind on the host. */
 void mcor_end_box(mcor_context* context)
 {
@@ -544,6 +374,6 @@ void mcor_end_box(mcor_context* context)
 
 void mcor_release_box(mcor_context* context)
 {
-  MCOR_RELEASE(context, &context->box.owned, &context->box.clipped);
+  MCOR_RELEASE(context, &context->box.cells, &context->box.clipped);
   mcor_end_box(context);
 }

@@ -72,18 +72,20 @@ mcor_status mcor_void_bricks(mcor_context* context);
 /* Extraction: nodes off the box and its ring, of evaluated bricks, are no more valid; so that pairs
  * do not grow there. */
 mcor_status mcor_void_nodes(mcor_context* context);
-/* Leaves used cells of the box and its ring; counts owned ones of any cells that are within others,
- * and owned triangles. */
+/* Leaves used cells of the box and its ring; counts owned ones of any cells that are within others. */
 mcor_status mcor_clip_used(mcor_context* context);
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
-mcor_status mcor_mark_owned(mcor_context* context, int* count);
 
-mcor_status mcor_trim_owned(
+/* mcor_triangle_cell.c. Whether triangles carry their cells; those of [first, last) that are owned. */
+bool mcor_follows_cells(const mcor_context* context);
+mcor_status mcor_mark_owned(mcor_context* context, int* count);
+mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
+mcor_status mcor_trim_cells(
   mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining);
 
 /* Output. */
-mcor_status mcor_keep_owned(mcor_context* context, const mcor_surface* surface, uint8_t** vertices);
+mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface, uint8_t** vertices);
 mcor_status mcor_crop_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 

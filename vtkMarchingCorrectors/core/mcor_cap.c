@@ -488,15 +488,15 @@ static mcor_status mcor_append_caps(mcor_cap_job* job, double iso)
   mcor_context* context = job->context;
   mcor_mesh* mesh = &context->mesh;
   const size_t old = (size_t)mesh->triangle_count, more = (size_t)job->triangle_count;
-  const size_t width = 3 * sizeof(cl_int);
+  const size_t width = 3 * sizeof(cl_int), cell = sizeof(cl_ulong);
   int groups;
   MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
     "With its caps the surface would have %zu triangles, %d is the limit. Use a larger cube size.",
     old + more, MCOR_COUNT_LIMIT / 3);
   MCOR_TRY(mcor_append_cap_vertices(job));
   MCOR_TRY(mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles, more * width));
-  MCOR_TRY(mcor_extend(context, &context->box.owned, old, old + more));
-  MCOR_TRY(mcor_fill_range(context, &context->box.owned, 1, old, old + more));
+  MCOR_TRY(mcor_extend(context, &context->box.cells, old * cell, (old + more) * cell));
+  MCOR_TRY(mcor_fill_range(context, &context->box.cells, 0, old * cell, (old + more) * cell));
   mesh->triangle_count += (int)more;
   mesh->vertex_count += (int)job->vertex_count;
   MCOR_TRY(mcor_make_groups(context, &mesh->node, job->old_count, (int)job->vertex_count, &groups));

@@ -43,6 +43,7 @@ static mcor_status mcor_check_capping(mcor_context* context, const mcor_options*
     : mcor_wants_pairs(options)          ? "pairs as seeds"
     : options->ranks || options->globals ? "several ranks"
     : options->point_keys                ? "keys of points"
+    : options->triangle_keys             ? "keys of triangles"
                                          : NULL;
   MCOR_RETURN_IF(options->capping && other, context, MCOR_INVALID_ARGUMENT,
     "Capping does not go with %s. Turn one of them off.", other);

@@ -354,12 +354,13 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
     MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  mcor_buffer* owned = &context->box.owned;
-  MCOR_TRY(mcor_reserve(context, owned, context->box.is_part ? triangles : 1));
+  mcor_buffer* cells = &context->box.cells;
+  const bool follows = mcor_follows_cells(context);
+  MCOR_TRY(mcor_reserve(context, cells, (follows ? triangles : 1) * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
     MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context), MCOR_LEAF_DECISION_ARGS(context),
-    MCOR_BUFFER(owned), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
     MCOR_BUFFER(&mesh->triangles));
 }
 
@@ -367,30 +368,18 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
 static mcor_status mcor_count_triangles(mcor_context* context)
 {
   const mcor_graded* graded = &context->graded;
-  mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->statistics;
-  const bool is_part = context->box.is_part;
-  const size_t bytes = (size_t)mesh->triangle_count;
   cl_int end = 0;
-  void* view = NULL;
-  if (is_part)
-  {
-    MCOR_TRY(mcor_map(context, &context->box.owned, bytes, false, &view));
-  }
-  const uint8_t* owned = view;
   for (int l = 0; l <= context->tree.top; ++l)
   {
     const cl_int begin = end;
-    MCOR_TRY(mcor_read_int(context, &mesh->triangle_base, graded->first_leaf[l + 1], &end));
-    int64_t count = is_part ? 0 : end - begin;
-    for (cl_int i = begin; i < end && is_part; ++i)
-    {
-      count += owned[i];
-    }
+    int count;
+    MCOR_TRY(mcor_read_int(context, &context->mesh.triangle_base, graded->first_leaf[l + 1], &end));
+    MCOR_TRY(mcor_count_owned_triangles(context, begin, end, &count));
     s->triangles_of_level[l] += count;
     s->triangles_before_trimming += count;
   }
-  return is_part ? mcor_unmap(context, &context->box.owned, &view) : MCOR_OK;
+  return MCOR_OK;
 }
 
 /* Vertices and triangles. iso: relative to A0. */

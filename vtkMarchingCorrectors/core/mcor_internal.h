@@ -268,9 +268,9 @@ typedef struct mcor_box
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
   int begin[3], end[3]; /* the same of those whose particles are on the device */
-  mcor_buffer owned;    /* uchar per triangle of the mesh: 1 of an owned cell */
+  mcor_buffer cells;    /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
   mcor_buffer clipped;  /* ulong per brick, of mcor_count_cells */
-  uint8_t* kept;        /* per triangle of the surface: as owned; NULL: all are */
+  uint8_t* kept;        /* per triangle of the surface: 1 of an owned cell; NULL: all are */
   cl_ulong* told;       /* per brick or leaf, cells that others know of; see mcor_pair_rounds.c */
   int told_count;
 } mcor_box;

@@ -34,7 +34,7 @@ typedef struct mcor_download
   const cl_int *scanned, *node;
   const void *offset, *linear, *value, *gradient, *weight;
   const uint8_t* flag;
-  uint8_t* owned; /* see mcor_keep_owned */
+  uint8_t* owned; /* see mcor_keep_cells */
   uint64_t* cuts; /* see mcor_keep_cuts */
 } mcor_download;
 
@@ -411,7 +411,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   {
     MCOR_TRY(mcor_map_vertices(context, download));
   }
-  MCOR_TRY(mcor_keep_owned(context, surface, &download->owned));
+  MCOR_TRY(mcor_keep_cells(context, surface, &download->owned));
   MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
@@ -477,7 +477,7 @@ void mcor_free_surface(mcor_surface* surface)
   void* const arrays[] = { surface->points, surface->triangles, surface->normals,
     surface->gradients, surface->weight_sum, surface->boundary_eigenvalue,
     surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value,
-    surface->nearest_particle, surface->point_keys };
+    surface->nearest_particle, surface->point_keys, surface->triangle_keys };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);

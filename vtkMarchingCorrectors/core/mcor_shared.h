@@ -40,6 +40,9 @@ typedef struct mcor_level
 #define MCOR_BLOCK_WORDS 16 /* of a bit per brick: x 0..7, y 0..3 or 4..7, one z */
 #define MCOR_BLOCK_CUBES 32 /* along an edge */
 
+/* Beside the key of a triangle's cell: not of the box, but of the ring around it. */
+#define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
+
 /* Particles or triangles that one work-item treats in turn where that spares work: a CPU hides
  * little of what single ones wait for. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)

@@ -221,8 +221,8 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   {
     MCOR_TRY(mcor_split_bricks(context, input, tree));
   }
-  MCOR_RETURN_IF(context->options->point_keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context,
-    MCOR_OUT_OF_CAPACITY,
+  const bool keys = context->options->point_keys || context->options->triangle_keys;
+  MCOR_RETURN_IF(keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large for points with numbers, with cube size %g and %d levels of "
     "adaptive cubes. Use a larger cube size, or fewer levels.",
     context->lattice.cube, tree->top + 1);

@@ -10,7 +10,7 @@
 
 #include "mcor_internal.h"
 
-/* Of keys, where points have keys: the rest holds an edge of the brick. */
+/* Of keys, where points or triangles have keys: the rest holds an edge, or a cell, of the brick. */
 #define MCOR_TREE_KEY_BITS 55
 
 /* More leaves than this are not made. Of the parts of each split brick, 8, all but those that are split

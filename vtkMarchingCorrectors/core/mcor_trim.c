@@ -214,7 +214,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),
     MCOR_BUFFER(&trim->index), MCOR_BUFFER(&trim->triangles)));
   MCOR_TRY(
-    mcor_trim_owned(context, mcor_trim_quantity(context), mcor_trim_threshold(context), remaining));
+    mcor_trim_cells(context, mcor_trim_quantity(context), mcor_trim_threshold(context), remaining));
   mcor_release(context, &mesh->triangles);
   mesh->triangles = trim->triangles;
   trim->triangles = (mcor_buffer){ 0 };

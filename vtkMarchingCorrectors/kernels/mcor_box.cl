@@ -73,12 +73,13 @@ __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks,
   }
 }
 
-/* One work-item = one brick. Reads used cells and node masks. Writes 1 to the triangles of cells in
- * the box, 0 to others. */
-__kernel void mcor_box_mark(const int brick_count, __global const int4* bricks,
+/* One work-item = one brick. Reads used cells and node masks. Writes the keys of their cells to its
+ * triangles. */
+__kernel void mcor_box_mark(const int brick_count, const int blocks_x, const int blocks_y,
+  __global const int4* bricks,
   __global const int* neighbours, MCOR_BOX_PARAMS, __global const ulong* used,
   __global const ulong* above, __global const uchar* case_table, __global const int* triangle_base,
-  __global uchar* owned)
+  __global ulong* triangle_cells)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count || used[slot] == 0)
@@ -89,13 +90,14 @@ __kernel void mcor_box_mark(const int brick_count, __global const int4* bricks,
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
   const ulong cells = mcor_box_cells(MCOR_BOX_ARGS, bricks[slot]);
+  const ulong key = mcor_brick_place(blocks_x, blocks_y, bricks[slot]) << 6;
   int to = triangle_base[slot];
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
     for (int i = case_table[mcor_march_case(m, cell) * 16 + 15]; i > 0; --i)
     {
-      owned[to++] = (uchar)(cells >> cell & 1);
+      triangle_cells[to++] = key | (ulong)cell | (cells >> cell & 1 ? 0 : MCOR_RING_CELL);
     }
   }
 }
@@ -103,10 +105,11 @@ __kernel void mcor_box_mark(const int brick_count, __global const int4* bricks,
 
 #if MCOR_OF_OPTIONS
 /* The same, where the field decided on the topology. */
-__kernel void mcor_box_mark_resolved(const int brick_count, __global const int4* bricks,
+__kernel void mcor_box_mark_resolved(const int brick_count, const int blocks_x,
+  const int blocks_y, __global const int4* bricks,
   __global const int* neighbours, MCOR_BOX_PARAMS, __global const ulong* used,
   __global const ulong* above, __global const ulong* decisions, __global const int* cases,
-  __global const mcor_cell_row* rows, __global const int* triangle_base, __global uchar* owned)
+  __global const mcor_cell_row* rows, __global const int* triangle_base, __global ulong* triangle_cells)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count || used[slot] == 0)
@@ -117,6 +120,7 @@ __kernel void mcor_box_mark_resolved(const int brick_count, __global const int4*
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
   const ulong cells = mcor_box_cells(MCOR_BOX_ARGS, bricks[slot]);
+  const ulong key = mcor_brick_place(blocks_x, blocks_y, bricks[slot]) << 6;
   int to = triangle_base[slot], tunnel;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
@@ -125,7 +129,7 @@ __kernel void mcor_box_mark_resolved(const int brick_count, __global const int4*
            mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel)->triangles;
          i > 0; --i)
     {
-      owned[to++] = (uchar)(cells >> cell & 1);
+      triangle_cells[to++] = key | (ulong)cell | (cells >> cell & 1 ? 0 : MCOR_RING_CELL);
     }
   }
 }
@@ -133,10 +137,10 @@ __kernel void mcor_box_mark_resolved(const int brick_count, __global const int4*
 
 #if MCOR_OF_FIELD
 /* One work-item = one batch of triangles. Reads what mcor_trim_count did. Writes to what remains of a
- * triangle whether that was owned. */
+ * triangle the cell it was in. */
 __kernel void mcor_box_trim(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global const int* remaining,
-  __global const uchar* owned, __global uchar* trimmed)
+  __global const ulong* cells, __global ulong* trimmed)
 {
   const int batch = get_global_id(0);
   const long begin = (long)batch * MCOR_BATCH;
@@ -155,7 +159,7 @@ __kernel void mcor_box_trim(const int triangle_count, __global const int* triang
     const int left = inside == 0 ? 0 : inside == 2 ? 2 : 1;
     for (int k = 0; k < left; ++k)
     {
-      trimmed[to++] = owned[i];
+      trimmed[to++] = cells[i];
     }
   }
 }

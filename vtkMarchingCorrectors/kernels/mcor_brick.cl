@@ -80,6 +80,13 @@ MCOR_ONE_COPY int4 mcor_brick_of_number(
     (int4)(local_brick & 7, local_brick >> 3 & 7, local_brick >> 6, 0);
 }
 
+/* A number by which bricks of all of the lattice are in the order of their slots. */
+ulong mcor_brick_place(const int blocks_x, const int blocks_y, int4 brick)
+{
+  const ulong block = ((ulong)(brick.z / 8) * blocks_y + brick.y / 8) * blocks_x + brick.x / 8;
+  return block << 9 | (ulong)((brick.x & 7) | (brick.y & 7) << 3 | (brick.z & 7) << 6);
+}
+
 /* Requests the brick with number m; true if nothing had requested it before. It has no slot
  * until the host has placed it. */
 bool mcor_request_brick(__global uint* brick_bits, int m)

@@ -442,10 +442,11 @@ __kernel void mcor_graded_clip(
   clipped[i] = within;
 }
 
-/* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, where
- * there is a box, whether their cells are in it. */
+/* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, if
+ * wanted, the keys of their cells. */
 __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
-  MCOR_LEAF_DECISION_PARAMS, __global uchar* owned,
+  MCOR_LEAF_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
+  __global ulong* triangle_cells,
   __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
   __global const int* triangle_base, __global int* triangles)
 {
@@ -456,6 +457,7 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
+  const ulong key = mcor_graded_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
   __global int* to = triangles + triangle_base[i] * 3L;
   for (ulong rest = used[i]; rest; rest &= rest - 1)
   {
@@ -489,10 +491,10 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
         *to++ = mcor_leaf_vertex(&leaf, cell, 0, row[k] >> 3, lower, edges, vertex_base);
       }
     }
-    const bool within = mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell);
-    for (long t = begin; is_part && t < (to - triangles) / 3; ++t)
+    const ulong ring = mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) ? 0 : MCOR_RING_CELL;
+    for (long t = begin; follows && t < (to - triangles) / 3; ++t)
     {
-      owned[t] = within;
+      triangle_cells[t] = key << 6 | (ulong)cell | ring;
     }
   }
 }

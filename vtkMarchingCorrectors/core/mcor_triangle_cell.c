@@ -1,0 +1,255 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The cell that each triangle is in, as a key, follows it through trimming. It says which triangles are
+ * owned, see mcor_box.c: those of the ring, and points that only they use, leave the surface at the
+ * very end. And keys ascend in the order of the whole surface's triangles, whatever part of it a call
+ * makes. */
+
+#include "mcor_box.h"
+#include "mcor_cap.h"
+#include "mcor_input.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_BOX_ARGS(r, ring) MCOR_CELL_ARGS((r)->first, (r)->last, ring, ring)
+
+bool mcor_follows_cells(const mcor_context* context)
+{
+  return context->box.is_part || context->options->triangle_keys;
+}
+
+/* ---- Mesh ---- */
+
+/* Writes the triangles' cells; *count: how many are owned. */
+mcor_status mcor_mark_owned(mcor_context* context, int* count)
+{
+  mcor_box* box = &context->box;
+  const mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  const mcor_topology_data* topology = &context->topology;
+  const int *blocks = context->lattice.blocks, bricks_now = bricks->now.count;
+  *count = mesh->triangle_count;
+  if (!mcor_follows_cells(context))
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_reserve(context, &box->cells, (size_t)mesh->triangle_count * sizeof(cl_ulong)));
+  if (context->options->topology == MCOR_TOPOLOGY_FIELD)
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark_resolved", MCOR_MEDIUM, bricks_now,
+      MCOR_INT(bricks_now), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
+      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BOX_ARGS(box, 0),
+      MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&topology->decisions),
+      MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),
+      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells)));
+  }
+  else
+  {
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark", MCOR_MEDIUM, bricks_now, MCOR_INT(bricks_now),
+      MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_BUFFER(&bricks->now.bricks),
+      MCOR_BUFFER(&bricks->neighbours), MCOR_BOX_ARGS(box, 0), MCOR_BUFFER(&mesh->used),
+      MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&context->case_table),
+      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells)));
+  }
+  return mcor_count_owned_triangles(context, 0, mesh->triangle_count, count);
+}
+
+mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count)
+{
+  void* view = NULL;
+  *count = last - first;
+  if (!context->box.is_part || last == first)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer* buffer = &context->box.cells;
+  MCOR_TRY(mcor_map(context, buffer, (size_t)last * sizeof(cl_ulong), false, &view));
+  const cl_ulong* cells = view;
+  for (int i = first; i < last; ++i)
+  {
+    *count -= (cells[i] & MCOR_RING_CELL) != 0;
+  }
+  return mcor_unmap(context, buffer, &view);
+}
+
+/* Trimming is about to leave `remaining` triangles; see mcor_box_trim. */
+mcor_status mcor_trim_cells(
+  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining)
+{
+  mcor_box* box = &context->box;
+  const mcor_mesh* mesh = &context->mesh;
+  if (!mcor_follows_cells(context))
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer trimmed = { 0 };
+  MCOR_TRY(mcor_reserve(context, &trimmed, (size_t)remaining * sizeof(cl_ulong)));
+  const mcor_status status = MCOR_LAUNCH(context, "mcor_box_trim", MCOR_MEDIUM,
+    mcor_batches(context, mesh->triangle_count), MCOR_INT(mesh->triangle_count),
+    MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity), MCOR_REAL(threshold),
+    MCOR_BUFFER(&context->trim.remaining), MCOR_BUFFER(&box->cells), MCOR_BUFFER(&trimmed));
+  mcor_release(context, &box->cells);
+  box->cells = trimmed;
+  return status;
+}
+
+/* ---- Surface ---- */
+
+/* Room for the keys and flags of the mesh's triangles behind those of the surface. */
+static mcor_status mcor_extend_kept(mcor_context* context, mcor_surface* surface)
+{
+  mcor_box* box = &context->box;
+  const size_t count = (size_t)surface->triangle_count + (size_t)context->mesh.triangle_count;
+  bool good = true;
+  if (box->is_part)
+  {
+    uint8_t* kept = realloc(box->kept, count + 1);
+    box->kept = kept ? kept : box->kept;
+    good = kept != NULL;
+  }
+  if (context->options->triangle_keys)
+  {
+    uint64_t* keys = realloc(surface->triangle_keys, count * MCOR_TRIANGLE_KEY * sizeof *keys + 1);
+    surface->triangle_keys = keys ? keys : surface->triangle_keys;
+    good = good && keys;
+  }
+  MCOR_RETURN_IF(!good, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %zu triangles could not be allocated.", count);
+  return MCOR_OK;
+}
+
+/* 1 for each vertex that an owned triangle uses; the mesh's triangles begin at `base` of the kept ones. */
+static mcor_status mcor_mark_vertices(mcor_context* context, size_t base, uint8_t** vertices)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const size_t triangles = (size_t)mesh->triangle_count;
+  const uint8_t* kept = context->box.kept;
+  *vertices = calloc((size_t)mesh->vertex_count + 1, 1);
+  MCOR_RETURN_IF(!*vertices, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %d points could not be allocated.", mesh->vertex_count);
+  void* view;
+  MCOR_TRY(mcor_map(context, &mesh->triangles, triangles * 3 * sizeof(cl_int), false, &view));
+  const cl_int* corners = view;
+  for (size_t i = 0; i < 3 * triangles; ++i)
+  {
+    (*vertices)[corners[i]] |= kept[base + i / 3];
+  }
+  return mcor_unmap(context, &mesh->triangles, &view);
+}
+
+/* Takes the cells of the mesh's triangles along with the surface; marks in *vertices, where not all are
+ * owned, those of the mesh that an owned triangle uses with 1. */
+mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface, uint8_t** vertices)
+{
+  mcor_box* box = &context->box;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t triangles = (size_t)mesh->triangle_count, base = (size_t)surface->triangle_count;
+  if (!mcor_follows_cells(context))
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_extend_kept(context, surface));
+  if (triangles == 0)
+  {
+    return MCOR_OK;
+  }
+  void* view;
+  MCOR_TRY(mcor_map(context, &box->cells, triangles * sizeof(cl_ulong), false, &view));
+  const cl_ulong* cells = view;
+  for (size_t i = 0; i < triangles; ++i)
+  {
+    if (box->is_part)
+    {
+      box->kept[base + i] = !(cells[i] & MCOR_RING_CELL);
+    }
+    if (surface->triangle_keys)
+    {
+      uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (base + i);
+      key[0] = (uint64_t)context->iso_number;
+      key[1] = cells[i];
+    }
+  }
+  MCOR_TRY(mcor_unmap(context, &box->cells, &view));
+  return box->is_part ? mcor_mark_vertices(context, base, vertices) : MCOR_OK;
+}
+
+/* Moves elements of `width` bytes to where their numbers say, which is not behind where they are;
+ * -1: dropped. */
+static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t count)
+{
+  char* bytes = array;
+  for (int64_t i = 0; i < count && array; ++i)
+  {
+    if (number[i] >= 0 && number[i] != i)
+    {
+      memcpy(bytes + (size_t)number[i] * width, bytes + (size_t)i * width, width);
+    }
+  }
+}
+
+/* Numbers the points that owned triangles use, in order; drops the other triangles. */
+static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, int32_t* number)
+{
+  int64_t triangles = 0, points = 0;
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    number[i] = -1;
+  }
+  for (int64_t i = 0; i < 3 * surface->triangle_count; ++i)
+  {
+    if (kept[i / 3])
+    {
+      number[surface->triangles[i]] = 0;
+    }
+  }
+  for (int64_t i = 0; i < surface->point_count; ++i)
+  {
+    number[i] = number[i] < 0 ? -1 : (int32_t)points++;
+  }
+  for (int64_t i = 0; i < surface->triangle_count; ++i)
+  {
+    for (int c = 0; c < 3 && kept[i]; ++c)
+    {
+      surface->triangles[3 * triangles + c] = number[surface->triangles[3 * i + c]];
+    }
+    for (int k = 0; k < MCOR_TRIANGLE_KEY && kept[i] && surface->triangle_keys; ++k)
+    {
+      surface->triangle_keys[MCOR_TRIANGLE_KEY * triangles + k] =
+        surface->triangle_keys[MCOR_TRIANGLE_KEY * i + k];
+    }
+    triangles += kept[i];
+  }
+  surface->triangle_count = triangles;
+  return points;
+}
+
+/* Leaves the owned triangles, and their points. */
+mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
+{
+  const uint8_t* kept = context->box.kept;
+  if (!kept)
+  {
+    return MCOR_OK;
+  }
+  int32_t* number = malloc(((size_t)surface->point_count + 1) * sizeof *number);
+  MCOR_RETURN_IF(!number, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld points could not be allocated.", (long long)surface->point_count);
+  const int64_t points = mcor_drop_triangles(surface, kept, number);
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
+  mcor_list_surface_arrays(surface, arrays);
+  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
+  {
+    mcor_pack(*arrays[i].array, arrays[i].width, number, surface->point_count);
+  }
+  for (int a = 0; a < surface->attribute_count; ++a)
+  {
+    mcor_pack(surface->attributes[a],
+      (size_t)mcor_components(&input->attributes[a]) * sizeof(double), number,
+      surface->point_count);
+  }
+  surface->point_count = points;
+  free(number);
+  return MCOR_OK;
+}

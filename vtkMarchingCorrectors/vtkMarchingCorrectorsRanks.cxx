@@ -149,7 +149,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
     fluid == 0 ? this->WarnOfNoFluid(choice, "no surface")
                : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
   }
-  if (fluid == 0)
+  if (fluid == 0 || !this->SetPeriodTogether(ranks, own, options))
   {
     return;
   }

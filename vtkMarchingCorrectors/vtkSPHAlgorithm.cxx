@@ -272,14 +272,6 @@ int vtkSPHAlgorithm::RequestData(
   this->Internals->BeginRun();
   auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (this->IsShared() && this->DetectPeriod)
-  {
-    this->Fail(
-      "The period is detected in the field data of one process. With several, turn that off and "
-      "set the periodic bounds.");
-    this->Internals->EndRun();
-    return 0;
-  }
   if (this->IsShared() && !this->AgreeOnBlocks(blocks))
   {
     this->Internals->EndRun();

@@ -54,6 +54,7 @@ struct mcor_context;
 struct mcor_input;
 struct mcor_options;
 struct vtkSPHParticlesChoice;
+struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm : public vtkPolyDataAlgorithm
@@ -151,7 +152,8 @@ public:
    * array "PeriodicBounds" of six bounds; "BoxSize" of one or three lengths, as GADGET and SWIFT call
    * it, which begin at 0, at minus half the length or at the lowest particle, whichever is the first that
    * holds all particles; "box" of six bounds with "boundaryType", 1 where it repeats, as SPH-EXA does. Of
-   * blocks each has its own. An error where there is none, and with several processes.
+   * blocks each has its own. Several processes take it
+   * from any of theirs that tell of one. An error where there is none, or there are different ones.
    */
   vtkSetMacro(DetectPeriod, vtkTypeBool);
   vtkGetMacro(DetectPeriod, vtkTypeBool);
@@ -398,6 +400,10 @@ protected:
    * reported.
    */
   bool SetPeriod(vtkPointSet* particles, mcor_options& options);
+  /** The same on all ranks together; these are one's own. */
+  bool SetPeriodTogether(vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options);
+  /** False, and reported, where none was found, or there is a problem. */
+  bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles);
   bool IsAborted();
 

@@ -118,6 +118,10 @@ bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtk
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
   mcor_options options;
   this->FillOptions(options);
+  if (!this->SetPeriodTogether(ranks, own, options))
+  {
+    return false;
+  }
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);

@@ -132,6 +132,21 @@ std::vector<double> vtkSPHBoundsOfPeriod(const std::vector<double>& period, cons
 }
 
 //------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::CheckPeriod(const vtkSPHPeriod& found, const std::string& problem)
+{
+  const std::string sentence = !problem.empty() ? problem
+    : !found.Period.empty()
+    ? ""
+    : "The particles' field data tell of no period: there is no array PeriodicBounds, "
+      "BoxSize, or box with boundaryType.";
+  if (!sentence.empty())
+  {
+    this->Fail(sentence + " Set the periodic bounds, and turn their detection off.");
+  }
+  return sentence.empty();
+}
+
+//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::SetPeriod(vtkPointSet* particles, mcor_options& options)
 {
   if (!this->DetectPeriod)
@@ -139,11 +154,8 @@ bool vtkSPHAlgorithm::SetPeriod(vtkPointSet* particles, mcor_options& options)
     return true;
   }
   const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
-  if (found.Period.empty())
+  if (!this->CheckPeriod(found, ""))
   {
-    this->Fail(
-      "The particles' field data tell of no period: there is no array PeriodicBounds, "
-      "BoxSize, or box with boundaryType. Set the periodic bounds, and turn their detection off.");
     return false;
   }
   const std::vector<double> bounds = vtkSPHBoundsOfPeriod(found.Period, particles->GetBounds());

@@ -12,6 +12,8 @@
 #include <vector>
 
 class vtkFieldData;
+class vtkMultiProcessController;
+class vtkPointSet;
 
 struct vtkSPHPeriod
 {
@@ -31,5 +33,16 @@ VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 /** Six bounds, also of lengths alone: where the particles, of this extent, lie in them. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
+
+/**
+ * The same where many processes hold the particles: of the first of them whose field data tell of a period.
+ * `problem` becomes a sentence where those of another one tell of another period. Collective.
+ */
+VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodTogether(
+  vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
+
+/** The same of all processes' particles; a process may have none. Collective. */
+VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodTogether(
+  vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 
 #endif

@@ -175,6 +175,10 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
 {
   mcor_options options;
   this->FillProbeOptions(options);
+  if (!this->SetPeriodTogether(ranks, own, options))
+  {
+    return false;
+  }
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);

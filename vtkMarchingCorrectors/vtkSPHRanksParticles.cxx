@@ -6,6 +6,7 @@
 #include "vtkBitArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -394,6 +395,10 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
     taken->DeepCopy(own);
   }
   auto particles = MakeParticles(common, own->GetNumberOfIds());
+  if (data)
+  {
+    particles->GetFieldData()->ShallowCopy(data->GetFieldData());
+  }
   if (own->GetNumberOfIds() > 0)
   {
     view->GetPoints()->GetData()->GetTuples(own, particles->GetPoints()->GetData());

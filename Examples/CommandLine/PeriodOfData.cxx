@@ -27,16 +27,21 @@ void PassPeriod(vtkDataObject* from, vtkDataObject* to)
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> DetectPeriod(vtkDataObject* particles)
+std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem)
 {
-  const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
-  if (found.Period.empty())
+  if (!problem.empty() || found.Period.empty())
   {
-    throw std::runtime_error("The particles' field data tell of no period: there is no array "
-                             "PeriodicBounds, BoxSize, or box with boundaryType. Give "
-                             "--periodic LX,LY,LZ.");
+    const std::string none = "The particles' field data tell of no period: there is no array "
+                             "PeriodicBounds, BoxSize, or box with boundaryType.";
+    throw std::runtime_error((problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
   }
   return found.Period;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> DetectPeriod(vtkDataObject* particles)
+{
+  return CheckedPeriod(vtkSPHFindPeriod(particles->GetFieldData()), "");
 }
 
 //------------------------------------------------------------------------------

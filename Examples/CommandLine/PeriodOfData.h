@@ -10,9 +10,13 @@
 #include <vector>
 
 class vtkDataObject;
+struct vtkSPHPeriod;
 
 /// Gives the field data that may tell of a period, and no other.
 void PassPeriod(vtkDataObject* from, vtkDataObject* to);
+
+/// What was found, if there is no problem. Throws std::runtime_error where nothing was.
+std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
 
 /// The period for "--periodic auto". Throws std::runtime_error where there is none.
 std::vector<double> DetectPeriod(vtkDataObject* particles);

@@ -4,6 +4,7 @@
 
 #include "CommandLineOptions.h"
 #include "ParticleFile.h"
+#include "PeriodOfData.h"
 #include "RankSession.h"
 
 #include "vtkMPIController.h"
@@ -65,23 +66,19 @@ vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
 }
 
 //------------------------------------------------------------------------------
-void ResolvePeriod(CommandLineOptions& options, const RankSession& session, vtkPointSet* particles)
+void ResolvePeriod(CommandLineOptions& options, RankSession& session, vtkPointSet* particles)
 {
-  if (options.Periodic.size() != 3)
+  if (options.DetectPeriod)
   {
-    return;
+    std::string problem;
+    const vtkSPHPeriod found =
+      vtkSPHFindPeriodTogether(session.GetController(), particles->GetFieldData(), problem);
+    session.Together([&] { options.Periodic = CheckedPeriod(found, problem); });
+    options.DetectPeriod = false;
   }
-  double ends[6], all[6];
-  particles->GetBounds(ends);
-  const bool isEmpty = particles->GetNumberOfPoints() == 0;
-  for (int side = 0; side < 6; ++side)
+  if (options.Periodic.size() == 3)
   {
-    ends[side] = isEmpty ? 1e300 : side % 2 == 0 ? ends[side] : -ends[side];
+    options.Periodic =
+      vtkSPHBoundsOfPeriodTogether(session.GetController(), options.Periodic, particles);
   }
-  session.GetController()->AllReduce(ends, all, 6, vtkCommunicator::MIN_OP);
-  for (int side = 1; side < 6; side += 2)
-  {
-    all[side] = -all[side];
-  }
-  options.Periodic = vtkSPHBoundsOfPeriod(options.Periodic, all);
 }

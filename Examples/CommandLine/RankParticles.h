@@ -17,7 +17,7 @@ struct CommandLineOptions;
 vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
   RankSession& session, const std::string& file, MessageCapture* messages);
 
-/// --periodic with lengths alone asks where all particles are.
-void ResolvePeriod(CommandLineOptions& options, const RankSession& session, vtkPointSet* particles);
+/// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
+void ResolvePeriod(CommandLineOptions& options, RankSession& session, vtkPointSet* particles);
 
 #endif

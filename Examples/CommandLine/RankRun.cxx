@@ -38,11 +38,6 @@ void CheckUse(const CommandLineOptions& options, const RankSession& session)
     throw std::runtime_error("several processes share a surface or a probe, but no film, "
                              "--screenshot or --repeat; run these without mpirun");
   }
-  if (options.DetectPeriod)
-  {
-    throw std::runtime_error(
-      "--periodic auto reads the field data of one process; with several give the period");
-  }
   if (session.IsFirst() && !options.Probe.empty())
   {
     CheckProbeFiles(options);

@@ -18,6 +18,7 @@ import unittest
 import numpy as np
 from particle_pieces import corners, difference, read, write, write_pieces
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
@@ -85,6 +86,29 @@ class Program(unittest.TestCase):
         self.check_same_file(*trimmed, "--topology", "field")
         self.check_same_file(*trimmed, "--seeds", "pairs", "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf")
         self.check_same_file("--free-surface")
+
+    def test_period_of_data(self):
+        """The field data of one piece tell of the period, those of two tell of different ones."""
+        pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
+        how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
+        self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "tell of no period")
+        self.set_box_size("piece_1.vtp", 0, 0, 3.1)
+        for output, run, period in ("alone.ply", self.run_alone, "0,0,3.1"), ("ranks.ply", self.run_ranks, "auto"):
+            done = run(PARTICLES if run == self.run_alone else pieces, self.path(output), *how, period)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(filecmp.cmp(self.path("alone.ply"), self.path("ranks.ply"), shallow=False))
+        self.set_box_size("piece_0.vtp", 0, 0, 3.2)
+        self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "different periods: BoxSize 0,0,3.2 on rank 0, "
+                         "BoxSize 0,0,3.1 on rank 1")
+
+    def set_box_size(self, piece, *size):
+        part = read(self.path(piece))
+        array = vtkDoubleArray()
+        array.SetName("BoxSize")
+        for length in size:
+            array.InsertNextValue(length)
+        part.GetFieldData().AddArray(array)
+        write(part, self.path(piece))
 
     def test_pieces(self):
         """Pieces in, pieces out: more of them than processes."""

@@ -38,6 +38,9 @@ static inline const char* mcor_array_name(const mcor_array* array, const char* r
 }
 
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
+/* All three coordinates of at most MCOR_CHUNK particles. */
+void mcor_read_positions(
+  const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
 /* At most MCOR_CHUNK of them. Not finite where a derived scalar does not exist as a number. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 

@@ -29,12 +29,7 @@ typedef struct mcor_chunk
 static void mcor_read_chunk(
   const mcor_context* context, const mcor_input* input, int64_t first, mcor_chunk* chunk)
 {
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_read_array(&positions, first, chunk->count, a, chunk->x[a]);
-  }
+  mcor_read_positions(input, first, chunk->count, chunk->x);
   mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
   if (context->options->field != MCOR_WEIGHT_SUM)
   {
@@ -53,7 +48,7 @@ static double mcor_most(double a, double b)
 }
 
 static void mcor_measure_particle(
-  mcor_measure* m, const mcor_chunk* chunk, int i, bool solid, bool has_scalar, double reach)
+  mcor_measure* m, const mcor_chunk* chunk, int i, bool solid, double reach)
 {
   const double h = chunk->h[i], support = h * reach;
   m->support_min = mcor_least(m->support_min, support);
@@ -72,11 +67,6 @@ static void mcor_measure_particle(
   {
     m->h_min = mcor_least(m->h_min, h);
     m->h_max = mcor_most(m->h_max, h);
-  }
-  if (!solid && has_scalar)
-  {
-    m->scalar_min = mcor_least(m->scalar_min, chunk->scalar[i]);
-    m->scalar_max = mcor_most(m->scalar_max, chunk->scalar[i]);
   }
 }
 
@@ -110,6 +100,113 @@ static void mcor_merge_measure(mcor_measure* m, const mcor_measure* other)
   m->not_finite = other->not_finite < m->not_finite ? other->not_finite : m->not_finite;
 }
 
+/* Elements that are measured at a time: each alone would wait for the one before. */
+#define MCOR_MEASURED 4
+
+/* Widens [*low, *high] to hold x. */
+static void mcor_measure_extent(const double* x, int count, double* low, double* high)
+{
+  double least[MCOR_MEASURED], most[MCOR_MEASURED];
+  int i = 0;
+  for (int l = 0; l < MCOR_MEASURED; ++l)
+  {
+    least[l] = *low;
+    most[l] = *high;
+  }
+  for (; i + MCOR_MEASURED <= count; i += MCOR_MEASURED)
+  {
+    for (int l = 0; l < MCOR_MEASURED; ++l)
+    {
+      least[l] = mcor_least(least[l], x[i + l]);
+      most[l] = mcor_most(most[l], x[i + l]);
+    }
+  }
+  for (; i < count; ++i)
+  {
+    least[0] = mcor_least(least[0], x[i]);
+    most[0] = mcor_most(most[0], x[i]);
+  }
+  for (int l = 0; l < MCOR_MEASURED; ++l)
+  {
+    *low = mcor_least(*low, least[l]);
+    *high = mcor_most(*high, most[l]);
+  }
+}
+
+/* The same of the supports along axis a. */
+static void mcor_measure_reach(const mcor_chunk* chunk, int a, double reach, mcor_measure* m)
+{
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const double support = chunk->h[i] * reach;
+    m->low[a] = mcor_least(m->low[a], chunk->x[a][i] - support);
+    m->high[a] = mcor_most(m->high[a], chunk->x[a][i] + support);
+  }
+}
+
+/* Of a chunk without solids, all but the scalar. Rounding keeps the order of numbers: what is least before
+ * a product or a difference with the same number is so after it. */
+static void mcor_measure_fluid(mcor_measure* m, const mcor_chunk* chunk, double reach)
+{
+  double h_min = DBL_MAX, h_max = 0;
+  mcor_measure_extent(chunk->h, chunk->count, &h_min, &h_max);
+  for (int a = 0; a < 3; ++a)
+  {
+    double low = DBL_MAX, high = -DBL_MAX;
+    mcor_measure_extent(chunk->x[a], chunk->count, &low, &high);
+    m->x_low[a] = mcor_least(m->x_low[a], low);
+    m->x_high[a] = mcor_most(m->x_high[a], high);
+    if (h_min < h_max)
+    {
+      mcor_measure_reach(chunk, a, reach, m);
+      continue;
+    }
+    m->low[a] = mcor_least(m->low[a], low - h_min * reach);
+    m->high[a] = mcor_most(m->high[a], high + h_min * reach);
+  }
+  m->h_min = mcor_least(m->h_min, h_min);
+  m->h_max = mcor_most(m->h_max, h_max);
+  m->support_min = mcor_least(m->support_min, h_min * reach);
+  m->support_max = mcor_most(m->support_max, h_max * reach);
+  m->fluid_count += chunk->count;
+}
+
+/* Of a chunk with solids, the same. */
+static void mcor_measure_mixed(const mcor_context* context, const mcor_input* input, int64_t first,
+  const mcor_chunk* chunk, double reach, mcor_measure* m)
+{
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const bool solid = input->solid[first + i];
+    m->solid_count += solid;
+    m->fluid_count += !solid;
+    if (mcor_is_used(context, input, first + i))
+    {
+      mcor_measure_particle(m, chunk, i, solid, reach);
+    }
+  }
+}
+
+/* The scalar of a chunk's fluid particles. */
+static void mcor_measure_scalar(
+  const mcor_input* input, int64_t first, const mcor_chunk* chunk, mcor_measure* m)
+{
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const double value = chunk->scalar[i];
+    if (input->solid && input->solid[first + i])
+    {
+      continue;
+    }
+    m->scalar_min = mcor_least(m->scalar_min, value);
+    m->scalar_max = mcor_most(m->scalar_max, value);
+    if (!isfinite(value) && first + i < m->not_finite)
+    {
+      m->not_finite = first + i;
+    }
+  }
+}
+
 typedef struct mcor_measuring
 {
   const mcor_context* context;
@@ -131,19 +228,17 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
     chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
     mcor_read_chunk(job->context, input, begin, &chunk);
     mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
-    for (int i = 0; i < chunk.count; ++i)
+    if (input->solid)
     {
-      const bool solid = input->solid && input->solid[begin + i];
-      m.solid_count += solid;
-      m.fluid_count += !solid;
-      if (mcor_is_used(job->context, input, begin + i))
-      {
-        mcor_measure_particle(&m, &chunk, i, solid, has_scalar, job->reach);
-        if (!solid && has_scalar && !isfinite(chunk.scalar[i]) && begin + i < m.not_finite)
-        {
-          m.not_finite = begin + i;
-        }
-      }
+      mcor_measure_mixed(job->context, input, begin, &chunk, job->reach, &m);
+    }
+    else
+    {
+      mcor_measure_fluid(&m, &chunk, job->reach);
+    }
+    if (has_scalar)
+    {
+      mcor_measure_scalar(input, begin, &chunk, &m);
     }
   }
   job->measures[slice] = m;
@@ -247,7 +342,8 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       cube, last - first, a, MCOR_LATTICE_LIMIT);
     MCOR_RETURN_IF(!(fabs(first) < MCOR_FARTHEST) || !(fabs(last) < MCOR_FARTHEST), context,
       MCOR_OUT_OF_CAPACITY,
-      "The particles are about %g away from the origin, but a number has no digits for cubes of size "
+      "The particles are about %g away from the origin, but a number has no digits for cubes of "
+      "size "
       "%g there. Move the particles towards the origin.",
       fmax(fabs(m->low[a]), fabs(m->high[a])), cube);
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;

@@ -14,14 +14,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_WATCHED 32     /* fluid particles, bits of a mask */
-#define MCOR_WATCH_CELLS 64 /* along each axis of a coarse grid; the outermost are in no reach */
+#define MCOR_WATCHED 32 /* fluid particles, bits of a mask */
+#define MCOR_WATCH_CELLS                                                                           \
+  64 /* along each axis of a coarse grid, bits of a row; the outermost are in no reach */
 
 /* Fluid particles, and whether any cell is in reach of each. */
 struct mcor_watch
 {
   double low[3], cells_per_length[3];
   uint32_t* reached; /* [cells], bit s: of watched particle s */
+  uint64_t
+    any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS]; /* bit x: of any of them; small, for a fast look */
   int count;
   double x[MCOR_WATCHED][3], h[MCOR_WATCHED], volume[MCOR_WATCHED], support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
@@ -86,6 +89,7 @@ static void mcor_mark_reached(mcor_watch* watch, int s)
       for (int x = low[0]; x <= high[0]; ++x)
       {
         watch->reached[(z * MCOR_WATCH_CELLS + y) * MCOR_WATCH_CELLS + x] |= UINT32_C(1) << s;
+        watch->any[z * MCOR_WATCH_CELLS + y] |= UINT64_C(1) << x;
       }
     }
   }
@@ -122,7 +126,7 @@ void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double 
   }
   for (int i = 0; i < count; ++i)
   {
-    if (watch->reached[cell[i]])
+    if (watch->any[cell[i] / MCOR_WATCH_CELLS] >> cell[i] % MCOR_WATCH_CELLS & 1)
     {
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
       mcor_watch_particle(watch, slice, watch->reached[cell[i]], at);

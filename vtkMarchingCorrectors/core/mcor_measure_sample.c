@@ -70,12 +70,12 @@ static double mcor_given_volume(const mcor_input* input, int64_t i)
 static void mcor_sample_particle(
   const mcor_sampling* job, mcor_samples_found* found, int64_t i, const double x[3])
 {
-  mcor_sample sample = { .hash = mcor_hash_position(x), .x = { x[0], x[1], x[2] } };
-  const bool full = found->count == found->most;
-  if (full && sample.hash > found->sample[found->most - 1].hash)
+  const uint64_t hash = mcor_hash_position(x);
+  if (found->count == found->most && hash > found->sample[found->most - 1].hash)
   {
     return;
   }
+  mcor_sample sample = { .hash = hash, .x = { x[0], x[1], x[2] } };
   if (job->which == MCOR_FLUID_PARTICLES)
   {
     mcor_read_smoothing_length(job->context, job->input, i, 1, &sample.h);
@@ -89,16 +89,11 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   const mcor_sampling* job = data;
   const uint8_t* solid = job->input->solid;
   const bool any = job->which == MCOR_ALL_PARTICLES, solids = job->which == MCOR_SOLID_PARTICLES;
-  mcor_array positions = job->input->positions;
-  positions.components = 3;
   double x[3][MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_read_array(&positions, begin, count, a, x[a]);
-    }
+    mcor_read_positions(job->input, begin, count, x);
     for (int i = 0; i < count; ++i)
     {
       if (any || (solid && solid[begin + i]) == solids)

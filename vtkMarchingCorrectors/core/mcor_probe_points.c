@@ -103,7 +103,10 @@ static void mcor_read_points(
     for (int i = 0; i < count; ++i)
     {
       at[a][i] = at[a][i] / lattice->cube - origin;
-      at[a][i] = lattice->period[a] > 0 ? mcor_wrap_point(run->context, a, at[a][i]) : at[a][i];
+    }
+    for (int i = 0; i < count && lattice->period[a] > 0; ++i)
+    {
+      at[a][i] = mcor_wrap_point(run->context, a, at[a][i]);
     }
   }
 }

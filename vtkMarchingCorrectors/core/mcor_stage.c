@@ -110,41 +110,89 @@ static int mcor_images_of(
   return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, chunk->h[i]), images);
 }
 
-/* Marks the particles of a chunk that cannot reach anything, by one look at each coordinate: most of
- * those that the exact look at images would find. */
-static void mcor_find_far(const mcor_reach_box* reach, const mcor_stage_chunk* chunk, uint8_t* far)
+/* Marks the particles that may reach something, by one look at each coordinate that the box limits: all
+ * that the exact look at images would find, and few more. */
+static void mcor_mark_near(const mcor_stage_job* job, int64_t first, int count)
 {
-  memset(far, 0, (size_t)chunk->count);
+  const mcor_reach_box* reach = job->reach;
+  const mcor_lattice* lattice = &job->context->lattice;
+  mcor_array positions = job->input->positions;
+  double x[MCOR_CHUNK], h[MCOR_CHUNK];
+  uint8_t* near = job->images + first;
+  positions.components = 3;
+  memset(near, 1, (size_t)count);
+  mcor_read_smoothing_length(job->context, job->input, first, count, h);
+  for (int i = 0; i < count; ++i)
+  {
+    h[i] = (reach->top > 0 ? mcor_reach_of(reach, h[i]) : h[i] * reach->support) * lattice->cube;
+  }
   for (int a = 0; a < 3; ++a)
   {
-    const double low = reach->low[a] - reach->radius - 1, high = reach->high[a] + reach->radius + 1;
-    for (int i = 0; i < chunk->count && reach->period[a] == 0; ++i)
+    const double origin = (double)lattice->origin[a], rounding = 1 + reach->radius;
+    const double low = (reach->low[a] - rounding + origin) * lattice->cube;
+    const double high = (reach->high[a] + rounding + origin) * lattice->cube;
+    if (reach->period[a] > 0 ||
+      (reach->low[a] <= (double)lattice->first[a] && reach->high[a] >= (double)lattice->last[a]))
     {
-      const double at = chunk->x[a][i] * reach->unit, support = chunk->h[i] * reach->support;
-      far[i] |= (at + support < low) | (at - support > high);
+      continue;
+    }
+    mcor_read_array(&positions, first, count, a, x);
+    for (int i = 0; i < count; ++i)
+    {
+      near[i] &= (x[i] + h[i] >= low) & (x[i] - h[i] <= high);
     }
   }
+}
+
+/* Particles that are read along with those that are looked at rather than jumped over. */
+#define MCOR_STAGE_GAP 8
+
+/* The next run of particles to be read at once, from *begin on; returns its length, at the end 0. */
+static int mcor_next_run(const mcor_stage_job* job, int64_t* begin, int64_t last)
+{
+  const uint8_t* images = job->images;
+  if (!images)
+  {
+    return last - *begin < MCOR_CHUNK ? (int)(last - *begin) : MCOR_CHUNK;
+  }
+  const uint8_t* next = *begin < last ? memchr(images + *begin, 1, (size_t)(last - *begin)) : NULL;
+  *begin = next ? next - images : last;
+  int count = 0;
+  for (int i = 0; i < MCOR_CHUNK && *begin + i < last && i - count < MCOR_STAGE_GAP; ++i)
+  {
+    count = images[*begin + i] ? i + 1 : count;
+  }
+  return count;
+}
+
+/* Finds which particles of those marked have images that are staged; returns how many images. */
+static int64_t mcor_count_images(mcor_stage_job* job, int64_t first, int64_t last)
+{
+  int64_t used = 0;
+  mcor_stage_chunk chunk;
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    mcor_mark_near(job, begin, last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK);
+  }
+  for (int64_t begin = first; (chunk.count = mcor_next_run(job, &begin, last)) > 0;
+       begin += chunk.count)
+  {
+    mcor_read_stage_places(job->context, job->input, begin, job->reach, &chunk);
+    for (int i = 0; i < chunk.count; ++i)
+    {
+      mcor_images images;
+      const int count = job->images[begin + i] ? mcor_images_of(job, &chunk, i, &images) : 0;
+      job->images[begin + i] = count > 0;
+      used += count;
+    }
+  }
+  return used;
 }
 
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
-  int64_t used = 0;
-  mcor_stage_chunk chunk;
-  uint8_t far[MCOR_CHUNK];
-  for (int64_t begin = first; begin < last && job->reach; begin += MCOR_CHUNK)
-  {
-    chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-    mcor_read_stage_places(job->context, job->input, begin, job->reach, &chunk);
-    mcor_find_far(job->reach, &chunk, far);
-    for (int i = 0; i < chunk.count; ++i)
-    {
-      mcor_images images;
-      const int count = far[i] ? 0 : mcor_images_of(job, &chunk, i, &images);
-      job->images[begin + i] = count > 0;
-      used += count;
-    }
-  }
+  int64_t used = job->reach ? mcor_count_images(job, first, last) : 0;
   for (int64_t i = first; i < last && !job->reach; ++i)
   {
     used += mcor_is_used(job->context, job->input, i);
@@ -169,73 +217,52 @@ static void mcor_stage_chunk_at(
   }
 }
 
-/* The same for the images that are staged of a chunk's particles. */
+/* Adds the images that are staged of a chunk's particles to `out`, and stages that where it is full. */
 static void mcor_stage_images(
-  mcor_stage_job* job, int slice, const mcor_stage_chunk* chunk, int64_t* to)
+  mcor_stage_job* job, int slice, const mcor_stage_chunk* chunk, mcor_stage_chunk* out, int64_t* to)
 {
-  mcor_stage_chunk out;
   mcor_images images = { 0 };
   double period[3] = { 0 };
+  bool one = job->images != NULL; /* image of each particle that is staged */
   for (int a = 0; a < 3 && job->reach; ++a)
   {
     period[a] = ldexp(job->reach->period[a], job->reach->fix_bits);
+    one = one && job->reach->period[a] == 0;
   }
-  out.count = 0;
   for (int i = 0; i < chunk->count; ++i)
   {
     const bool none = job->images && !job->images[chunk->source[i]];
-    const int count = none ? 0 : mcor_images_of(job, chunk, i, &images);
+    const int count = none ? 0 : one ? 1 : mcor_images_of(job, chunk, i, &images);
     int k[3] = { images.first[0], images.first[1], images.first[2] };
     for (int n = 0; n < count; ++n)
     {
       for (int a = 0; a < 3; ++a)
       {
-        out.x[a][out.count] = chunk->x[a][i] + k[a] * period[a];
+        out->x[a][out->count] = chunk->x[a][i] + k[a] * period[a];
       }
-      out.h[out.count] = chunk->h[i];
-      out.size[out.count] = chunk->size[i];
-      out.source[out.count++] = chunk->source[i];
+      out->h[out->count] = chunk->h[i];
+      out->size[out->count] = chunk->size[i];
+      out->source[out->count++] = chunk->source[i];
       for (int a = 0; a < 3 && ++k[a] > images.last[a]; ++a)
       {
         k[a] = images.first[a];
       }
-      if (out.count == MCOR_CHUNK)
+      if (out->count == MCOR_CHUNK)
       {
-        mcor_stage_chunk_at(job, slice, &out, to);
-        out.count = 0;
+        mcor_stage_chunk_at(job, slice, out, to);
+        out->count = 0;
       }
     }
   }
-  mcor_stage_chunk_at(job, slice, &out, to);
-}
-
-/* Particles that are read along with those that are staged rather than jumped over. */
-#define MCOR_STAGE_GAP 8
-
-/* The next run of particles to be read at once, from *begin on; returns its length, at the end 0. */
-static int mcor_next_run(const mcor_stage_job* job, int64_t* begin, int64_t last)
-{
-  const uint8_t* images = job->images;
-  if (!images)
-  {
-    return last - *begin < MCOR_CHUNK ? (int)(last - *begin) : MCOR_CHUNK;
-  }
-  const uint8_t* next = *begin < last ? memchr(images + *begin, 1, (size_t)(last - *begin)) : NULL;
-  *begin = next ? next - images : last;
-  int count = 0;
-  for (int i = 0; i < MCOR_CHUNK && *begin + i < last && i - count < MCOR_STAGE_GAP; ++i)
-  {
-    count = images[*begin + i] ? i + 1 : count;
-  }
-  return count;
 }
 
 static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
   int64_t to = job->to[slice];
-  mcor_stage_chunk chunk;
+  mcor_stage_chunk chunk, out;
   job->heavy[slice] = -1;
+  out.count = 0;
   int64_t begin = first;
   while (job->heavy[slice] < 0 && (chunk.count = mcor_next_run(job, &begin, last)) > 0)
   {
@@ -243,7 +270,7 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
     mcor_read_stage_chunk(job->context, job->input, begin, job->staging, job->reach, &chunk);
     if (job->input->solid || job->reach)
     {
-      mcor_stage_images(job, slice, &chunk, &to);
+      mcor_stage_images(job, slice, &chunk, &out, &to);
     }
     else
     {
@@ -251,6 +278,7 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
     }
     begin += read;
   }
+  mcor_stage_chunk_at(job, slice, &out, &to);
 }
 
 static mcor_status mcor_refuse_heavy(

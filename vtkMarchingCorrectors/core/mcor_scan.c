@@ -3,6 +3,15 @@
 
 #include "mcor_internal.h"
 
+/* Elements that take so long that a run is to be cancelled before them, for which a launch waits for those before
+ * it: of fewer, the waits take longer than the work. */
+#define MCOR_LONG_WALK (1 << 20)
+
+static mcor_load mcor_walk(int count)
+{
+  return count > MCOR_LONG_WALK ? MCOR_HEAVY : MCOR_MEDIUM;
+}
+
 /* Segments into which `count` elements are cut: none is so short that walking it takes less time than
  * the launches that several need. */
 static int mcor_segments(const mcor_context* context, int count)
@@ -11,22 +20,29 @@ static int mcor_segments(const mcor_context* context, int count)
   return most < 1 ? 1 : most < context->cl.segments ? most : context->cl.segments;
 }
 
-/* Replaces counts[0..count) by their exclusive prefix sums; element `count` becomes the total. The
- * buffer holds count + 1 ints. */
-mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
+/* Launches what replaces counts[0..count) by their exclusive prefix sums; element `count`, and that of
+ * the sums behind the segments', become the total. The buffer holds count + 1 ints. */
+static mcor_status mcor_launch_scan(
+  mcor_context* context, const mcor_buffer* counts, int count, int segments)
 {
-  const int segments = mcor_segments(context, count);
-  cl_long sum = 0;
   MCOR_TRY(mcor_reserve(context, &context->sort.sums, ((size_t)segments + 1) * sizeof(cl_long)));
   if (segments > 1)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", MCOR_HEAVY, segments, MCOR_BUFFER(counts),
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", mcor_walk(count), segments, MCOR_BUFFER(counts),
       MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_LIGHT, 64, MCOR_INT(segments),
       MCOR_BUFFER(&context->sort.sums)));
   }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, segments, MCOR_BUFFER(counts),
-    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums)));
+  return MCOR_LAUNCH(context, "mcor_scan_fill", mcor_walk(count), segments, MCOR_BUFFER(counts),
+    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums));
+}
+
+/* The same, and reads the total. */
+mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
+{
+  const int segments = mcor_segments(context, count);
+  cl_long sum = 0;
+  MCOR_TRY(mcor_launch_scan(context, counts, count, segments));
   MCOR_TRY(
     mcor_read(context, &context->sort.sums, (size_t)segments * sizeof(cl_long), &sum, sizeof sum));
   MCOR_RETURN_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
@@ -69,7 +85,6 @@ mcor_status mcor_sort(
   const int segments = mcor_segments(context, count);
   const int bits = mcor_digit_bits(context, segments, count, key_limit);
   const size_t n = (size_t)count;
-  int total;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort.keys, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &context->sort.values, n * sizeof(cl_int)));
@@ -77,11 +92,13 @@ mcor_status mcor_sort(
     context, &context->sort.histogram, (((size_t)segments << bits) + 1) * sizeof(cl_int)));
   for (int shift = 0; shift == 0 || (shift < 64 && (key_limit - 1) >> shift); shift += bits)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", MCOR_HEAVY, segments, MCOR_BUFFER(keys),
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", mcor_walk(count), segments, MCOR_BUFFER(keys),
       MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram)));
-    MCOR_TRY(mcor_scan(context, &context->sort.histogram, segments << bits, &total));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", MCOR_HEAVY, segments, MCOR_BUFFER(keys),
+    const int counters = segments << bits; /* together `count` */
+    MCOR_TRY(mcor_launch_scan(
+      context, &context->sort.histogram, counters, mcor_segments(context, counters)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", mcor_walk(count), segments, MCOR_BUFFER(keys),
       MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram), MCOR_BUFFER(&context->sort.keys),
       MCOR_BUFFER(&context->sort.values)));

@@ -23,8 +23,9 @@ void AddCounts(mcor_statistics& all, const mcor_statistics& one, int factor)
     &mcor_statistics::virtual_cells, &mcor_statistics::seed_cells,
     &mcor_statistics::seed_cells_not_intersected, &mcor_statistics::bricks,
     &mcor_statistics::nodes_evaluated, &mcor_statistics::cells_used,
-    &mcor_statistics::triangles_before_trimming, &mcor_statistics::ambiguous_faces,
-    &mcor_statistics::joined_faces, &mcor_statistics::ambiguous_cells, &mcor_statistics::tunnels,
+    &mcor_statistics::triangles_before_trimming, &mcor_statistics::cap_triangles,
+    &mcor_statistics::ambiguous_faces, &mcor_statistics::joined_faces,
+    &mcor_statistics::ambiguous_cells, &mcor_statistics::tunnels,
     &mcor_statistics::vertices_corrected, &mcor_statistics::newton_evaluations,
     &mcor_statistics::vertices_above_tolerance, &mcor_statistics::trim_vertices,
     &mcor_statistics::trim_vertices_linear, &mcor_statistics::flat_caps };

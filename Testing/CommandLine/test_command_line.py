@@ -627,8 +627,8 @@ class Options(CommandLineTest):
         self.assertNotIn("cap_triangles", slab["statistics"])
         self.output.unlink()
         self.refuse(self.extract(*free, "--periodic", "1e-3,0,0"), 1, "period along x")
-        self.refuse(self.extract(*free, "--periodic", f"{2 * half!r},0,0", "--capping", "--box", "0,1,0,1,0,1"), 1,
-                    "Capping does not go with a box")
+        self.refuse(self.extract("--periodic", f"{2 * half!r},0,0", "--capping", "--seeds", "pairs", *ISO), 1,
+                    "Capping does not go with pairs")
 
     def test_period_of_field_data(self):
         """Said where it is there, used when asked for."""

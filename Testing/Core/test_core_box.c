@@ -303,11 +303,68 @@ static void impossible_globals(void** state)
   core_free_set(&set);
 }
 
+/* Particles of a period around the origin, some of them so light that the surface is trimmed, and its caps,
+ * too. */
+static core_set make_period(void)
+{
+  core_set set = core_make_set(512);
+  uint64_t seed = 21;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    double* x = set.position + 3 * i;
+    const int64_t at[3] = { i % 8, i / 8 % 8, i / 64 };
+    set.scalar[i] = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] = (double)at[a] - 3.5 + 0.4 * (2 * random_unit(&seed) - 1);
+      set.scalar[i] += sin(0.25 * 3.14159265 * x[a] + a);
+    }
+    set.smoothing_length[i] = 1.1 * (1 + 0.4 * random_unit(&seed));
+    set.volume[i] = x[0] + x[1] > 2.5 ? 0.01 : 1;
+    set.solid[i] = x[2] > 2.2;
+  }
+  return set;
+}
+
+/* Caps: squares of cells, whoever owns these; points on seams, where they are cut, too. */
+static void caps(void** state)
+{
+  const double iso[2] = { 0.2, -0.4 }, half = 0.5;
+  const double around[6] = { -4, 4, -4, 4, -4, 4 };
+  core_set set = make_period();
+  const mcor_array position = core_array(set.position, 3);
+  mcor_input input = core_input(&set);
+  input.attributes = &position;
+  input.attribute_count = 1;
+  mcor_options options = core_options(iso);
+  options.iso_count = 2;
+  options.cube_size = 0.4;
+  options.capping = 1;
+  memcpy(options.periodic, around, sizeof around);
+  core_ask_for_all(&options);
+  core_check_cuts(*state, "caps, trimmed", &input, &options);
+  options.topology = MCOR_TOPOLOGY_FIELD;
+  options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
+  options.vertex_threshold = 0.3;
+  options.triangle_normals = 1;
+  options.periodic[4] = options.periodic[5] = 0;
+  set.has_solids = 1;
+  input = core_input(&set);
+  options.wall_share = 0.4;
+  core_check_cuts(*state, "caps on four sides, eigenvalue, walls", &input, &options);
+  options.field = MCOR_WEIGHT_SUM;
+  options.iso_values = &half;
+  options.iso_count = 1;
+  options.wall_share = 0;
+  core_check_cuts(*state, "caps of the free surface", &input, &options);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(trimmed_surfaces),
     cmocka_unit_test(rough_surfaces), cmocka_unit_test(other_fields),
-    cmocka_unit_test(kept_particles), cmocka_unit_test(given_globals),
+    cmocka_unit_test(kept_particles), cmocka_unit_test(caps), cmocka_unit_test(given_globals),
     cmocka_unit_test(impossible_globals), cmocka_unit_test(small_boxes),
     cmocka_unit_test(bad_boxes) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

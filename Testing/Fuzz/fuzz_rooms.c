@@ -82,7 +82,6 @@ static void fuzz_globals(const fuzz_call* call)
   mcor_context* context = fuzz_context(call, 1);
   mcor_globals globals;
   mcor_options alone = call->options;
-  alone.capping = 0; /* caps do not go with them */
   mcor_options given = alone;
   given.globals = &globals;
   const mcor_status measured = mcor_measure_globals(context, &call->input, &alone, &globals);
@@ -103,7 +102,7 @@ static void fuzz_halves(const fuzz_call* call)
   mcor_options options = call->options;
   int64_t triangles[3] = { 0 }, cells[3] = { 0 };
   options.seeds = MCOR_COMPLETE; /* pairs go with boxes where there are ranks */
-  options.capping = 0;
+  options.capping = options.capping && options.field == MCOR_SHEPARD; /* empty space is not above */
   for (int part = 0; part < 3; ++part)
   {
     mcor_surface surface;
@@ -178,7 +177,6 @@ static void fuzz_ranks(unsigned failing, const fuzz_call* call)
   mcor_options options = call->options;
   mcor_globals globals;
   mcor_surface alone, surface;
-  options.capping = 0;
   if (options.seeds == MCOR_PAIRS)
   {
     options.has_box = 0; /* without ranks there is none */

@@ -86,6 +86,7 @@ class Program(unittest.TestCase):
         self.check_same_file(*trimmed, "--topology", "field")
         self.check_same_file(*trimmed, "--seeds", "pairs", "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf")
         self.check_same_file("--free-surface")
+        self.check_same_file(*trimmed, "--capping", "--periodic=-1,1,-0.5,1.1,-1.05,1.05", "--cube-size", "0.04")
 
     def test_period_of_data(self):
         """The field data of one piece tell of the period, those of two tell of different ones."""

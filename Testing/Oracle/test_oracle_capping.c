@@ -287,11 +287,10 @@ static void run_several(oracle_suite* suite, const oracle_particles* particles)
     mesh_free_report(&mesh);
   }
   mcor_free_surface(&all);
-  options.has_box = 1;
-  options.box[1] = options.box[3] = options.box[5] = 1.0;
+  options.seeds = MCOR_PAIRS;
   expect(suite,
     mcor_extract(suite->context, &input, &options, &all) == MCOR_INVALID_ARGUMENT &&
-      strstr(mcor_last_error(suite->context), "Capping does not go with a box"),
+      strstr(mcor_last_error(suite->context), "Capping does not go with pairs"),
     "several", mcor_last_error(suite->context), 0.0);
 }
 

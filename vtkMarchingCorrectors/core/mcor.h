@@ -298,8 +298,9 @@ extern "C"
      * side of it: where values are above the iso value. Its border's points are shared; the others
      * are nodes of the virtual grid, with normals out of the period, boundary flag 8, and a residual
      * that means nothing. Trimming cuts caps, too, and leaves its border open. All cubes are then of the
-     * smallest size. Not with a box, MCOR_PAIRS, ranks, given globals or keys; of no effect without
-     * a period. */
+     * smallest size. Of a box the sides of its cells are closed that are sides of the period, but not
+     * of one that no particle reaches, where a sum's iso value of 0 has empty space above it. Not with
+     * MCOR_PAIRS; of no effect without a period. */
     int capping;
 
     /* NULL: measured over the input. Else of all particles, of which the input holds some: at least
@@ -394,12 +395,12 @@ extern "C"
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* A point's key: number of the iso value and whether it is a cut, then its lattice edge or the two
-   * between whose points it was cut. Points of a surface have different keys, ascending one number
+  /* A point's key: number of the iso value and whether it is a cut or of a cap, then its lattice edge, the two
+   * between whose points it was cut, or the cap's square. Points of a surface have different keys, ascending one number
    * after the other; those of a box's surface have the keys that they have in the whole surface. */
 #define MCOR_POINT_KEY 3
 
-  /* A triangle's key: number of the iso value, then its cell. Keys ascend from triangle to triangle; those of
+  /* A triangle's key: number of the iso value, then its cell, or its square of a cap. Keys ascend from triangle to triangle; those of
    * one cell have the same. A box's triangles have the keys that they have in the whole surface, each
    * cell being in one box, so that the whole surface's triangles are those of boxes, sorted by key and
    * otherwise left in order. */

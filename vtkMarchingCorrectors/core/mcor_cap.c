@@ -7,11 +7,13 @@
  * surface's own cut vertices, and linearly within the side. A square is capped where the cell beside
  * it is valid.
  *
- * Vertices of caps come after all others of the mesh, and take part in what is evaluated there. */
+ * Vertices of caps come after all others of the mesh, and take part in what is evaluated there. They are
+ * numbered as squares meet them: by axis, lower and upper side, then square by square. A box caps the
+ * squares of its cells, and of the ring around it: so its own squares' vertices have the keys, and the order,
+ * that they have in the whole. */
 
-#include "mcor_cap.h"
 #include "mcor_box.h"
-#include "mcor_cap_map.h"
+#include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,14 +21,6 @@
 
 /* A cut keeps off the ends of its line, as those of the surface do. */
 #define MCOR_CAP_CUT_MARGIN 1e-5
-
-/* A vertex only caps have. */
-typedef struct mcor_cap_vertex
-{
-  cl_int node[4];
-  double offset[3];
-  bool is_cut;
-} mcor_cap_vertex;
 
 /* Corner of a polygon: a vertex of the mesh; where it is, in cubes from the lattice's origin; how far
  * inside of what trimming leaves. */
@@ -36,47 +30,10 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-typedef struct mcor_cap_job
-{
-  mcor_context* context;
-  int old_count; /* vertices of the mesh */
-  /* The surface's vertices, by lower node and axis of their edge; of a pinched one the first. */
-  mcor_cap_map edges[3];
-  mcor_cap_map nodes, cuts;
-  mcor_cap_vertex* vertices;
-  int64_t vertex_count, vertex_room;
-  cl_int* triangles;
-  int64_t triangle_count, triangle_room;
-  /* The surface's vertices, and the edges its own cuts are on, ascending. */
-  void *node, *offset, *quantity, *distinct;
-  double threshold;
-} mcor_cap_job;
-
 bool mcor_makes_caps(const mcor_context* context)
 {
   const int* period = context->lattice.period;
   return context->options->capping && (period[0] > 0 || period[1] > 0 || period[2] > 0);
-}
-
-bool mcor_is_cap(const mcor_context* context, int64_t v)
-{
-  return v >= context->mesh.cap_first;
-}
-
-void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
-{
-  const mcor_lattice* lattice = &context->lattice;
-  double n[3], square = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int at = node[a] - lattice->period_first[a];
-    n[a] = lattice->period[a] == 0 ? 0 : at == 0 ? -1 : at == lattice->period[a] ? 1 : 0;
-    square += n[a] * n[a];
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    normal[a] = (float)(n[a] / sqrt(square));
-  }
 }
 
 /* Of a node; the virtual grid has not more than 2^20 + 64 along an axis. */
@@ -87,7 +44,7 @@ static uint64_t mcor_cap_key(const cl_int node[3])
 
 /* ---- vertices ---------------------------------------------------------------------------------- */
 
-static mcor_status mcor_no_cap_memory(mcor_context* context)
+mcor_status mcor_no_cap_memory(mcor_context* context)
 {
   return mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
 }
@@ -117,7 +74,7 @@ static mcor_status mcor_add_cap_vertex(mcor_cap_job* job, const double at[3], bo
     return mcor_no_cap_memory(context);
   }
   mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
-  *vertex = (mcor_cap_vertex){ .is_cut = is_cut };
+  *vertex = (mcor_cap_vertex){ .is_cut = is_cut, .key = { job->square, job->lookups } };
   for (int a = 0; a < 3; ++a)
   {
     vertex->node[a] = (cl_int)floor(at[a]);
@@ -131,6 +88,7 @@ static mcor_status mcor_find_cap_vertex(
   mcor_cap_job* job, mcor_cap_map* map, uint64_t key, const double at[3], bool is_cut, int32_t* v)
 {
   const int32_t next = (int32_t)(job->old_count + job->vertex_count);
+  ++job->lookups;
   *v = mcor_cap_number(map, key, next);
   if (*v < 0)
   {
@@ -228,11 +186,15 @@ static mcor_status mcor_add_cap_fan(
 {
   for (int i = 1; i + 1 < count; ++i)
   {
-    if (!mcor_cap_room((void**)&job->triangles, job->triangle_count + 1, &job->triangle_room,
-          3 * sizeof *job->triangles))
+    const int64_t next = job->triangle_count + 1;
+    if (!mcor_cap_room(
+          (void**)&job->triangles, next, &job->triangle_room, 3 * sizeof *job->triangles) ||
+      !mcor_cap_room((void**)&job->cells, next, &job->cell_room, sizeof *job->cells))
     {
       return mcor_no_cap_memory(job->context);
     }
+    job->cells[job->triangle_count] = job->square;
+    job->owned_count += !(job->square & MCOR_RING_CELL);
     cl_int* t = job->triangles + 3 * job->triangle_count++;
     t[0] = corners[0].vertex;
     t[1] = corners[face->upper ? i : i + 1].vertex;
@@ -366,27 +328,50 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
+/* Numbers of squares ascend, and are above the keys of all cells. */
+static void mcor_begin_cap_square(mcor_cap_job* job, const mcor_cap_face* face, int u, int v)
+{
+  const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
+  const bool owned =
+    u >= face->owned[0] && u < face->end[0] && v >= face->owned[1] && v < face->end[1];
+  job->square = MCOR_CAP_SQUARE | side << 42 | (cl_ulong)(face->first[1] + v) << 21 |
+    (cl_ulong)(face->first[0] + u) | (owned ? 0 : MCOR_RING_CELL);
+  job->lookups = 0;
+}
+
 static mcor_status mcor_cap_squares(mcor_cap_job* job, const mcor_cap_face* face)
 {
   for (int v = 0; v + 1 < face->count[1]; ++v)
   {
     for (int u = 0; u + 1 < face->count[0]; ++u)
     {
+      mcor_begin_cap_square(job, face, u, v);
       MCOR_TRY(mcor_cap_square(job, face, u, v));
     }
   }
   return MCOR_OK;
 }
 
-/* The lower and the upper side of an axis. */
+/* The lower and the upper side of an axis, where the box has them. */
 static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis, double iso, mcor_cap_points* points)
 {
+  mcor_context* context = job->context;
+  const mcor_lattice* lattice = &context->lattice;
+  const int first = lattice->period_first[axis], last = first + lattice->period[axis];
+  const bool has_lower = context->box.first[axis] == first,
+             has_upper = context->box.last[axis] == last;
   mcor_cap_face lower = { 0 }, upper = { 0 };
-  mcor_status status = mcor_load_cap_face(job->context, axis, NULL, iso, points, &lower);
-  status = status == MCOR_OK ? mcor_cap_squares(job, &lower) : status;
-  status = status == MCOR_OK ? mcor_load_cap_face(job->context, axis, &lower, iso, points, &upper)
-                             : status;
-  status = status == MCOR_OK ? mcor_cap_squares(job, &upper) : status;
+  mcor_status status = MCOR_OK;
+  if (has_lower)
+  {
+    status = mcor_load_cap_face(context, axis, 0, NULL, iso, points, &lower);
+    status = status == MCOR_OK ? mcor_cap_squares(job, &lower) : status;
+  }
+  if (has_upper && status == MCOR_OK)
+  {
+    status = mcor_load_cap_face(context, axis, 1, has_lower ? &lower : NULL, iso, points, &upper);
+    status = status == MCOR_OK ? mcor_cap_squares(job, &upper) : status;
+  }
   mcor_free_cap_face(&lower);
   mcor_free_cap_face(&upper);
   return status;
@@ -436,79 +421,9 @@ static mcor_status mcor_end_cap_views(mcor_cap_job* job)
   return status;
 }
 
-/* Appends elements to a buffer of `old` bytes. */
-static mcor_status mcor_append_bytes(
-  mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes)
-{
-  mcor_buffer more = { 0 };
-  MCOR_TRY(mcor_extend(context, to, old, old + bytes));
-  mcor_status status = mcor_write(context, &more, data, bytes);
-  status = status == MCOR_OK ? mcor_copy(context, &more, to, old, bytes) : status;
-  mcor_release(context, &more);
-  return status;
-}
-
-/* Places and flags of the caps' vertices: 8, of cuts 2. */
-static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
-{
-  mcor_context* context = job->context;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)job->vertex_count, old = (size_t)job->old_count,
-               real = context->cl.real_size;
-  cl_int* node = malloc(n * 4 * sizeof *node);
-  uint8_t *offset = calloc(n * 4, real), *flag = malloc(n);
-  mcor_status status = node && offset && flag ? MCOR_OK : mcor_no_cap_memory(context);
-  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
-  {
-    const mcor_cap_vertex* vertex = &job->vertices[i];
-    memcpy(node + 4 * i, vertex->node, sizeof vertex->node);
-    flag[i] = vertex->is_cut ? 2 : MCOR_CAP_FLAG;
-    for (size_t a = 0; a < 3; ++a)
-    {
-      const float single = (float)vertex->offset[a];
-      memcpy(offset + (4 * i + a) * real,
-        real == sizeof single ? (const void*)&single : (const void*)&vertex->offset[a], real);
-    }
-  }
-  status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)(old + n)) : status;
-  status =
-    status == MCOR_OK ? mcor_append_bytes(context, &mesh->node, old * 16, node, n * 16) : status;
-  status = status == MCOR_OK
-    ? mcor_append_bytes(context, &mesh->offset, old * 4 * real, offset, n * 4 * real)
-    : status;
-  status = status == MCOR_OK ? mcor_append_bytes(context, &mesh->flag, old, flag, n) : status;
-  free(node);
-  free(offset);
-  free(flag);
-  return status;
-}
-
-static mcor_status mcor_append_caps(mcor_cap_job* job, double iso)
-{
-  mcor_context* context = job->context;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t old = (size_t)mesh->triangle_count, more = (size_t)job->triangle_count;
-  const size_t width = 3 * sizeof(cl_int), cell = sizeof(cl_ulong);
-  int groups;
-  MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
-    "With its caps the surface would have %zu triangles, %d is the limit. Use a larger cube size.",
-    old + more, MCOR_COUNT_LIMIT / 3);
-  MCOR_TRY(mcor_append_cap_vertices(job));
-  MCOR_TRY(mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles, more * width));
-  MCOR_TRY(mcor_extend(context, &context->box.cells, old * cell, (old + more) * cell));
-  MCOR_TRY(mcor_fill_range(context, &context->box.cells, 0, old * cell, (old + more) * cell));
-  mesh->triangle_count += (int)more;
-  mesh->vertex_count += (int)job->vertex_count;
-  MCOR_TRY(mcor_make_groups(context, &mesh->node, job->old_count, (int)job->vertex_count, &groups));
-  return MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-    MCOR_REAL(iso), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
-    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight),
-    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
-}
-
 mcor_status mcor_cap(mcor_context* context, double iso)
 {
+  mcor_end_caps(context);
   context->mesh.cap_first = context->mesh.vertex_count;
   if (!mcor_makes_caps(context))
   {
@@ -525,7 +440,7 @@ mcor_status mcor_cap(mcor_context* context, double iso)
   if (status == MCOR_OK && job.triangle_count > 0)
   {
     status = mcor_append_caps(&job, iso);
-    context->statistics->cap_triangles += job.triangle_count;
+    context->statistics->cap_triangles += job.owned_count;
   }
   mcor_cap_map* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes,
     &job.cuts };
@@ -535,5 +450,6 @@ mcor_status mcor_cap(mcor_context* context, double iso)
   }
   free(job.vertices);
   free(job.triangles);
+  free(job.cells);
   return status;
 }

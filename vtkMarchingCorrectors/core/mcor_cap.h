@@ -16,6 +16,10 @@ mcor_status mcor_cap(mcor_context* context, double iso);
 /* Whether they are asked for. */
 bool mcor_makes_caps(const mcor_context* context);
 
+/* The last two numbers of the key of a cap's vertex. */
+void mcor_store_cap_key(const mcor_context* context, int64_t v, uint64_t key[2]);
+void mcor_end_caps(mcor_context* context);
+
 /* Whether vertex v of the mesh is one of a cap alone; then which way the sides it is on face. */
 bool mcor_is_cap(const mcor_context* context, int64_t v);
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3]);
@@ -39,6 +43,7 @@ typedef struct mcor_cap_face
   int inner, cell;
   int across[2];           /* the other axes: right-handed, this one being the third */
   int first[2], count[2];  /* of nodes along these */
+  int owned[2], end[2];    /* squares of the box, from there; others are of the ring around it */
   uint8_t *state, *within; /* [count[1]][count[0]] of the nodes, and of the next ones within */
   double* margin;          /* how far nodes above are inside of what trimming leaves */
 } mcor_cap_face;
@@ -54,9 +59,9 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
   return (int64_t)v * face->count[0] + u;
 }
 
-/* Axis a's lower side, or the upper one, where the lower one is known. */
-mcor_status mcor_load_cap_face(mcor_context* context, int axis, const mcor_cap_face* opposite,
-  double iso, mcor_cap_points* points, mcor_cap_face* face);
+/* Axis a's lower or upper side; opposite: the other one, where that is known. */
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
+  const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face);
 void mcor_free_cap_face(mcor_cap_face* face);
 void mcor_release_cap_points(mcor_context* context, mcor_cap_points* points);
 

@@ -31,8 +31,14 @@ static mcor_status mcor_make_cap_face(
   face->cell = face->plane - upper;
   for (int i = 0; i < 2; ++i)
   {
-    face->first[i] = box->first[face->across[i]];
-    face->count[i] = box->last[face->across[i]] - face->first[i] + 1;
+    const int a = face->across[i], low = box->first[a] - MCOR_BOX_RING,
+              high = box->last[a] + MCOR_BOX_RING;
+    const int first = lattice->period[a] > 0 ? lattice->period_first[a] : (int)lattice->first[a];
+    const int last = lattice->period[a] > 0 ? first + lattice->period[a] : (int)lattice->last[a];
+    face->first[i] = low > first ? low : first;
+    face->count[i] = (high < last ? high : last) - face->first[i] + 1;
+    face->owned[i] = box->first[a] - face->first[i];
+    face->end[i] = box->last[a] - face->first[i];
   }
   const size_t nodes = (size_t)face->count[0] * (size_t)face->count[1];
   face->state = calloc(nodes, 1);
@@ -318,10 +324,10 @@ static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* fac
   }
 }
 
-mcor_status mcor_load_cap_face(mcor_context* context, int axis, const mcor_cap_face* opposite,
-  double iso, mcor_cap_points* points, mcor_cap_face* face)
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
+  const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face)
 {
-  MCOR_TRY(mcor_make_cap_face(context, axis, opposite != NULL, face));
+  MCOR_TRY(mcor_make_cap_face(context, axis, upper, face));
   MCOR_TRY(mcor_take_bricks(context, face));
   if (opposite)
   {

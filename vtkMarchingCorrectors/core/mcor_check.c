@@ -36,17 +36,11 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   return MCOR_OK;
 }
 
-/* Caps are made of the whole of each side. */
+/* The cells of pairs may miss what a cap would need. */
 static mcor_status mcor_check_capping(mcor_context* context, const mcor_options* options)
 {
-  const char* other = options->has_box   ? "a box"
-    : mcor_wants_pairs(options)          ? "pairs as seeds"
-    : options->ranks || options->globals ? "several ranks"
-    : options->point_keys                ? "keys of points"
-    : options->triangle_keys             ? "keys of triangles"
-                                         : NULL;
-  MCOR_RETURN_IF(options->capping && other, context, MCOR_INVALID_ARGUMENT,
-    "Capping does not go with %s. Turn one of them off.", other);
+  MCOR_RETURN_IF(options->capping && mcor_wants_pairs(options), context, MCOR_INVALID_ARGUMENT,
+    "Capping does not go with pairs as seeds. Turn one of them off.");
   return MCOR_OK;
 }
 

@@ -5,6 +5,7 @@
  * when; and how any call on it runs. */
 
 #include "mcor_box.h"
+#include "mcor_cap.h"
 #include "mcor_graded.h"
 #include "mcor_internal.h"
 
@@ -228,6 +229,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->options = NULL;
   context->statistics = NULL;
   mcor_end_box(context);
+  mcor_end_caps(context);
   if (status != MCOR_OK)
   {
     context->grid_valid = context->value_valid = context->nodes_valid = false;

@@ -130,6 +130,7 @@ typedef struct mcor_mesh
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
   int cap_first;
+  uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer means; /* real [vertex_count][attributes.count] */

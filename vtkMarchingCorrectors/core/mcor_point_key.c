@@ -4,6 +4,7 @@
 /* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
  * makes, and ascending in the order of the whole surface's points. */
 
+#include "mcor_cap.h"
 #include "mcor_graded.h"
 #include "mcor_tree.h"
 
@@ -14,7 +15,7 @@
 mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
 {
   const mcor_mesh* mesh = &context->mesh;
-  const int count = mesh->vertex_count - mesh->march_count;
+  const int count = mesh->cap_first - mesh->march_count;
   if (!context->options->point_keys || count == 0)
   {
     return MCOR_OK;
@@ -70,7 +71,13 @@ void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, cons
   int64_t v, uint64_t key[MCOR_POINT_KEY])
 {
   const int64_t cut = v - context->mesh.march_count;
-  key[0] = 2 * (uint64_t)context->iso_number + (cut >= 0);
+  const bool of_cap = mcor_is_cap(context, v);
+  key[0] = 3 * (uint64_t)context->iso_number + (of_cap ? 2 : cut >= 0);
+  if (of_cap)
+  {
+    mcor_store_cap_key(context, v, key + 1);
+    return;
+  }
   key[1] = mcor_march_key(context, nodes, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));
   key[2] = cut < 0 ? 0 : mcor_march_key(context, nodes, (int64_t)(cuts[cut] & UINT32_MAX));
 }

@@ -74,7 +74,7 @@ __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks,
 }
 
 /* One work-item = one brick. Reads used cells and node masks. Writes the keys of their cells to its
- * triangles. */
+ * triangles. The loops count up since Intel's compiler (2026.2) crashed on others. */
 __kernel void mcor_box_mark(const int brick_count, const int blocks_x, const int blocks_y,
   __global const int4* bricks,
   __global const int* neighbours, MCOR_BOX_PARAMS, __global const ulong* used,
@@ -95,10 +95,13 @@ __kernel void mcor_box_mark(const int brick_count, const int blocks_x, const int
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    for (int i = case_table[mcor_march_case(m, cell) * 16 + 15]; i > 0; --i)
+    const ulong cell_key = key | (ulong)cell | (~cells >> cell & 1) * MCOR_RING_CELL;
+    const int count = case_table[mcor_march_case(m, cell) * 16 + 15];
+    for (int i = 0; i < count; ++i)
     {
-      triangle_cells[to++] = key | (ulong)cell | (cells >> cell & 1 ? 0 : MCOR_RING_CELL);
+      triangle_cells[to + i] = cell_key;
     }
+    to += count;
   }
 }
 #endif
@@ -125,12 +128,14 @@ __kernel void mcor_box_mark_resolved(const int brick_count, const int blocks_x,
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    for (int i =
-           mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel)->triangles;
-         i > 0; --i)
+    const ulong cell_key = key | (ulong)cell | (~cells >> cell & 1) * MCOR_RING_CELL;
+    const int count =
+      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel)->triangles;
+    for (int i = 0; i < count; ++i)
     {
-      triangle_cells[to++] = key | (ulong)cell | (cells >> cell & 1 ? 0 : MCOR_RING_CELL);
+      triangle_cells[to + i] = cell_key;
     }
+    to += count;
   }
 }
 #endif

@@ -10,16 +10,24 @@
 
 /* The call that fails, counted from 0; -1: none. */
 static int fail_at = -1, call_count;
-static bool of_host; /* an allocation, not a call of OpenCL */
+
+/* What may fail: an argument of a launch, another call of OpenCL, an allocation of the host. */
+enum
+{
+  ARGUMENT = 1,
+  COMMAND = 2,
+  ALLOCATION = 4
+};
+static int counted;
 static cl_int fail_with;
 static char failed_call[64];
 
 /* Buffers that OpenCL still holds; its threads release them. */
 static atomic_int live_buffers;
 
-static int fails(const char* name, bool host)
+static int fails(const char* name, int kind)
 {
-  if (fail_at < 0 || host != of_host || call_count++ != fail_at)
+  if (fail_at < 0 || !(kind & counted) || call_count++ != fail_at)
   {
     return 0;
   }
@@ -32,7 +40,8 @@ static int fails(const char* name, bool host)
   cl_int __wrap_##name parameters;                                                                 \
   cl_int __wrap_##name parameters                                                                  \
   {                                                                                                \
-    return fails(#name, false) ? fail_with : __real_##name arguments;                              \
+    const int kind = strcmp(#name, "clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
+    return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
   }
 
 FAULT_CALL(clBuildProgram,
@@ -73,7 +82,7 @@ cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* 
   cl_uint waits, const cl_event* wait, cl_event* event)
 {
   const cl_int error = __real_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
-  return fails("clEnqueueUnmapMemObject", false) ? fail_with : error;
+  return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
 }
 
 static const char* build_log;
@@ -120,7 +129,7 @@ cl_mem __wrap_clCreateBuffer(
 cl_mem __wrap_clCreateBuffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
-  if (fails("clCreateBuffer", false))
+  if (fails("clCreateBuffer", COMMAND))
   {
     *error = fail_with;
     return NULL;
@@ -143,7 +152,7 @@ void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool bloc
   cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
   cl_event* event, cl_int* error)
 {
-  if (fails("clEnqueueMapBuffer", false))
+  if (fails("clEnqueueMapBuffer", COMMAND))
   {
     *error = fail_with;
     return NULL;
@@ -156,7 +165,7 @@ cl_kernel __real_clCreateKernel(cl_program program, const char* name, cl_int* er
 cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error);
 cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error)
 {
-  if (fails("clCreateKernel", false))
+  if (fails("clCreateKernel", COMMAND))
   {
     *error = fail_with;
     return NULL;
@@ -169,7 +178,7 @@ cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* er
   void* __wrap_##name parameters;                                                                  \
   void* __wrap_##name parameters                                                                   \
   {                                                                                                \
-    return fails(#name, true) ? NULL : __real_##name arguments;                                    \
+    return fails(#name, ALLOCATION) ? NULL : __real_##name arguments;                              \
   }
 
 FAULT_ALLOCATION(malloc, (size_t size), (size))
@@ -187,23 +196,28 @@ static void wait_for_release(mcor_context* context, int buffers)
   }
 }
 
-static void set_fault(int n, cl_int error, bool host)
+static void set_fault(int n, cl_int error, int kinds)
 {
   fail_at = n;
   fail_with = error;
-  of_host = host;
+  counted = kinds;
   call_count = 0;
   failed_call[0] = '\0';
 }
 
 void core_fail_call(int n, cl_int error)
 {
-  set_fault(n, error, false);
+  set_fault(n, error, ARGUMENT | COMMAND);
+}
+
+void core_fail_command(int n, cl_int error)
+{
+  set_fault(n, error, COMMAND);
 }
 
 void core_fail_allocation(int n)
 {
-  set_fault(n, 0, true);
+  set_fault(n, 0, ALLOCATION);
 }
 
 void core_fail_nothing(void)

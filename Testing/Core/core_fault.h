@@ -10,6 +10,8 @@
 
 /* The n-th call from now on, counted from 0, fails with this error; none: -1. */
 void core_fail_call(int n, cl_int error);
+/* The same, but of the arguments of launches, which are most of the calls, none fails. */
+void core_fail_command(int n, cl_int error);
 /* The same of malloc, calloc and realloc. */
 void core_fail_allocation(int n);
 void core_fail_nothing(void);

@@ -23,6 +23,7 @@ typedef struct sweep
   int point_count;
   uint64_t expected;
   int64_t bytes;
+  bool arguments; /* those of launches fail, too */
   int step;
 } sweep;
 
@@ -180,7 +181,7 @@ static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int 
     uint64_t hash;
     kept ? expect_right(context, s) : core_expect_nothing_held(context, s->bytes, BUFFERS_KEPT);
     const mcor_input input = with_other_versions(s, n);
-    core_fail_call(n, error);
+    (s->arguments ? core_fail_call : core_fail_command)(n, error);
     const mcor_status status = s->call(context, s, &input, &hash);
     core_fail_nothing();
     if (!core_failed_call()[0])
@@ -243,14 +244,15 @@ static void begin_sweep(mcor_context* context, sweep* s)
   s->bytes = context->cl.bytes;
 }
 
-/* Fewer faults for what is a variation of that which test_every_call_fails_once does one by one. */
+/* All that a variation of what test_every_call_fails_once does asks of OpenCL; where memory runs out,
+ * every step-th of it. */
 static void sweep_room(mcor_context* context, sweep* s, int step, int least_calls)
 {
   begin_sweep(context, s);
-  s->step = step;
+  s->step = 1;
   const int calls = sweep_calls(context, s, CL_INVALID_COMMAND_QUEUE, 0);
   CORE_CHECK(calls > least_calls, "only %d calls", calls);
-  s->step = 3 * step + 1;
+  s->step = step;
   sweep_calls(context, s, CL_MEM_OBJECT_ALLOCATION_FAILURE, 0);
   if (!s->options.ranks) /* those do not try again */
   {
@@ -275,9 +277,11 @@ static void test_every_call_fails_once(void** state)
   core_set set = core_make_block(6, 0.3, 3, flat);
   const mcor_array attribute = core_array(set.smoothing_length, 1);
   set.smoothing_length[7] *= 1.5;
-  sweep s = {
-    .call = extract, .input = core_input(&set), .options = core_options(&iso), .step = 1
-  };
+  sweep s = { .call = extract,
+    .input = core_input(&set),
+    .options = core_options(&iso),
+    .arguments = true,
+    .step = 1 };
   s.input.attributes = &attribute;
   s.input.attribute_count = 1;
   s.options.topology = MCOR_TOPOLOGY_FIELD;
@@ -333,6 +337,9 @@ static void test_regions(void** state)
   period.options.periodic[0] = -4;
   period.options.periodic[1] = 4;
   period.options.seeds = MCOR_PAIRS;
+  sweep_room(*state, &period, 23, 100);
+  period.options.capping = 1;
+  period.options.seeds = MCOR_COMPLETE;
   sweep_room(*state, &period, 23, 100);
   for (int64_t i = 0; i < set.count; ++i)
   {

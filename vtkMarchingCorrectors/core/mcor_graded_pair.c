@@ -210,15 +210,14 @@ static mcor_status mcor_limit_growth(mcor_context* context)
   mcor_graded_pairs* pairs = &context->graded_pairs;
   const int count = context->graded.count;
   const size_t bytes = (size_t)count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_fill(context, &pairs->grown, 0, bytes));
+  MCOR_TRY(mcor_reserve(context, &pairs->grown, bytes));
   MCOR_TRY(mcor_fill(context, &pairs->domain, 0xff, bytes));
-  if (!mcor_is_limited(context))
+  if (mcor_is_limited(context))
   {
-    return MCOR_OK;
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, count,
+      MCOR_LEAF_SIDES_ARGS(context, context->box.near), MCOR_INT(count),
+      MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown))); /* the second is not needed */
   }
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, count,
-    MCOR_LEAF_SIDES_ARGS(context, context->box.near), MCOR_INT(count), MCOR_BUFFER(&pairs->domain),
-    MCOR_BUFFER(&pairs->grown))); /* the second is not needed */
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 

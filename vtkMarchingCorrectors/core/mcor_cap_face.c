@@ -236,7 +236,7 @@ static mcor_status mcor_take_cap_nodes(mcor_context* context, const cl_int* node
   }
   MCOR_TRY(mcor_evaluate_cap_nodes(context, nodes, count, iso, p));
   const size_t n = (size_t)count * context->cl.real_size;
-  mcor_cap_values v = { NULL };
+  mcor_cap_values v = { NULL, NULL, NULL, NULL };
   mcor_status status = mcor_map(context, &p->value, n, false, &v.value);
   status = status == MCOR_OK ? mcor_map(context, &p->gradient, 4 * n, false, &v.gradient) : status;
   status = status == MCOR_OK ? mcor_map(context, &p->weight, n, false, &v.weight) : status;

@@ -137,9 +137,41 @@ static void test_cancel_between_launches(void** state)
   core_free_set(&set);
 }
 
+/* Where sums have very many terms, a launch is cut into parts, each worth a report; no bit changes. */
+static void test_long_launches_are_cut(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  const double half = 0.5, interval = context->report_interval;
+  const int units = context->cl.units;
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&half);
+  options.field = MCOR_WEIGHT_SUM;
+  options.h_scale = 5;
+  options.cube_size_mode = MCOR_CUBES_UNIFORM;
+  options.progress = on_progress;
+  cancel_at whole = { .stop_at = -1 }, cut = whole;
+  context->cl.units = 1 << 30;
+  options.progress_user = &whole;
+  const uint64_t expected = hash_of(context, &input, &options); /* builds */
+  whole = (cancel_at){ .stop_at = -1 };
+  context->report_interval = 0;
+  hash_of(context, &input, &options);
+  context->cl.units = 1;
+  options.progress_user = &cut;
+  CORE_CHECK(hash_of(context, &input, &options) == expected, "parts change the result");
+  context->cl.units = units;
+  if (context->cl.is_cpu)
+  {
+    CORE_CHECK(cut.calls >= whole.calls + 4, "%d reports, %d", cut.calls, whole.calls);
+  }
+  context->report_interval = interval;
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_cancel_in_every_phase),
-    cmocka_unit_test(test_cancel_between_launches) };
+    cmocka_unit_test(test_cancel_between_launches), cmocka_unit_test(test_long_launches_are_cut) };
   return cmocka_run_group_tests_name("progress", tests, core_set_up, core_tear_down);
 }

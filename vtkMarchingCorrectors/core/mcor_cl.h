@@ -47,8 +47,8 @@ typedef struct mcor_kernel
   char name[48];
   cl_kernel kernel;
   mcor_program program;
-  bool launched[2]; /* with few, with many work-groups */
-  size_t part;      /* work-items launched at once, see mcor_enqueue_parts */
+  bool launched[2][2]; /* from 0 on, from elsewhere; with few, with many work-groups */
+  double part;         /* work-items launched at once, see mcor_enqueue_cut; 0: not known yet */
 } mcor_kernel;
 
 typedef struct mcor_cl

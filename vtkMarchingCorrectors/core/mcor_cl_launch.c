@@ -71,7 +71,6 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   MCOR_RETURN_IF(cl->kernel_count == MCOR_KERNEL_LIMIT, context, MCOR_DEVICE_ERROR,
     "There is no room for kernel %s.", name);
   *kernel = &cl->kernels[cl->kernel_count];
-  (*kernel)->part = 0;
   const mcor_status status = mcor_make_kernel(context, name, *kernel);
   cl->kernel_count += status == MCOR_OK;
   return status;
@@ -99,8 +98,8 @@ static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const
 
 /* Launches a kernel for the first time, alone: drivers may compile it only now. What the kernel
  * itself does not take is building. */
-static cl_int mcor_enqueue_first(
-  mcor_context* context, cl_kernel kernel, const size_t* global, const size_t* group)
+static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const size_t* offset,
+  const size_t* global, const size_t* group)
 {
   mcor_cl* cl = &context->cl;
   cl_event event;
@@ -110,7 +109,7 @@ static cl_int mcor_enqueue_first(
   if (error == CL_SUCCESS)
   {
     error =
-      clEnqueueNDRangeKernel(cl->timed_queue, kernel, 1, NULL, global, group, 0, NULL, &event);
+      clEnqueueNDRangeKernel(cl->timed_queue, kernel, 1, offset, global, group, 0, NULL, &event);
   }
   if (error != CL_SUCCESS)
   {
@@ -131,36 +130,80 @@ static cl_int mcor_enqueue_first(
   return error;
 }
 
-/* Drivers of GPUs end a launch that takes seconds: a heavy one is cut into parts, each to take about
- * so long, as far as single work-items allow. */
+/* Drivers of GPUs end a launch that takes seconds, and whoever watches a run waits for it to answer: a
+ * heavy launch is cut into parts, each to take about so long, as far as single work-items allow. */
 #define MCOR_PART_SECONDS 0.1
-#define MCOR_FIRST_PART 65536
+#define MCOR_FIRST_PART 65536 /* work-items of a GPU */
+/* Terms of sums, of each compute unit of a CPU: usual launches are in one part. More are not tried, as
+ * work-items beyond the next may have far more to do. */
+#define MCOR_PART_TERMS (1 << 20)
 
-/* Launches the work-items from `offset` on. */
-static mcor_status mcor_enqueue_parts(
-  mcor_context* context, mcor_kernel* kernel, size_t offset, size_t global, size_t group)
+static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 {
-  const mcor_cl* cl = &context->cl;
-  cl_int error = global - offset > kernel->part ? clFinish(cl->queue) : CL_SUCCESS;
-  while (offset < global && error == CL_SUCCESS)
+  const mcor_options* options = context->options;
+  return load == MCOR_HEAVY && (!context->cl.is_cpu || (options && options->progress));
+}
+
+/* Work-items of a part at most. What one does goes with the particles that reach a point. */
+static double mcor_part_limit(const mcor_context* context)
+{
+  const mcor_measure* m = &context->measure;
+  const double scale = context->options ? context->options->h_scale : 1;
+  const double terms =
+    fmin(m->neighbours * scale * scale * scale, (double)m->fluid_count + (double)m->solid_count);
+  return !context->cl.is_cpu ? INFINITY
+                             : (double)MCOR_PART_TERMS * context->cl.units / fmax(terms, 1);
+}
+
+/* Launches `count` work-items from `offset` on. Drivers compile a kernel for few and for many, from 0 on
+ * and from elsewhere, when it is first launched so. */
+static mcor_status mcor_enqueue_part(
+  mcor_context* context, mcor_kernel* kernel, size_t offset, size_t count, size_t group)
+{
+  mcor_cl* cl = &context->cl;
+  const size_t* from = offset > 0 ? &offset : NULL;
+  bool* launched = &kernel->launched[offset > 0][count >= MCOR_LARGE_LAUNCH];
+  if (!*launched && cl->compiles)
   {
-    const size_t rest = global - offset, part = rest < kernel->part ? rest : kernel->part;
-    const double begin = mcor_seconds();
-    error =
-      clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, &offset, &part, &group, 0, NULL, NULL);
-    offset += part;
-    if (offset < global && error == CL_SUCCESS)
-    {
-      error = clFinish(cl->queue);
-      const double seconds = mcor_seconds() - begin;
-      const size_t half = part / 2 / group * group;
-      kernel->part = seconds < MCOR_PART_SECONDS / 2  ? 2 * part
-        : seconds > 2 * MCOR_PART_SECONDS && half > 0 ? half
-                                                      : part;
-      MCOR_TRY(mcor_report_launch(context));
-    }
+    MCOR_TRY(mcor_report_building(context));
   }
-  MCOR_CL_TRY(context, error, kernel->name);
+  MCOR_CL_TRY(context,
+    *launched
+      ? clEnqueueNDRangeKernel(cl->queue, kernel->kernel, 1, from, &count, &group, 0, NULL, NULL)
+      : mcor_enqueue_first(context, kernel->kernel, from, &count, &group),
+    kernel->name);
+  *launched = true;
+  return MCOR_OK;
+}
+
+/* Launches all work-items in parts. */
+static mcor_status mcor_enqueue_cut(
+  mcor_context* context, mcor_kernel* kernel, size_t global, size_t group)
+{
+  const double limit = mcor_part_limit(context);
+  const double first = context->cl.is_cpu ? limit : MCOR_FIRST_PART;
+  double part = fmin(kernel->part > 0 ? kernel->part : first, limit);
+  size_t count = 0;
+  for (size_t offset = 0; offset < global; offset += count)
+  {
+    const size_t rest = (global - offset) / group;
+    const size_t groups = part < (double)group ? 1 : (size_t)(part / (double)group);
+    count = (groups < rest ? groups : rest) * group;
+    if (count == global)
+    {
+      return mcor_enqueue_part(context, kernel, 0, count, group);
+    }
+    MCOR_TRY(mcor_finish(context));
+    const double begin = mcor_seconds(), built = context->cl.build_seconds;
+    MCOR_TRY(mcor_enqueue_part(context, kernel, offset, count, group));
+    MCOR_TRY(mcor_finish(context));
+    const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
+    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest     ? fmin(2 * part, limit)
+      : seconds > 2 * MCOR_PART_SECONDS && part > (double)group ? part / 2
+                                                                : part;
+    kernel->part = part;
+    MCOR_TRY(mcor_report_launch(context));
+  }
   return MCOR_OK;
 }
 
@@ -194,24 +237,8 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   }
   const size_t group = mcor_group_size(cl, load);
   const size_t global = (items + group - 1) / group * group;
-  const bool large = global >= MCOR_LARGE_LAUNCH;
-  if (!kernel->launched[large] && cl->compiles)
-  {
-    MCOR_TRY(mcor_report_building(context));
-  }
-  const bool in_parts = !cl->is_cpu && load == MCOR_HEAVY;
-  if (!in_parts || kernel->part == 0)
-  {
-    kernel->part = in_parts ? MCOR_FIRST_PART : global;
-  }
-  size_t launched = 0;
-  if (!kernel->launched[large])
-  {
-    launched = global < kernel->part ? global : kernel->part;
-    MCOR_CL_TRY(context, mcor_enqueue_first(context, kernel->kernel, &launched, &group), name);
-    kernel->launched[large] = true;
-  }
-  return mcor_enqueue_parts(context, kernel, launched, global, group);
+  return mcor_is_cut(context, load) ? mcor_enqueue_cut(context, kernel, global, group)
+                                    : mcor_enqueue_part(context, kernel, 0, global, group);
 }
 
 mcor_status mcor_finish(mcor_context* context)

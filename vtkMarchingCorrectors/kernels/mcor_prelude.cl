@@ -33,6 +33,10 @@
 #define MCOR_ONE_COPY
 #else
 #define MCOR_ONE_COPY __attribute__((noinline))
+#ifdef POCL_DEVICE_ADDRESS_BITS
+/* PoCL makes three functions of a kernel, and would put all of it into each. */
+#define __kernel __kernel MCOR_ONE_COPY
+#endif
 #endif
 
 /* The lattice's kernels are many, and as fast when compiled for size, which takes PoCL about a tenth

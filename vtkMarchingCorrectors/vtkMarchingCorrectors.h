@@ -74,8 +74,8 @@
  * in its share of space, to the last bit as one process would make it. "GlobalPointIds" and
  * "GlobalCellIds" are the numbers that points and triangles have there: put where these say, the parts are
  * that surface. Field data are of the whole;
- * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankWork" and
- * "RankWorkByParticles" (where work was expected), "RankNodesEvaluated",
+ * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
+ * "RankNodesEvaluated",
  * "RankTriangles" and "RankSeconds", one component for each process. An error of one is an error of all.
  * Composite data have the same number of blocks on all.
  *
@@ -312,8 +312,8 @@ public:
   ///@{
   /**
    * How space is divided where processes share a surface, see SetController(): so that each has as
-   * many particles (BY_PARTICLES, the default), or as much work as can be expected (BY_WORK): surface
-   * costs more than what is within the fluid. The surface is the same, to the last bit.
+   * much work as can be expected (BY_WORK, the default): surface costs more than what is within the
+   * fluid; or as many particles (BY_PARTICLES). The surface is the same, to the last bit.
    */
   enum PartitionType
   {
@@ -634,7 +634,7 @@ protected:
   int SeedMode = COMPLETE;
   int CubeSizeMode = ADAPTIVE;
   int CubeLevelLimit = 24;
-  int Partition = BY_PARTICLES;
+  int Partition = BY_WORK;
   int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
   vtkTypeBool Trim = 1;

@@ -170,11 +170,9 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   }
   this->EstimateTogether(ranks, mine.Core, options);
   vtkSPHRanksBalance balance;
-  if (this->Partition == BY_WORK)
-  {
-    balance.HasWork = true;
-    balance.Work = vtkSPHExpectWork(ranks, mine.Core, options, globals);
-  }
+  balance.HasWork = true;
+  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, globals)
+                                            : vtkSPHCountWork(mine.Core, options);
   const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
   const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
   this->FillChoice(choice, near);
@@ -213,8 +211,7 @@ void vtkMarchingCorrectors::FinishTogether(
     vtkSPHNumberTriangles(ranks, surface, triangles);
   const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks,
     { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
-      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work,
-      run.Route.WorkBefore });
+      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
   if (ranks.GetRank() == 0)
   {

@@ -90,6 +90,12 @@ struct Form
     return this->Name == other.Name && this->Type == other.Type &&
       this->Components.size() == other.Components.size();
   }
+
+  bool operator==(const Form& other) const
+  {
+    return this->IsLike(other) && this->Attribute == other.Attribute &&
+      this->HasLabels == other.HasLabels && this->Components == other.Components;
+  }
 };
 
 struct Layout
@@ -241,6 +247,59 @@ vtkSmartPointer<vtkPolyData> MakeParticles(const Layout& layout, vtkIdType count
   return particles;
 }
 
+/** Whether it can travel as it is. */
+bool LiesPlain(vtkAbstractArray* array)
+{
+  const auto* numbers = vtkArrayDownCast<vtkDataArray>(array);
+  return !numbers || numbers->HasStandardMemoryLayout();
+}
+
+/** The particles themselves, where they have these arrays and lie as the others will; else null. */
+vtkSmartPointer<vtkPolyData> ShareParticles(const Layout& layout, vtkPolyData* particles)
+{
+  const Layout own = Describe(particles);
+  if (own.Points == 0 || own.Forms != layout.Forms)
+  {
+    return nullptr;
+  }
+  vtkDataArray* positions = particles->GetPoints()->GetData();
+  bool isPlain = positions->GetDataType() == (layout.IsDouble ? VTK_DOUBLE : VTK_FLOAT) &&
+    LiesPlain(positions);
+  for (const Form& form : layout.Forms)
+  {
+    isPlain =
+      isPlain && LiesPlain(particles->GetPointData()->GetAbstractArray(form.Name.c_str()));
+  }
+  if (!isPlain)
+  {
+    return nullptr;
+  }
+  auto shared = vtkSmartPointer<vtkPolyData>::New();
+  shared->SetPoints(particles->GetPoints());
+  for (const Form& form : layout.Forms)
+  {
+    const int at = shared->GetPointData()->AddArray(
+      particles->GetPointData()->GetAbstractArray(form.Name.c_str()));
+    if (form.Attribute >= 0)
+    {
+      shared->GetPointData()->SetActiveAttribute(at, form.Attribute);
+    }
+  }
+  return shared;
+}
+
+bool HasDuplicates(vtkPointSet* data)
+{
+  vtkUnsignedCharArray* marks = data ? data->GetPointGhostArray() : nullptr;
+  const vtkIdType count = marks ? marks->GetNumberOfTuples() : 0;
+  vtkIdType i = 0;
+  while (i < count && !(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
+  {
+    ++i;
+  }
+  return i < count;
+}
+
 vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
 {
   auto own = vtkSmartPointer<vtkIdList>::New();
@@ -269,15 +328,40 @@ bool IsPlain(vtkAbstractArray* array)
   return array->GetDataType() != VTK_STRING && array->GetDataType() != VTK_BIT;
 }
 
+/** Of a size that is known early: several times as fast. */
+template <std::size_t Size>
+void CopyTuples(const char* values, const std::vector<vtkIdType>& ids, char* to)
+{
+  for (const vtkIdType id : ids)
+  {
+    std::memcpy(to, values + static_cast<std::size_t>(id) * Size, Size);
+    to += Size;
+  }
+}
+
 void PutTuples(Bytes& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
 {
   if (IsPlain(array))
   {
-    const std::size_t size = TupleSize(array);
+    const std::size_t size = TupleSize(array), old = bytes.size();
+    bytes.resize(old + ids.size() * size);
+    char* to = bytes.data() + old;
     const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
+    switch (size)
+    {
+      case 4:
+        return CopyTuples<4>(values, ids, to);
+      case 8:
+        return CopyTuples<8>(values, ids, to);
+      case 12:
+        return CopyTuples<12>(values, ids, to);
+      default:
+        break;
+    }
     for (const vtkIdType id : ids)
     {
-      PutBytes(bytes, values + static_cast<std::size_t>(id) * size, size);
+      std::memcpy(to, values + static_cast<std::size_t>(id) * size, size);
+      to += size;
     }
     return;
   }
@@ -328,6 +412,17 @@ Arrays ListArrays(vtkPolyData* particles)
   return arrays;
 }
 
+/** At least; of a message with so many tuples. */
+std::size_t CountBytes(const Arrays& arrays, std::size_t count)
+{
+  std::size_t bytes = sizeof(std::int64_t);
+  for (vtkAbstractArray* array : arrays)
+  {
+    bytes += IsPlain(array) ? count * TupleSize(array) : 0;
+  }
+  return bytes;
+}
+
 /** Number i of the result came from rank i. */
 std::vector<Bytes> SendTuples(
   vtkSPHRanks& ranks, const Arrays& arrays, const std::vector<std::vector<vtkIdType>>& to)
@@ -337,6 +432,7 @@ std::vector<Bytes> SendTuples(
   {
     if (!to[rank].empty())
     {
+      messages[rank].reserve(CountBytes(arrays, to[rank].size()));
       PutNumber(messages[rank], static_cast<std::int64_t>(to[rank].size()));
       for (vtkAbstractArray* array : arrays)
       {
@@ -389,6 +485,11 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
     view->GetPointData()->ShallowCopy(data->GetPointData());
   }
   const Layout common = AgreeOnLayout(ranks, Describe(view));
+  if (const vtkSmartPointer<vtkPolyData> shared =
+        taken || HasDuplicates(data) ? nullptr : ShareParticles(common, view))
+  {
+    return shared;
+  }
   const vtkSmartPointer<vtkIdList> own = ListOwn(data);
   if (taken)
   {

@@ -64,6 +64,43 @@ std::vector<Key> FindEnds(vtkSPHRanks& ranks, const std::vector<Key>& keys)
   return ends;
 }
 
+using Place = std::vector<Key>::const_iterator;
+
+/** std::lower_bound() of what is probably near the beginning. */
+Place FindAfter(Place begin, Place end, const Key& key)
+{
+  std::ptrdiff_t step = 1;
+  while (step < end - begin && begin[step - 1] < key)
+  {
+    begin += step;
+    step *= 2;
+  }
+  return std::lower_bound(begin, begin + std::min(step, end - begin), key);
+}
+
+/** All keys of lists that ascend, each once. */
+std::vector<Key> Merge(const std::vector<std::vector<Key>>& lists)
+{
+  std::vector<Key> keys;
+  std::vector<std::ptrdiff_t> ends(1, 0);
+  for (const std::vector<Key>& list : lists)
+  {
+    keys.insert(keys.end(), list.begin(), list.end());
+    ends.push_back(static_cast<std::ptrdiff_t>(keys.size()));
+  }
+  for (std::size_t step = 1; step < lists.size(); step *= 2)
+  {
+    for (std::size_t i = 0; i + step < lists.size(); i += 2 * step)
+    {
+      const std::size_t end = std::min(i + 2 * step, lists.size());
+      std::inplace_merge(
+        keys.begin() + ends[i], keys.begin() + ends[i + step], keys.begin() + ends[end]);
+    }
+  }
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
 /** What numbers a key takes. */
 using Weight = std::int64_t (*)(const Key& key);
 
@@ -90,7 +127,7 @@ std::vector<Bytes> Number(const std::vector<std::vector<Key>>& sent,
     auto from = distinct.begin();
     for (std::size_t i = 0; i < keys.size(); ++i)
     {
-      from = std::lower_bound(from, distinct.end(), keys[i]);
+      from = FindAfter(from, distinct.end(), keys[i]);
       found[i] = numbers[static_cast<std::size_t>(from - distinct.begin())];
     }
     answers.push_back(Pack(found.data(), found.data() + found.size()));
@@ -131,14 +168,11 @@ std::vector<std::int64_t> NumberKeys(
     from = to;
   }
   std::vector<std::vector<Key>> sent;
-  std::vector<Key> distinct;
   for (const Bytes& bytes : ranks.Exchange(std::move(messages)))
   {
     sent.push_back(Unpack<Key>(bytes));
-    distinct.insert(distinct.end(), sent.back().begin(), sent.back().end());
   }
-  std::sort(distinct.begin(), distinct.end());
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  const std::vector<Key> distinct = Merge(sent);
   std::int64_t mine = 0, sum = 0;
   for (const Key& key : distinct)
   {

@@ -60,6 +60,17 @@ void FindBoxes(const vtkSPHRanksPartition& partition, const double period[3], co
   }
 }
 
+/** Whether all within `reach` of a place is. */
+bool IsWithin(const vtkSPHRanksBox& box, const double at[3], double reach)
+{
+  bool isWithin = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    isWithin = isWithin && at[a] - reach > box[Side(a)] && at[a] + reach < box[Side(a) + 1];
+  }
+  return isWithin;
+}
+
 class Router
 {
 public:
@@ -73,6 +84,8 @@ public:
     this->Factor = options.h_scale * factor;
     this->Support = options.h_scale * (input.smoothing_length_is_support_radius ? 1.0 : factor);
     this->LeastMargin = mcor_reach_margin(&options, &globals, 0.0);
+    this->HasLevels =
+      mcor_reach_margin(&options, &globals, globals.smoothing_length_max) > this->LeastMargin;
     this->ComputesVolumes = !input.has_volume && !(input.has_mass && input.has_density);
     for (int a = 0; a < 3; ++a)
     {
@@ -118,35 +131,15 @@ public:
     std::vector<vtkSPHRanksPlace> places = balance.Others;
     for (std::int64_t i = 0; i < this->Input.count; ++i)
     {
-      vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, 1 };
+      vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, balance.Of(i) };
       this->Place(i, place.At);
-      if (this->IsInWhole(place.At))
+      if (place.Work > 0 && this->IsInWhole(place.At))
       {
-        place.Work = balance.HasWork ? balance.Work[static_cast<std::size_t>(i)] : 1;
         places.push_back(place);
       }
     }
     return std::make_shared<vtkSPHRanksPartition>(
       ranks, this->Whole, std::move(places), BrickCubes * this->Globals.cube_size);
-  }
-
-  /** All ranks' particles' work in this rank's box. */
-  std::int64_t SumWork(vtkSPHRanks& ranks, const vtkSPHRanksPartition& partition,
-    const std::vector<std::int64_t>& work) const
-  {
-    std::vector<std::int64_t> sums(static_cast<std::size_t>(ranks.GetCount()), 0);
-    for (std::int64_t i = 0; i < this->Input.count; ++i)
-    {
-      double at[3];
-      this->Place(i, at);
-      if (this->IsInWhole(at))
-      {
-        sums[static_cast<std::size_t>(partition.FindOwner(at))] +=
-          work[static_cast<std::size_t>(i)];
-      }
-    }
-    ranks.Reduce(vtkSPHRanks::SUM, sums.data(), ranks.GetCount());
-    return sums[static_cast<std::size_t>(ranks.GetRank())];
   }
 
   /** Scaled support radius. */
@@ -161,22 +154,32 @@ public:
   double ReachOf(std::int64_t i) const
   {
     const double support = this->SupportOf(i);
-    return support - this->LeastMargin +
-      mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
+    return !this->HasLevels
+      ? support
+      : support - this->LeastMargin +
+        mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
   }
 
   /** The ranks that a particle at this place, or an image of it, reaches by `radius`. */
   void FindReached(const vtkSPHRanksPartition& partition, const double at[3], double radius,
     std::vector<int>& found) const
   {
-    FindBoxes(partition, this->Period.Length, at, radius + this->LeastMargin, found);
+    const double reach = radius + this->LeastMargin;
+    const int owner = this->IsInWhole(at) ? partition.FindOwner(at) : -1;
+    if (owner >= 0 && IsWithin(partition.GetBox(owner), at, reach))
+    {
+      found.assign(1, owner); // as most are
+      return;
+    }
+    FindBoxes(partition, this->Period.Length, at, reach, found);
   }
 
   /**
    * How far around its box each rank needs all particles, whatever their supports are: for volumes
    * that are computed, nearest particles and pairs.
    */
-  std::vector<double> FindRadii(vtkSPHRanks& ranks, const vtkSPHRanksPartition& partition) const
+  std::vector<double> FindRadii(vtkSPHRanks& ranks, const vtkSPHRanksPartition& partition,
+    const vtkSPHRanksBalance& balance) const
   {
     std::vector<double> radii(static_cast<std::size_t>(ranks.GetCount()), 0.0);
     const mcor_options& o = this->Options;
@@ -185,6 +188,10 @@ public:
       std::vector<int> found;
       for (std::int64_t i = 0; i < this->Input.count; ++i)
       {
+        if (balance.Of(i) == 0)
+        {
+          continue;
+        }
         double at[3];
         this->Place(i, at);
         const double reach = this->ReachOf(i);
@@ -218,6 +225,7 @@ public:
   double Support; ///< scaled support radius / what the input's array holds
   double Factor;  ///< scaled support radius / smoothing length
   double LeastMargin;
+  bool HasLevels; ///< margins differ
   bool ComputesVolumes;
   vtkSPHRanksPeriod Period;
   vtkSPHRanksBox Whole;
@@ -267,28 +275,28 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {
   const Router router(input, options, globals);
-  vtkSPHRanksRoute route = { {}, {}, 0, 0, nullptr, router.Period, 0, 0 };
+  vtkSPHRanksRoute route = { {}, {}, 0, 0, nullptr, router.Period, 0 };
   route.Partition = router.Divide(ranks, balance);
   const vtkSPHRanksPartition& partition = *route.Partition;
-  if (balance.HasWork)
-  {
-    route.Work = router.SumWork(ranks, partition, balance.Work);
-    route.WorkBefore = router.SumWork(ranks, *router.Divide(ranks, {}), balance.Work);
-  }
-  const std::vector<double> radii = router.FindRadii(ranks, partition);
+  const std::vector<double> radii = router.FindRadii(ranks, partition, balance);
   const double widest = *std::max_element(radii.begin(), radii.end());
   const auto count = static_cast<std::size_t>(ranks.GetCount());
   route.To.resize(count);
-  std::vector<std::int64_t> totals(2 * count, 0);
+  std::vector<std::int64_t> totals(3 * count, 0);
   std::vector<int> found;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
+    if (balance.Of(i) == 0)
+    {
+      continue;
+    }
     double at[3];
     router.Place(i, at);
     const int owner = router.IsInWhole(at) ? partition.FindOwner(at) : -1;
     if (owner >= 0)
     {
       ++totals[static_cast<std::size_t>(owner)];
+      totals[2 * count + static_cast<std::size_t>(owner)] += balance.Of(i);
     }
     const double reach = router.ReachOf(i);
     router.FindReached(partition, at, std::max(reach, widest), found);
@@ -320,5 +328,6 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   }
   route.OwnedParticles = totals[self];
   route.Particles = totals[count + self];
+  route.Work = totals[2 * count + self];
   return route;
 }

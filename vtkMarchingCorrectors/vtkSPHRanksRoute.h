@@ -42,16 +42,20 @@ struct vtkSPHRanksRoute
   std::int64_t Particles;                 ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
   vtkSPHRanksPeriod Period;
-  std::int64_t Work;       ///< expected in its box; 0 where that was not asked for
-  std::int64_t WorkBefore; ///< the same, if boxes had as many particles each
+  std::int64_t Work; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
 };
 
 /** What is divided evenly. */
 struct vtkSPHRanksBalance
 {
-  bool HasWork = false;                 ///< on all ranks alike; else particles are
-  std::vector<std::int64_t> Work;       ///< of each particle
+  bool HasWork = false;                 ///< on all ranks alike; else that of each particle is 1
+  std::vector<std::int64_t> Work;       ///< of each particle; 0: it is needed nowhere
   std::vector<vtkSPHRanksPlace> Others; ///< of this rank's, beside the particles
+
+  std::int64_t Of(std::int64_t particle) const
+  {
+    return this->HasWork ? this->Work[static_cast<std::size_t>(particle)] : 1;
+  }
 };
 
 /**

@@ -179,11 +179,7 @@ void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& sha
 {
   using Share = vtkSPHRanksShare;
   AddExchange(run, shares);
-  if (std::any_of(shares.begin(), shares.end(), [](const Share& s) { return s.Work > 0; }))
-  {
-    AddCount(run, "RankWork", shares, [](const Share& s) { return s.Work; });
-    AddCount(run, "RankWorkByParticles", shares, [](const Share& s) { return s.WorkBefore; });
-  }
+  AddCount(run, "RankWork", shares, [](const Share& s) { return s.Work; });
   AddCount(
     run, "RankNodesEvaluated", shares, [](const Share& s) { return s.Statistics.nodes_evaluated; });
   AddCount(run, "RankTriangles", shares, [](const Share& s) { return s.Triangles; });

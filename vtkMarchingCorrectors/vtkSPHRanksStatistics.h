@@ -22,7 +22,7 @@ struct vtkSPHRanksShare
   std::int64_t Points, Triangles;
   std::int64_t OwnedParticles, CopiedParticles; ///< of its box; of others' that reach it
   std::int64_t BytesSent;
-  std::int64_t Work, WorkBefore; ///< as in vtkSPHRanksRoute
+  std::int64_t Work; ///< as in vtkSPHRanksRoute
 };
 
 /** All ranks' parts, in their order. Collective. */
@@ -35,9 +35,8 @@ std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSP
 mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares);
 
 /**
- * Adds "RankParticles", "RankCopies", "RankBytesSent", "RankNodesEvaluated", "RankTriangles" and
- * "RankSeconds", one component for each rank; where work was expected "RankWork" and
- * "RankWorkByParticles", that of boxes with as many particles each.
+ * Adds "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated",
+ * "RankTriangles" and "RankSeconds", one component for each rank.
  */
 void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares);
 

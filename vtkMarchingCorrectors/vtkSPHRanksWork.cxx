@@ -120,11 +120,14 @@ public:
   }
 
 private:
-  /** How many surfaces pass through a cell, as far as it and the six around it tell. */
+  /**
+   * How many surfaces pass through a cell, each as large as a side of it, as far as it and the six around
+   * it tell.
+   */
   int CountSurfaces(std::size_t cell, const int at[3]) const
   {
     double low = this->Low[cell], high = -this->High[cell];
-    bool isAtEnd = false;
+    int ends = 0; // sides at which the fluid does
     std::size_t stride = 1;
     for (int a = 0; a < 3; ++a)
     {
@@ -132,7 +135,7 @@ private:
       {
         const bool isIn = at[a] + step >= 0 && at[a] + step < this->Size[a];
         const std::size_t other = step < 0 ? cell - stride : cell + stride;
-        isAtEnd = isAtEnd || !isIn || FarFewer * this->Counts[other] < this->Counts[cell];
+        ends += !isIn || FarFewer * this->Counts[other] < this->Counts[cell] ? 1 : 0;
         low = isIn ? std::min(low, this->Low[other]) : low;
         high = isIn ? std::max(high, -this->High[other]) : high;
       }
@@ -140,7 +143,7 @@ private:
     }
     if (this->Options.field == MCOR_WEIGHT_SUM)
     {
-      return isAtEnd ? this->Options.iso_count : 0;
+      return ends * this->Options.iso_count;
     }
     return static_cast<int>(
       std::count_if(this->Options.iso_values, this->Options.iso_values + this->Options.iso_count,
@@ -158,13 +161,26 @@ private:
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options)
+{
+  std::vector<std::int64_t> work(static_cast<std::size_t>(input.count), 1);
+  const bool usesSolids =
+    !input.ignore_solids && (options.field != MCOR_WEIGHT_SUM || options.wall_share != 0.0);
+  for (std::int64_t i = 0; input.solid && !usesSolids && i < input.count; ++i)
+  {
+    work[static_cast<std::size_t>(i)] = input.solid[i] ? 0 : 1;
+  }
+  return work;
+}
+
+//------------------------------------------------------------------------------
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals)
 {
   CoarseGrid grid(input, options, globals);
   grid.Fill(ranks);
   const std::vector<std::int64_t> shares = grid.Share();
-  std::vector<std::int64_t> work(static_cast<std::size_t>(input.count), 1);
+  std::vector<std::int64_t> work = vtkSPHCountWork(input, options);
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])

@@ -14,8 +14,13 @@
 class vtkSPHRanks;
 
 /**
- * Of each of this rank's particles, the work that it stands for: 1, and where the surface is expected a
- * share of what that costs. The surface is expected in cells of a coarse grid, whose number does not
+ * Of each of this rank's particles 1, but 0 of those without which the surface is the same: solid ones
+ * where it does not depend on these.
+ */
+std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options);
+
+/**
+ * The same, and where the surface is expected a share of what that costs. The surface is expected in cells of a coarse grid, whose number does not
  * grow with the particles, around which values are on both sides of an iso value; the free surface in
  * those beside which there are far fewer particles. The same to the last bit however particles are
  * strewn over ranks. Collective.

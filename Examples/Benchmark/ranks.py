@@ -110,8 +110,8 @@ def measure(arguments):
         bounds = sets.read(path).GetBounds()
         shape = [bounds[2 * a + 1] - bounds[2 * a] for a in range(3)]
         for ranks in (int(number) for number in arguments.ranks.split(",")):
-            found = run(arguments.program, path, [*which.options, *options], ranks)
-            by_work = run(arguments.program, path, [*which.options, *options, "--partition", "work"], ranks)
+            found = run(arguments.program, path, [*which.options, *options, "--partition", "particles"], ranks)
+            by_work = run(arguments.program, path, [*which.options, *options], ranks)
             runs.append((Model(sum(found["rank_particles"]), shape, ranks), found))
             rows.append((ranks, found, by_work))
             print(word, ranks, file=sys.stderr)

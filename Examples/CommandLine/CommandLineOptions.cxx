@@ -111,7 +111,7 @@ const std::vector<Option>& AllOptions()
         o.Cubes = ToChoice(n, v, { "uniform", "adaptive" });
       } },
     { "--partition", "HOW",
-      "processes of mpirun have as many particles each, or as much work (default particles)",
+      "processes of mpirun have as many particles each, or as much work (default work)",
       [](Options& o, Text n, Text v) {
         o.Partition = ToChoice(n, v, { "particles", "work" });
       } },

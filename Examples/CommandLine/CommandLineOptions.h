@@ -47,7 +47,7 @@ struct CommandLineOptions
   double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
   std::string Cubes = "adaptive";
   int MaxLevel = 24;                   ///< of adaptive cubes
-  std::string Partition = "particles"; ///< what processes have alike
+  std::string Partition = "work"; ///< what processes have alike
   std::vector<double> Box;             ///< x0, x1, y0, y1, z0, z1; empty: all
   bool Capping = false;
   bool DetectPeriod = false;    ///< --periodic auto

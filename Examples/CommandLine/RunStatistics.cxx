@@ -36,7 +36,7 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",
   "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak",
   "MedianNeighbors", "MedianSpacing", "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
-  "RankWorkByParticles", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

@@ -105,11 +105,11 @@ const std::vector<Case> Cases = {
       f->UseBoxOn();
       f->SetBox(0.0, 3.0, 0.0, 0.96, 0.0, 0.96);
     } },
-  { "by work", "double_dam_break_small",
+  { "by particles", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
     {
       ContourSpeed(f);
-      f->SetPartitionToByWork();
+      f->SetPartitionToByParticles();
     } },
   { "pairs", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)

@@ -187,6 +187,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   boxed.globals = &globals;
   boxed.has_box = 1;
   std::copy(route.Box, route.Box + 6, boxed.box);
+  std::copy(route.Whole.begin(), route.Whole.end(), boxed.whole_box);
   mcor_surface surface = {};
   const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
     &surface, mcor_free_surface);

@@ -275,7 +275,7 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {
   const Router router(input, options, globals);
-  vtkSPHRanksRoute route = { {}, {}, 0, 0, nullptr, router.Period, 0 };
+  vtkSPHRanksRoute route = { {}, {}, router.Whole, 0, 0, nullptr, router.Period, 0 };
   route.Partition = router.Divide(ranks, balance);
   const vtkSPHRanksPartition& partition = *route.Partition;
   const std::vector<double> radii = router.FindRadii(ranks, partition, balance);

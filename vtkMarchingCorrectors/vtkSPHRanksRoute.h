@@ -38,6 +38,7 @@ struct vtkSPHRanksRoute
 
   std::vector<std::vector<vtkIdType>> To; ///< indices of the particles that each rank gets
   double Box[6];                          ///< this rank's, as in mcor_options; may hold nothing
+  vtkSPHRanksBox Whole;                   ///< of all ranks' boxes
   std::int64_t OwnedParticles;            ///< those in its box
   std::int64_t Particles;                 ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;

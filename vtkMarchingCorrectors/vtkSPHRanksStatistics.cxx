@@ -26,9 +26,10 @@ void AddCounts(mcor_statistics& all, const mcor_statistics& one, int factor)
     &mcor_statistics::triangles_before_trimming, &mcor_statistics::cap_triangles,
     &mcor_statistics::ambiguous_faces, &mcor_statistics::joined_faces,
     &mcor_statistics::ambiguous_cells, &mcor_statistics::tunnels,
-    &mcor_statistics::vertices_corrected, &mcor_statistics::newton_evaluations,
-    &mcor_statistics::vertices_above_tolerance, &mcor_statistics::trim_vertices,
-    &mcor_statistics::trim_vertices_linear, &mcor_statistics::flat_caps };
+    &mcor_statistics::correction_count, &mcor_statistics::vertices_corrected,
+    &mcor_statistics::newton_evaluations, &mcor_statistics::vertices_above_tolerance,
+    &mcor_statistics::trim_vertices, &mcor_statistics::trim_vertices_linear,
+    &mcor_statistics::flat_caps };
   for (const auto count : counts)
   {
     all.*count = factor * all.*count + one.*count;
@@ -78,19 +79,19 @@ void AddCells(mcor_statistics& all, const mcor_statistics& one)
 /** Sums from which means are made again. */
 struct Sums
 {
-  double Points = 0.0, Length = 0.0, Squares = 0.0, Vertices = 0.0, Iterations = 0.0;
+  double Points = 0.0, Length = 0.0, Squares = 0.0, Vertices = 0.0, Evaluations = 0.0;
 
   void Add(const vtkSPHRanksShare& share)
   {
     const mcor_statistics& s = share.Statistics;
-    const auto points = static_cast<double>(share.Points - s.trim_vertices);
+    const auto points = static_cast<double>(s.correction_count);
     const auto vertices = static_cast<double>(s.vertices_corrected);
     this->Points += points;
     this->Length += points * s.correction_mean;
     this->Squares += points *
       (s.correction_deviation * s.correction_deviation + s.correction_mean * s.correction_mean);
     this->Vertices += vertices;
-    this->Iterations += vertices * s.iterations_mean;
+    this->Evaluations += std::round(vertices * (s.iterations_mean + 1.0)); // a whole number
   }
 
   void Take(mcor_statistics& all) const
@@ -99,7 +100,7 @@ struct Sums
     all.correction_mean = this->Length / points;
     all.correction_deviation =
       std::sqrt(std::max(0.0, this->Squares / points - all.correction_mean * all.correction_mean));
-    all.iterations_mean = this->Iterations / std::max(this->Vertices, 1.0);
+    all.iterations_mean = this->Vertices > 0.0 ? this->Evaluations / this->Vertices - 1.0 : 0.0;
   }
 };
 

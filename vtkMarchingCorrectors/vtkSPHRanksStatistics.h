@@ -29,8 +29,8 @@ struct vtkSPHRanksShare
 std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSPHRanksShare& mine);
 
 /**
- * Sums of counts, the longest seconds, means over all points: those on a seam count once for each rank
- * that has them.
+ * Sums of counts, the longest seconds, means over all points, of which each was counted by one rank. What
+ * is evaluated on both sides of a seam is in the counts of bricks, nodes and evaluations twice.
  */
 mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares);
 

@@ -10,6 +10,7 @@
 
 #include "vtkCommunicator.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkMPIController.h"
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
@@ -174,11 +175,18 @@ vtkSmartPointer<vtkPolyData> Read(const std::string& file)
   return reader->GetOutput();
 }
 
-/// A surface, and what the filter says of it: ranges and cells, of the run and of the next one.
+/// Statistics that are of the surface, whoever made what of it.
+const char* const OfSurface[] = { "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean",
+  "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance",
+  "IterationsMean", "IterationsMax", "TrimVertices", "TrimVerticesLinear" };
+constexpr std::size_t OfSurfaceCount = sizeof(OfSurface) / sizeof(OfSurface[0]);
+
+/// A surface, and what the filter says of it: ranges and cells, of the run and of the next one;
+/// statistics.
 struct Extracted
 {
   vtkSmartPointer<vtkPolyData> Surface;
-  std::array<double, 6> Said = {};
+  std::array<double, 6 + OfSurfaceCount> Said = {};
 };
 
 Extracted Extract(const Setup& setUp, vtkPolyData* particles, vtkMultiProcessController* controller)
@@ -189,8 +197,14 @@ Extracted Extract(const Setup& setUp, vtkPolyData* particles, vtkMultiProcessCon
   filter->SetInputData(particles);
   filter->Update();
   const double *range = filter->GetFluidScalarRange(), *next = filter->GetNextScalarRange();
-  return { filter->GetOutput(),
+  Extracted extracted = { filter->GetOutput(),
     { range[0], range[1], filter->GetEstimatedCells(), next[0], next[1], filter->GetNextCells() } };
+  for (std::size_t i = 0; i < OfSurfaceCount; ++i)
+  {
+    vtkDataArray* found = extracted.Surface->GetFieldData()->GetArray(OfSurface[i]);
+    extracted.Said[6 + i] = found ? found->GetComponent(0, 0) : -1.0;
+  }
+  return extracted;
 }
 
 /// Whether all ranks say what rank 0 said alone, up to the rounding of sums.
@@ -221,7 +235,8 @@ int Check(const Case& tried, const std::string& folder, vtkMPIController* contro
       particles, part, controller->GetLocalProcessId(), controller->GetNumberOfProcesses());
     const Extracted made = Extract(tried.SetUp, own, controller);
     std::string problem = CompareWithWhole(controller, made.Surface, whole.Surface);
-    problem += SayTheSame(controller, made, whole) ? "" : "other ranges or numbers of cells";
+    problem +=
+      SayTheSame(controller, made, whole) ? "" : "other ranges, numbers of cells or statistics";
     if (isFirst)
     {
       failures += problem.empty() ? 0 : 1;

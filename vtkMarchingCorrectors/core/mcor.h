@@ -286,6 +286,9 @@ extern "C"
      * surface up to the correction. mcor_probe and mcor_derive read it with globals alone, see there. */
     int has_box;
     double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
+    /* With ranks, the box that all of theirs are parts of; all 0: there is no end to it but that of a
+     * period. Vertices that several ranks have are counted by one. */
+    double whole_box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, particles and all they carry repeat along x
      * with that period: each is taken to where it is between x0 and x1, and its images count. The
@@ -363,7 +366,8 @@ extern "C"
     double cube_size;              /* unit L */
     double scalar_min, scalar_max; /* over fluid particles */
     /* Of the part of the virtual grid in the box, where there is one; so are all counts of cells and
-     * triangles. Those of bricks, nodes, faces and iterations are of what was done, around it, too. */
+     * triangles, and those of vertices; a vertex that several ranks have is counted by one of them.
+     * Those of bricks, nodes, faces and evaluations are of what was done, around the box, too. */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
@@ -386,6 +390,7 @@ extern "C"
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Correction, Table V: distance between linear and corrected vertex, unit L. */
     double correction_mean, correction_max, correction_deviation;
+    int64_t correction_count; /* vertices that the mean is of: the surface's but for cuts */
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;

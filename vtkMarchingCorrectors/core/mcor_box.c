@@ -53,25 +53,55 @@
 
 /* ---- Cells ---- */
 
-/* The box's sides for cells of all levels, whose centres are at whole numbers of halves. Without end where the
- * box is not: large cells stick out of the lattice. everywhere: all particles are on the device. */
+/* The sides of a box between `low` and `high` for cells of all levels, whose centres are at whole numbers of
+ * halves; NULL, and where cells end at the lattice's sides: without end, as large cells stick out of it. */
 static void mcor_place_halves(
-  mcor_context* context, const mcor_options* options, int axis, bool everywhere)
+  const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
-  mcor_box* box = &context->box;
-  const mcor_lattice* lattice = &context->lattice;
   const bool periodic = lattice->period[axis] > 0;
   const int first = periodic ? lattice->period_first[axis] : (int)lattice->first[axis];
   const int last = periodic ? first + lattice->period[axis] : (int)lattice->last[axis];
   for (int s = 0; s < 2; ++s)
   {
-    const int side = s == 0 ? box->first[axis] : box->last[axis], end = s == 0 ? first : last;
-    const double at = options->has_box ? ceil(2 * (options->box[2 * axis + s] / lattice->cube)) : 0;
+    const int side = s == 0 ? low : high, end = s == 0 ? first : last;
+    const double at = sides ? ceil(2 * (sides[2 * axis + s] / lattice->cube)) : 0;
     const int open = periodic ? 2 * end : s == 0 ? -(1 << 30) : 1 << 30;
-    const int half = side == end ? open : (int)(at - 2 * (double)lattice->origin[axis]);
-    box->halves[3 * s + axis] = half;
-    box->near[3 * s + axis] = everywhere ? open : half;
+    halves[3 * s + axis] =
+      !sides || side == end ? open : (int)(at - 2 * (double)lattice->origin[axis]);
   }
+}
+
+/* Of a box the cells along an axis, [side[0], side[1]). */
+static void mcor_place_sides(
+  const mcor_lattice* lattice, int axis, const double* sides, double side[2])
+{
+  const double first = side[0], last = side[1];
+  for (int s = 0; s < 2; ++s)
+  {
+    const double at = ceil(sides[2 * axis + s] / lattice->cube - 0.5);
+    side[s] = fmin(fmax(at - (double)lattice->origin[axis], first), last);
+  }
+}
+
+/* The cells that any rank owns; `first` to `last` where there is no end. */
+static void mcor_place_whole(
+  mcor_context* context, const mcor_options* options, int axis, double first, double last)
+{
+  mcor_box* box = &context->box;
+  bool is_given = false;
+  for (int i = 0; i < 6; ++i)
+  {
+    is_given = is_given || options->whole_box[i] != 0;
+  }
+  double side[2] = { first, last };
+  if (is_given)
+  {
+    mcor_place_sides(&context->lattice, axis, options->whole_box, side);
+  }
+  box->whole_first[axis] = (int)side[0];
+  box->whole_last[axis] = (int)side[1];
+  mcor_place_halves(&context->lattice, axis, is_given ? options->whole_box : NULL, (int)side[0],
+    (int)side[1], box->whole_halves);
 }
 
 /* The cells that a probe's points are in; all of the period where some are beyond it, and taken into
@@ -104,10 +134,10 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     const double first = periodic ? lattice->period_first[a] : (double)lattice->first[a];
     const double last = periodic ? first + lattice->period[a] : (double)lattice->last[a];
     double side[2] = { first, last };
-    for (int s = 0; s < 2 && options->has_box; ++s)
+    const double* sides = options->has_box ? options->box : NULL;
+    if (sides)
     {
-      const double at = ceil(options->box[2 * a + s] / lattice->cube - 0.5);
-      side[s] = fmin(fmax(at - (double)lattice->origin[a], first), last);
+      mcor_place_sides(lattice, a, sides, side);
     }
     if (box->of_points)
     {
@@ -115,7 +145,10 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
-    mcor_place_halves(context, options, a, everywhere);
+    mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
+    mcor_place_halves(
+      lattice, a, everywhere ? NULL : sides, box->first[a], box->last[a], box->near);
+    mcor_place_whole(context, options, a, first, last);
     box->begin[a] = everywhere ? (int)first : box->first[a];
     box->end[a] = everywhere ? (int)last : box->last[a];
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;

@@ -77,6 +77,11 @@ mcor_status mcor_clip_used(mcor_context* context);
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
+/* mcor_seam.c. Beside MCOR_RING_CELL: another rank owns the cell. */
+#define MCOR_OTHERS_CELL ((cl_ulong)1 << 62)
+mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared);
+mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
+
 /* mcor_triangle_cell.c. Whether triangles carry their cells; those of [first, last) that are owned. */
 bool mcor_follows_cells(const mcor_context* context);
 mcor_status mcor_mark_owned(mcor_context* context, int* count);
@@ -85,7 +90,7 @@ mcor_status mcor_trim_cells(
   mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining);
 
 /* Output. */
-mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface, uint8_t** vertices);
+mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface);
 mcor_status mcor_crop_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 

@@ -220,6 +220,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->fraction_end = 0.1;
   context->cl.build_seconds = 0;
   context->correction_count = context->correction_sum = context->correction_squares = 0;
+  context->evaluations_counted = 0;
   context->grid.view = 0;
   context->cl.bytes_peak = context->cl.bytes;
   const mcor_status status = body(context, input, options, result);

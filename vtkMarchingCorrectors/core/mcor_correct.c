@@ -3,7 +3,10 @@
 
 /* Correction [III-D.2]. */
 
+#include "mcor_box.h"
 #include "mcor_graded.h"
+
+#include <stdlib.h>
 
 /* Vertices get room for those that trimming adds, so that nothing is copied then. */
 mcor_status mcor_reserve_vertices(mcor_context* context, int count)
@@ -20,7 +23,8 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
   return mcor_reserve(context, &mesh->evaluations, n);
 }
 
-static mcor_status mcor_count_iterations(mcor_context* context)
+/* owners: see mcor_find_counted. */
+static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* owners)
 {
   mcor_statistics* s = context->statistics;
   const mcor_buffer* buffer = &context->mesh.evaluations;
@@ -32,10 +36,14 @@ static mcor_status mcor_count_iterations(mcor_context* context)
   for (size_t i = 0; i < n; ++i)
   {
     s->newton_evaluations += evaluations[i];
+    if (!owners || owners[i] == MCOR_OWN)
+    {
+      ++s->vertices_corrected;
+      context->evaluations_counted += evaluations[i];
+    }
     most = evaluations[i] > most ? evaluations[i] : most;
   }
   s->iterations_max = most - 1 > s->iterations_max ? most - 1 : s->iterations_max;
-  s->vertices_corrected += (int64_t)n;
   return mcor_unmap(context, buffer, &view);
 }
 
@@ -64,5 +72,13 @@ mcor_status mcor_correct(mcor_context* context, double iso)
         MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   }
   MCOR_TRY(mcor_view_level(context, 0));
-  return options->preview ? MCOR_OK : mcor_count_iterations(context);
+  if (options->preview)
+  {
+    return MCOR_OK;
+  }
+  uint8_t* owners = NULL;
+  mcor_status status = mcor_find_counted(context, &owners);
+  status = status == MCOR_OK ? mcor_count_iterations(context, owners) : status;
+  free(owners);
+  return status;
 }

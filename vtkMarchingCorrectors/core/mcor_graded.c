@@ -341,6 +341,22 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   return MCOR_OK;
 }
 
+/* Triangles, and their cells, of which those between the sides are owned. */
+static mcor_status mcor_emit_leaf_triangles(
+  mcor_context* context, const int sides[6], mcor_buffer* cells)
+{
+  const mcor_graded* graded = &context->graded;
+  mcor_mesh* mesh = &context->mesh;
+  const bool follows = mcor_follows_cells(context);
+  const size_t count = follows ? (size_t)mesh->triangle_count : 1;
+  MCOR_TRY(mcor_reserve(context, cells, count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
+    MCOR_LEAF_ARGS(context), MCOR_LEAF_SIDES_ARGS(context, sides), MCOR_LEAF_DECISION_ARGS(context),
+    MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&mesh->triangles));
+}
+
 static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
 {
   mcor_graded* graded = &context->graded;
@@ -354,14 +370,16 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
     MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  mcor_buffer* cells = &context->box.cells;
-  const bool follows = mcor_follows_cells(context);
-  MCOR_TRY(mcor_reserve(context, cells, (follows ? triangles : 1) * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_LEAF_BOX_ARGS(context), MCOR_LEAF_DECISION_ARGS(context),
-    MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
+  MCOR_TRY(mcor_emit_leaf_triangles(context, context->box.halves, &context->box.cells));
+  if (!context->box.is_part || !context->options->ranks)
+  {
+    return MCOR_OK;
+  }
+  mcor_buffer shared = { 0 };
+  mcor_status status = mcor_emit_leaf_triangles(context, context->box.whole_halves, &shared);
+  status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
+  mcor_release(context, &shared);
+  return status;
 }
 
 /* Counts the triangles of each level, in the box where there is one. */

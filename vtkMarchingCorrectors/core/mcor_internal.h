@@ -259,6 +259,13 @@ typedef struct mcor_attributes
   mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
 
+/* Who counts a vertex; 0: nobody. */
+enum
+{
+  MCOR_OWN = 1,
+  MCOR_ANOTHERS = 2 /* another rank */
+};
+
 /* The cells that a call owns; see mcor_box.c. */
 typedef struct mcor_box
 {
@@ -269,6 +276,7 @@ typedef struct mcor_box
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
   int begin[3], end[3]; /* the same of those whose particles are on the device */
+  int whole_first[3], whole_last[3], whole_halves[6]; /* cells that any rank owns */
   mcor_buffer cells;    /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
   mcor_buffer clipped;  /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;        /* per triangle of the surface: 1 of an owned cell; NULL: all are */
@@ -319,6 +327,7 @@ struct mcor_context
   int probe_batch;               /* points; 0 before the first probe */
   bool building_told;            /* in this phase */
   double correction_count, correction_sum, correction_squares;
+  int64_t evaluations_counted; /* of vertices_corrected */
   char error[4096];
 };
 

@@ -34,7 +34,7 @@ typedef struct mcor_download
   const cl_int *scanned, *node;
   const void *offset, *linear, *value, *gradient, *weight;
   const uint8_t* flag;
-  uint8_t* owned; /* see mcor_keep_cells */
+  uint8_t* owned; /* see mcor_find_counted */
   uint64_t* cuts; /* see mcor_keep_cuts */
 } mcor_download;
 
@@ -311,7 +311,7 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
     {
       mcor_store_point(
         delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
-      if ((!d->owned || d->owned[v]) && !mcor_is_cap(delivery->context, v))
+      if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(delivery->context, v))
       {
         mcor_count_correction(delivery->context, d, v, &tally);
       }
@@ -411,7 +411,8 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   {
     MCOR_TRY(mcor_map_vertices(context, download));
   }
-  MCOR_TRY(mcor_keep_cells(context, surface, &download->owned));
+  MCOR_TRY(mcor_keep_cells(context, surface));
+  MCOR_TRY(mcor_find_counted(context, &download->owned));
   MCOR_TRY(mcor_deliver_triangles(context, download->scanned, surface));
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)

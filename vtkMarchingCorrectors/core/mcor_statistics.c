@@ -89,12 +89,13 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   int nodes = 0;
   MCOR_TRY(mcor_count_bits(context, known, known, context->bricks.now.count, &nodes));
   s->nodes_evaluated = nodes;
+  s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->correction_sum / n : 0;
   s->correction_deviation = n > 0
     ? sqrt(fmax(context->correction_squares / n - s->correction_mean * s->correction_mean, 0))
     : 0;
   s->iterations_mean = s->vertices_corrected > 0
-    ? (double)s->newton_evaluations / (double)s->vertices_corrected - 1
+    ? (double)context->evaluations_counted / (double)s->vertices_corrected - 1
     : 0;
   s->device_bytes_peak = context->cl.bytes_peak;
   snprintf(s->device, sizeof s->device, "%s", context->cl.device_name);

@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_BOX_ARGS(r, ring) MCOR_CELL_ARGS((r)->first, (r)->last, ring, ring)
-
 bool mcor_follows_cells(const mcor_context* context)
 {
   return context->box.is_part || context->options->triangle_keys;
@@ -22,38 +20,54 @@ bool mcor_follows_cells(const mcor_context* context)
 
 /* ---- Mesh ---- */
 
-/* Writes the triangles' cells; *count: how many are owned. */
-mcor_status mcor_mark_owned(mcor_context* context, int* count)
+/* Writes the triangles' cells; those from `first` to `last` are owned. */
+static mcor_status mcor_mark_cells(
+  mcor_context* context, const int first[3], const int last[3], mcor_buffer* cells)
 {
-  mcor_box* box = &context->box;
   const mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
   const mcor_topology_data* topology = &context->topology;
   const int *blocks = context->lattice.blocks, bricks_now = bricks->now.count;
-  *count = mesh->triangle_count;
-  if (!mcor_follows_cells(context))
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_reserve(context, &box->cells, (size_t)mesh->triangle_count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, cells, (size_t)mesh->triangle_count * sizeof(cl_ulong)));
   if (context->options->topology == MCOR_TOPOLOGY_FIELD)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark_resolved", MCOR_MEDIUM, bricks_now,
       MCOR_INT(bricks_now), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BOX_ARGS(box, 0),
-      MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&topology->decisions),
-      MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),
-      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells)));
+      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
+      MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
+      MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->cases),
+      MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells)));
   }
   else
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark", MCOR_MEDIUM, bricks_now, MCOR_INT(bricks_now),
       MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_BUFFER(&bricks->now.bricks),
-      MCOR_BUFFER(&bricks->neighbours), MCOR_BOX_ARGS(box, 0), MCOR_BUFFER(&mesh->used),
+      MCOR_BUFFER(&bricks->neighbours), MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&mesh->used),
       MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&context->case_table),
-      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells)));
+      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells)));
   }
-  return mcor_count_owned_triangles(context, 0, mesh->triangle_count, count);
+  return MCOR_OK;
+}
+
+/* Writes the triangles' cells; *count: how many are owned. */
+mcor_status mcor_mark_owned(mcor_context* context, int* count)
+{
+  mcor_box* box = &context->box;
+  *count = context->mesh.triangle_count;
+  if (!mcor_follows_cells(context))
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_mark_cells(context, box->first, box->last, &box->cells));
+  if (box->is_part && context->options->ranks)
+  {
+    mcor_buffer shared = { 0 };
+    mcor_status status = mcor_mark_cells(context, box->whole_first, box->whole_last, &shared);
+    status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
+    mcor_release(context, &shared);
+    MCOR_TRY(status);
+  }
+  return mcor_count_owned_triangles(context, 0, context->mesh.triangle_count, count);
 }
 
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count)
@@ -120,28 +134,8 @@ static mcor_status mcor_extend_kept(mcor_context* context, mcor_surface* surface
   return MCOR_OK;
 }
 
-/* 1 for each vertex that an owned triangle uses; the mesh's triangles begin at `base` of the kept ones. */
-static mcor_status mcor_mark_vertices(mcor_context* context, size_t base, uint8_t** vertices)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const size_t triangles = (size_t)mesh->triangle_count;
-  const uint8_t* kept = context->box.kept;
-  *vertices = calloc((size_t)mesh->vertex_count + 1, 1);
-  MCOR_RETURN_IF(!*vertices, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %d points could not be allocated.", mesh->vertex_count);
-  void* view;
-  MCOR_TRY(mcor_map(context, &mesh->triangles, triangles * 3 * sizeof(cl_int), false, &view));
-  const cl_int* corners = view;
-  for (size_t i = 0; i < 3 * triangles; ++i)
-  {
-    (*vertices)[corners[i]] |= kept[base + i / 3];
-  }
-  return mcor_unmap(context, &mesh->triangles, &view);
-}
-
-/* Takes the cells of the mesh's triangles along with the surface; marks in *vertices, where not all are
- * owned, those of the mesh that an owned triangle uses with 1. */
-mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface, uint8_t** vertices)
+/* Takes the cells of the mesh's triangles along with the surface. */
+mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
 {
   mcor_box* box = &context->box;
   mcor_mesh* mesh = &context->mesh;
@@ -171,8 +165,7 @@ mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface, uint8_
       key[1] = cells[i];
     }
   }
-  MCOR_TRY(mcor_unmap(context, &box->cells, &view));
-  return box->is_part ? mcor_mark_vertices(context, base, vertices) : MCOR_OK;
+  return mcor_unmap(context, &box->cells, &view);
 }
 
 /* Moves elements of `width` bytes to where their numbers say, which is not behind where they are;

@@ -1,0 +1,84 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Which vertices a call counts. Those of a seam, which several ranks have, are counted once: the triangles
+ * of a box and of the ring around it are in one order on all ranks, and a vertex is counted by the rank
+ * whose triangle is the first that uses it. Cells beyond all ranks' boxes, in the ring where the whole
+ * ends, are nobody's. */
+
+#include "mcor_box.h"
+
+#include <stdlib.h>
+
+/* `shared`: the triangles' cells as if all ranks' boxes were owned. Marks those in box.cells that other
+ * ranks own. */
+mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
+{
+  mcor_buffer* buffer = &context->box.cells;
+  const size_t triangles = (size_t)context->mesh.triangle_count;
+  const size_t bytes = triangles * sizeof(cl_ulong);
+  if (triangles == 0)
+  {
+    return MCOR_OK;
+  }
+  cl_ulong* cells = malloc(2 * bytes);
+  MCOR_RETURN_IF(!cells, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %zu triangles could not be allocated.", triangles);
+  mcor_status status = mcor_read(context, buffer, 0, cells, bytes);
+  status = status == MCOR_OK ? mcor_read(context, shared, 0, cells + triangles, bytes) : status;
+  for (size_t i = 0; i < triangles && status == MCOR_OK; ++i)
+  {
+    const bool others = (cells[i] & MCOR_RING_CELL) && !(cells[triangles + i] & MCOR_RING_CELL);
+    cells[i] |= others ? MCOR_OTHERS_CELL : 0;
+  }
+  status = status == MCOR_OK ? mcor_write(context, buffer, cells, bytes) : status;
+  free(cells);
+  return status;
+}
+
+/* Of vertices, what the first triangle says that uses them and is somebody's. */
+static void mcor_list_owners(
+  const cl_int* corners, const cl_ulong* cells, size_t triangles, uint8_t* owners)
+{
+  for (size_t i = 0; i < triangles; ++i)
+  {
+    const uint8_t owner = !(cells[i] & MCOR_RING_CELL) ? MCOR_OWN
+      : cells[i] & MCOR_OTHERS_CELL                    ? MCOR_ANOTHERS
+                                                       : 0;
+    for (size_t c = 0; c < 3; ++c)
+    {
+      uint8_t* of = owners + corners[3 * i + c];
+      *of = *of ? *of : owner;
+    }
+  }
+}
+
+/* *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the lattice is
+ * owned. The caller frees it, after failures, too. */
+mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
+{
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t triangles = (size_t)mesh->triangle_count;
+  if (!context->box.is_part)
+  {
+    return MCOR_OK;
+  }
+  *owners = calloc((size_t)mesh->vertex_count + 1, 1);
+  MCOR_RETURN_IF(!*owners, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %d points could not be allocated.", mesh->vertex_count);
+  void *corners = NULL, *cells = NULL;
+  if (triangles == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_map(context, &mesh->triangles, triangles * 3 * sizeof(cl_int), false, &corners));
+  mcor_status status =
+    mcor_map(context, &context->box.cells, triangles * sizeof(cl_ulong), false, &cells);
+  if (status == MCOR_OK)
+  {
+    mcor_list_owners(corners, cells, triangles, *owners);
+    status = mcor_unmap(context, &context->box.cells, &cells);
+  }
+  const mcor_status unmapped = mcor_unmap(context, &mesh->triangles, &corners);
+  return status != MCOR_OK ? status : unmapped;
+}

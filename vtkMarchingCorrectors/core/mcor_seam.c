@@ -4,7 +4,7 @@
 /* Which vertices a call counts. Those of a seam, which several ranks have, are counted once: the triangles
  * of a box and of the ring around it are in one order on all ranks, and a vertex is counted by the rank
  * whose triangle is the first that uses it. Cells beyond all ranks' boxes, in the ring where the whole
- * ends, are nobody's. */
+ * ends, are nobody's. A ring square of a cap is another's: MCOR_CAP_SQUARE is that bit. */
 
 #include "mcor_box.h"
 

@@ -134,9 +134,11 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
  * heavy launch is cut into parts, each to take about so long, as far as single work-items allow. */
 #define MCOR_PART_SECONDS 0.1
 #define MCOR_FIRST_PART 65536 /* work-items of a GPU */
-/* Terms of sums, of each compute unit of a CPU: usual launches are in one part. More are not tried, as
- * work-items beyond the next may have far more to do. */
-#define MCOR_PART_TERMS (1 << 20)
+/* Terms of sums of each compute unit of a CPU, in single precision; in double it has fewer lanes, and more
+ * to do. Usual launches are in one part. More are not tried, as work-items beyond the next may have far
+ * more to do. */
+#define MCOR_PART_TERMS (1 << 21)
+#define MCOR_DOUBLE_TERMS (1 << 19)
 
 static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 {
@@ -151,8 +153,9 @@ static double mcor_part_limit(const mcor_context* context)
   const double scale = context->options ? context->options->h_scale : 1;
   const double terms =
     fmin(m->neighbours * scale * scale * scale, (double)m->fluid_count + (double)m->solid_count);
-  return !context->cl.is_cpu ? INFINITY
-                             : (double)MCOR_PART_TERMS * context->cl.units / fmax(terms, 1);
+  const int limit =
+    context->cl.real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
+  return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(terms, 1) : INFINITY;
 }
 
 /* Launches `count` work-items from `offset` on. Drivers compile a kernel for few and for many, from 0 on

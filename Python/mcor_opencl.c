@@ -25,6 +25,9 @@
 #define MCOR_PLATFORM_LIMIT 16
 #define MCOR_PATH_LIMIT 4096
 
+/* clGetPlatformIDs; headers differ in the name of its type. */
+typedef cl_int(CL_API_CALL* mcor_list_platforms)(cl_uint, cl_platform_id*, cl_uint*);
+
 static char mcor_own_driver[MCOR_PATH_LIMIT];
 static cl_platform_id mcor_platforms[MCOR_PLATFORM_LIMIT];
 static cl_uint mcor_platform_count;
@@ -37,7 +40,7 @@ static const cl_icd_dispatch* mcor_table(const void* object)
   return *(const cl_icd_dispatch* const*)object;
 }
 
-static void mcor_add_platforms(cl_api_clGetPlatformIDs list)
+static void mcor_add_platforms(mcor_list_platforms list)
 {
   cl_uint found = 0;
   const cl_uint room = MCOR_PLATFORM_LIMIT - mcor_platform_count;
@@ -52,7 +55,7 @@ static void mcor_add_driver(const char* path)
 {
   void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   void* (*function_of)(const char*) = NULL;
-  cl_api_clGetPlatformIDs list = NULL;
+  mcor_list_platforms list = NULL;
   if (library)
   {
     *(void**)&function_of = dlsym(library, "clGetExtensionFunctionAddress");
@@ -116,7 +119,7 @@ static int mcor_has_device(void)
 
 static void mcor_find_platforms(void)
 {
-  cl_api_clGetPlatformIDs list = NULL;
+  mcor_list_platforms list = NULL;
   void* loader = dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
   if (loader)
   {

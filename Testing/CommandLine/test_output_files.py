@@ -286,7 +286,8 @@ class OutputFiles(CommandLineTest):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
                 self.output.write_text("old")
-                run = self.start_and_wait_for_writing()
+                run = self.start_and_wait_for_writing(  # even where the tests run under nohup
+                    preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL))
                 run.send_signal(number)
                 self.assertEqual((run.communicate()[1], run.returncode), ("", -number))
                 self.assertEqual(self.output.read_text(), "old")

@@ -128,7 +128,9 @@ public:
   std::shared_ptr<const vtkSPHRanksPartition> Divide(
     vtkSPHRanks& ranks, const vtkSPHRanksBalance& balance) const
   {
-    std::vector<vtkSPHRanksPlace> places = balance.Others;
+    std::vector<vtkSPHRanksPlace> places;
+    places.reserve(balance.Others.size() + static_cast<std::size_t>(this->Input.count));
+    places = balance.Others;
     for (std::int64_t i = 0; i < this->Input.count; ++i)
     {
       vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, balance.Of(i) };

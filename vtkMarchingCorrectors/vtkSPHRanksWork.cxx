@@ -60,11 +60,13 @@ public:
   void Fill(vtkSPHRanks& ranks)
   {
     const bool hasValues = this->Options.field != MCOR_WEIGHT_SUM;
+    this->CellOf.resize(static_cast<std::size_t>(this->Input.count));
     for (std::int64_t i = 0; i < this->Input.count; ++i)
     {
       if (!this->Input.solid || !this->Input.solid[i])
       {
         const std::size_t cell = this->Find(i);
+        this->CellOf[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(cell);
         ++this->Counts[cell];
         const double value = hasValues ? vtkMarchingCorrectorsScalarOf(this->Input, i) : 0.0;
         this->Low[cell] = std::min(this->Low[cell], value);
@@ -105,6 +107,10 @@ public:
     return shares;
   }
 
+  /** Of a fluid particle of this rank. */
+  std::size_t GetCell(std::int64_t i) const { return this->CellOf[static_cast<std::size_t>(i)]; }
+
+private:
   std::size_t Find(std::int64_t i) const
   {
     std::size_t cell = 0;
@@ -119,7 +125,6 @@ public:
     return cell;
   }
 
-private:
   /**
    * How many surfaces pass through a cell, each as large as a side of it, as far as it and the six around
    * it tell.
@@ -156,6 +161,7 @@ private:
   double Edge;
   int Size[3];
   std::vector<std::int64_t> Counts;
+  std::vector<std::uint32_t> CellOf;
   std::vector<double> Low, High;
 };
 }
@@ -185,7 +191,7 @@ std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input&
   {
     if (!input.solid || !input.solid[i])
     {
-      work[static_cast<std::size_t>(i)] = shares[grid.Find(i)];
+      work[static_cast<std::size_t>(i)] = shares[grid.GetCell(i)];
     }
   }
   return work;

@@ -326,17 +326,20 @@ __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
   }
   for (int i = regions[r]; i < regions[r + 1]; ++i)
   {
-    bool closed = finer[i] == 0;
-    for (int d = 1; d < 8 && closed && states[i] == MCOR_INSIDE; ++d)
+    const bool inside = states[i] == MCOR_INSIDE;
+    bool open = states[i] == MCOR_EXAMINE || (inside && finer[i] != 0);
+    for (int d = 1; d < 8 && inside && !open; ++d)
     {
       const int x = leaves[i].x + (d & 1), y = leaves[i].y + (d >> 1 & 1),
                 z = leaves[i].z + (d >> 2);
       const int in =
         up[((x >> 1) - parent.x) | ((y >> 1) - parent.y) << 1 | ((z >> 1) - parent.z) << 2];
       const int other = mcor_leaf_of_region(regions, leaves, in, x, y, z);
-      closed = other >= 0 && (states[other] == MCOR_INSIDE || states[other] == MCOR_ABOVE);
+      open = other < 0 || (states[other] != MCOR_INSIDE && states[other] != MCOR_ABOVE);
     }
-    chosen[i] = states[i] == MCOR_EXAMINE || (states[i] == MCOR_INSIDE && !closed);
+    /* No branch asks `open` after the loop: into such a one, LLVM 18 moves what the loop left, and PoCL
+     * 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
+    chosen[i] = open;
   }
 }
 

@@ -11,7 +11,6 @@
 #include "vtkSPHRanks.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -35,7 +34,8 @@ vtkSPHRanks::Bytes Pack(const vtkSPHPeriod& found)
   const std::size_t size = found.Period.size() * sizeof(double);
   vtkSPHRanks::Bytes bytes(1 + size + found.Array.size());
   bytes[0] = static_cast<char>(found.Period.size());
-  std::memcpy(bytes.data() + 1, found.Period.data(), size);
+  const auto* period = reinterpret_cast<const char*>(found.Period.data());
+  std::copy(period, period + size, bytes.data() + 1); // of nothing, too
   std::copy(found.Array.begin(), found.Array.end(), bytes.data() + 1 + size);
   return bytes;
 }
@@ -45,7 +45,8 @@ vtkSPHPeriod Unpack(const vtkSPHRanks::Bytes& bytes)
   vtkSPHPeriod found;
   found.Period.resize(static_cast<std::size_t>(bytes.front()));
   const std::size_t size = found.Period.size() * sizeof(double);
-  std::memcpy(found.Period.data(), bytes.data() + 1, size);
+  std::copy(
+    bytes.data() + 1, bytes.data() + 1 + size, reinterpret_cast<char*>(found.Period.data()));
   found.Array.assign(bytes.data() + 1 + size, bytes.data() + bytes.size());
   return found;
 }

@@ -43,6 +43,30 @@ volatile pid_t Child = 0;
 /// What people and batch systems send to end a program.
 const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
 
+/// Those that are ignored, as hangups are under nohup.
+sigset_t Ignored;
+
+void FindIgnored()
+{
+  sigemptyset(&Ignored);
+  for (const int number : EndingSignals)
+  {
+    struct sigaction action = {};
+    sigaction(number, nullptr, &action);
+    if (action.sa_handler == SIG_IGN)
+    {
+      sigaddset(&Ignored, number);
+    }
+  }
+}
+
+#ifdef __ELF__
+/// Before libraries begin: UCX, which comes with some MPI, takes hangups for itself when it is loaded.
+__attribute__((section(".preinit_array"), used)) void (*const FindIgnoredFirst)() = FindIgnored;
+#else
+const bool FoundIgnored = (FindIgnored(), true);
+#endif
+
 template <std::size_t N>
 void Set(char (&target)[N], const std::string& text)
 {
@@ -60,18 +84,14 @@ void HandOn(int number)
   kill(Child, number);
 }
 
-/// Handlers for the signals that are not ignored, as they are under nohup.
+/// Handlers for the signals that were not ignored, whatever libraries have made of them.
 void SetHandlers(void (*handler)(int))
 {
   for (const int number : EndingSignals)
   {
     struct sigaction action = {};
-    sigaction(number, nullptr, &action);
-    if (action.sa_handler != SIG_IGN)
-    {
-      action.sa_handler = handler;
-      sigaction(number, &action, nullptr);
-    }
+    action.sa_handler = sigismember(&Ignored, number) ? SIG_IGN : handler;
+    sigaction(number, &action, nullptr);
   }
 }
 
@@ -187,10 +207,7 @@ bool StartChild(const std::function<int(int)>& work, int first)
   {
     const SignalPause pause;
     Child = fork();
-    if (Child > 0)
-    {
-      SetHandlers(HandOn);
-    }
+    SetHandlers(Child > 0 ? HandOn : SIG_DFL);
   }
   if (Child == 0)
   {

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// For LD_PRELOAD: system calls that fail or take long, and an XML library that goes mad, which tests
-// cannot bring about otherwise.
+// For LD_PRELOAD: system calls that fail or take long, a library that takes a signal for itself, and an
+// XML library that goes mad, which tests cannot bring about otherwise.
 //
 //   MCOR_FAILING_CALL=fsync|close|rename  fails for files below MCOR_FAILING_FOLDER
 //   MCOR_RENAME_SECONDS=N                 rename takes that long
+//   MCOR_TAKES_HANGUPS=1                  they do nothing any more, as with UCX, which some MPI loads
 //   MCOR_READER=exit|abort|kill|loop|recursion|fault  what the XML library does when VTK asks for it
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -22,6 +23,19 @@ static int is_variable(const char* name, const char* value)
 {
   const char* found = getenv(name);
   return found && strcmp(found, value) == 0;
+}
+
+static void do_nothing(int number)
+{
+  (void)number;
+}
+
+__attribute__((constructor)) static void take_hangups(void)
+{
+  if (is_variable("MCOR_TAKES_HANGUPS", "1"))
+  {
+    signal(SIGHUP, do_nothing);
+  }
 }
 
 static int fails(const char* call, int descriptor)

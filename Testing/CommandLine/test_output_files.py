@@ -273,8 +273,8 @@ class OutputFiles(CommandLineTest):
 
     def start_and_wait_for_writing(self, **options):
         run = subprocess.Popen([self.program, self.input, self.output, *FREE], text=True,
-                               env=self.misbehaving(rename_seconds=1000), stderr=subprocess.PIPE,
-                               **options)
+                               env=self.misbehaving(rename_seconds=1000, takes_hangups=1),
+                               stderr=subprocess.PIPE, **options)
         self.addCleanup(run.kill)
         while not any(p.name.startswith(".") and p.stat().st_size > 0
                       for p in self.directory.iterdir()):

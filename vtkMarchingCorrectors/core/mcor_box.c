@@ -402,7 +402,6 @@ void mcor_end_box(mcor_context* context)
   free(context->box.kept);
   context->box.kept = NULL;
   context->box.of_points = false;
-  mcor_end_rounds(context);
 }
 
 void mcor_release_box(mcor_context* context)

@@ -44,11 +44,6 @@ static uint64_t mcor_cap_key(const cl_int node[3])
 
 /* ---- vertices ---------------------------------------------------------------------------------- */
 
-mcor_status mcor_no_cap_memory(mcor_context* context)
-{
-  return mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
-}
-
 /* Room for one more element of an array. */
 static bool mcor_cap_room(void** array, int64_t count, int64_t* room, size_t width)
 {

@@ -37,9 +37,10 @@ typedef struct mcor_cap_job
   double threshold;
 } mcor_cap_job;
 
+/* mcor_cap_mesh.c */
 mcor_status mcor_no_cap_memory(mcor_context* context);
 
-/* mcor_cap_mesh.c. Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
+/* Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
 mcor_status mcor_append_caps(mcor_cap_job* job, double iso);
 
 #endif

@@ -10,6 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+mcor_status mcor_no_cap_memory(mcor_context* context)
+{
+  return mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
+}
+
 bool mcor_is_cap(const mcor_context* context, int64_t v)
 {
   return v >= context->mesh.cap_first;

@@ -18,6 +18,14 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer)
   buffer->size = 0;
 }
 
+void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count)
+{
+  for (size_t i = 0; i < count; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
+}
+
 /* A CPU's buffers are the host's memory. */
 static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* buffer)
 {

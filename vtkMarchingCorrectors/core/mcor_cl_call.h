@@ -7,6 +7,8 @@
 
 #include "mcor_internal.h"
 
+#include <string.h>
+
 #define MCOR_CL_TRY(context, call, what)                                                           \
   do                                                                                               \
   {                                                                                                \
@@ -17,13 +19,20 @@
     }                                                                                              \
   } while (0)
 
-/* mcor_cl_device.c */
+/* mcor_cl_error.c */
 const char* mcor_cl_error_name(cl_int error);
 /* Drivers that allocate when memory is first needed say so in any later call. */
 bool mcor_is_no_memory(cl_int error);
 /* Sets the sentence about a call that failed. */
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
-bool mcor_is_pocl(const mcor_cl* cl);
+
+/* The platform whose first device is the default. */
+#define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
+
+static inline bool mcor_is_pocl(const mcor_cl* cl)
+{
+  return strcmp(cl->platform_name, MCOR_DEFAULT_PLATFORM) == 0;
+}
 
 /* mcor_cl_program.c */
 /* Builds a program, unless it is at hand. */

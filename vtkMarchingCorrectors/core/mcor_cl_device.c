@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which OpenCL device, what it can do, and what its errors mean. */
+/* Which OpenCL device, and what it can do. */
 
 #include "mcor_cl_call.h"
 #include "mcor_parallel.h"
@@ -13,85 +13,12 @@
 #define MCOR_PLATFORM_LIMIT 16
 #define MCOR_DEVICE_LIMIT 64
 
-/* The platform whose first device is the default. */
-#define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
-
 typedef struct mcor_device_list
 {
   int count;
   cl_platform_id platforms[MCOR_DEVICE_LIMIT];
   cl_device_id devices[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
-
-const char* mcor_cl_error_name(cl_int error)
-{
-#define MCOR_NAMED(code)                                                                           \
-  {                                                                                                \
-    code, #code                                                                                    \
-  }
-  static const struct
-  {
-    cl_int code;
-    const char* name;
-  } names[] = { MCOR_NAMED(CL_DEVICE_NOT_FOUND), MCOR_NAMED(CL_DEVICE_NOT_AVAILABLE),
-    MCOR_NAMED(CL_COMPILER_NOT_AVAILABLE), MCOR_NAMED(CL_MEM_OBJECT_ALLOCATION_FAILURE),
-    MCOR_NAMED(CL_OUT_OF_RESOURCES), MCOR_NAMED(CL_OUT_OF_HOST_MEMORY),
-    MCOR_NAMED(CL_PROFILING_INFO_NOT_AVAILABLE), MCOR_NAMED(CL_MEM_COPY_OVERLAP),
-    MCOR_NAMED(CL_IMAGE_FORMAT_MISMATCH), MCOR_NAMED(CL_IMAGE_FORMAT_NOT_SUPPORTED),
-    MCOR_NAMED(CL_BUILD_PROGRAM_FAILURE), MCOR_NAMED(CL_MAP_FAILURE),
-    MCOR_NAMED(CL_MISALIGNED_SUB_BUFFER_OFFSET),
-    MCOR_NAMED(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
-    MCOR_NAMED(CL_COMPILE_PROGRAM_FAILURE), MCOR_NAMED(CL_LINKER_NOT_AVAILABLE),
-    MCOR_NAMED(CL_LINK_PROGRAM_FAILURE), MCOR_NAMED(CL_DEVICE_PARTITION_FAILED),
-    MCOR_NAMED(CL_KERNEL_ARG_INFO_NOT_AVAILABLE), MCOR_NAMED(CL_INVALID_VALUE),
-    MCOR_NAMED(CL_INVALID_DEVICE_TYPE), MCOR_NAMED(CL_INVALID_PLATFORM),
-    MCOR_NAMED(CL_INVALID_DEVICE), MCOR_NAMED(CL_INVALID_CONTEXT),
-    MCOR_NAMED(CL_INVALID_QUEUE_PROPERTIES), MCOR_NAMED(CL_INVALID_COMMAND_QUEUE),
-    MCOR_NAMED(CL_INVALID_HOST_PTR), MCOR_NAMED(CL_INVALID_MEM_OBJECT),
-    MCOR_NAMED(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR), MCOR_NAMED(CL_INVALID_IMAGE_SIZE),
-    MCOR_NAMED(CL_INVALID_SAMPLER), MCOR_NAMED(CL_INVALID_BINARY),
-    MCOR_NAMED(CL_INVALID_BUILD_OPTIONS), MCOR_NAMED(CL_INVALID_PROGRAM),
-    MCOR_NAMED(CL_INVALID_PROGRAM_EXECUTABLE), MCOR_NAMED(CL_INVALID_KERNEL_NAME),
-    MCOR_NAMED(CL_INVALID_KERNEL_DEFINITION), MCOR_NAMED(CL_INVALID_KERNEL),
-    MCOR_NAMED(CL_INVALID_ARG_INDEX), MCOR_NAMED(CL_INVALID_ARG_VALUE),
-    MCOR_NAMED(CL_INVALID_ARG_SIZE), MCOR_NAMED(CL_INVALID_KERNEL_ARGS),
-    MCOR_NAMED(CL_INVALID_WORK_DIMENSION), MCOR_NAMED(CL_INVALID_WORK_GROUP_SIZE),
-    MCOR_NAMED(CL_INVALID_WORK_ITEM_SIZE), MCOR_NAMED(CL_INVALID_GLOBAL_OFFSET),
-    MCOR_NAMED(CL_INVALID_EVENT_WAIT_LIST), MCOR_NAMED(CL_INVALID_EVENT),
-    MCOR_NAMED(CL_INVALID_OPERATION), MCOR_NAMED(CL_INVALID_GL_OBJECT),
-    MCOR_NAMED(CL_INVALID_BUFFER_SIZE), MCOR_NAMED(CL_INVALID_MIP_LEVEL),
-    MCOR_NAMED(CL_INVALID_GLOBAL_WORK_SIZE), MCOR_NAMED(CL_INVALID_PROPERTY),
-    MCOR_NAMED(CL_INVALID_IMAGE_DESCRIPTOR), MCOR_NAMED(CL_INVALID_COMPILER_OPTIONS),
-    MCOR_NAMED(CL_INVALID_LINKER_OPTIONS), MCOR_NAMED(CL_INVALID_DEVICE_PARTITION_COUNT),
-    { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
-#undef MCOR_NAMED
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
-  {
-    if (names[i].code == error)
-    {
-      return names[i].name;
-    }
-  }
-  return "an OpenCL error";
-}
-
-bool mcor_is_no_memory(cl_int error)
-{
-  return error == CL_MEM_OBJECT_ALLOCATION_FAILURE || error == CL_OUT_OF_RESOURCES ||
-    error == CL_OUT_OF_HOST_MEMORY;
-}
-
-mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what)
-{
-  const char *device = context->cl.device_name, *name = mcor_cl_error_name(error);
-  return mcor_is_no_memory(error)
-    ? mcor_fail(context, MCOR_OUT_OF_CAPACITY,
-        "OpenCL device %s ran out of memory: %s failed with %s (%d). Use a larger cube size, or "
-        "fewer particles.",
-        device, what, name, (int)error)
-    : mcor_fail(context, MCOR_DEVICE_ERROR, "OpenCL device %s: %s failed with %s (%d).", device,
-        what, name, (int)error);
-}
 
 static void mcor_find_devices(mcor_device_list* list)
 {
@@ -221,11 +148,6 @@ static bool mcor_has_cpu_form(const mcor_cl* cl)
   clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
   return (type & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
-}
-
-bool mcor_is_pocl(const mcor_cl* cl)
-{
-  return strcmp(cl->platform_name, MCOR_DEFAULT_PLATFORM) == 0;
 }
 
 static void mcor_query_device(mcor_cl* cl)

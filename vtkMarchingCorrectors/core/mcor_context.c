@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The life of a context: what it begins with, what of the last call still holds, what is given back
- * when; and how any call on it runs. */
+/* The life of a context: what it begins with, what is given back when; and how any call on it runs. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -69,14 +68,6 @@ mcor_status mcor_create_shared_context(
   return status;
 }
 
-void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count)
-{
-  for (size_t i = 0; i < count; ++i)
-  {
-    mcor_release(context, buffers[i]);
-  }
-}
-
 void mcor_release_memory(mcor_context* context)
 {
   if (!context)
@@ -93,6 +84,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_trim(context);
   mcor_release_attributes(context);
   mcor_release_box(context);
+  mcor_end_rounds(context);
   mcor_release_graded(context);
   mcor_release(context, &context->sort.sums);
   free(context->source);
@@ -114,60 +106,6 @@ void mcor_free_context(mcor_context* context)
   mcor_release(context, &context->topology.rows);
   mcor_close_device(context);
   free(context);
-}
-
-static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
-{
-  return (a->data == NULL) == (b->data == NULL) && a->type == b->type &&
-    (a->data || a->constant == b->constant);
-}
-
-bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
-{
-  return input->particles_version != 0 && input->particles_version == last->particles_version &&
-    input->count == last->count &&
-    mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
-    input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
-    input->estimate_smoothing_length == last->estimate_smoothing_length &&
-    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
-    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
-    mcor_same_array(&input->density, &last->density) &&
-    mcor_same_array(&input->volume, &last->volume) &&
-    (input->solid == NULL) == (last->solid == NULL);
-}
-
-/* Whether the same particles and images reach the box, and as much is needed of them. */
-static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
-{
-  bool same = a->has_box == b->has_box && !a->ranks == !b->ranks, part = a->has_box;
-  for (int i = 0; i < 6; ++i)
-  {
-    same = same && (!a->has_box || a->box[i] == b->box[i]) && a->periodic[i] == b->periodic[i];
-    part = part || a->periodic[i] != 0;
-  }
-  return same && (!part || (a->seeds == b->seeds && a->nearest_particle == b->nearest_particle));
-}
-
-/* What of the last call still holds. The caller's version numbers stand for the arrays' content;
- * all else that the search grid, the scalar and the node values depend on is compared. */
-static void mcor_check_reuse(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
-{
-  const mcor_input* last = &context->last_input;
-  const mcor_options* o = &context->last_options;
-  const bool particles = mcor_same_particles(input, last);
-  const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
-    options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
-    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
-    options->cube_size_mode == o->cube_size_mode && options->level_limit == o->level_limit &&
-    mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
-  context->grid_valid =
-    context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
-  context->value_valid = context->value_valid && context->grid_valid &&
-    input->scalar_version != 0 && input->scalar_version == last->scalar_version &&
-    input->scalar_component == last->scalar_component &&
-    (input->scalar_dot.data == NULL) == (last->scalar_dot.data == NULL);
-  context->nodes_valid = context->nodes_valid && context->value_valid;
 }
 
 /* Search grid and scalar for these options, from the last call where they still hold. */
@@ -224,12 +162,11 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->grid.view = 0;
   context->cl.bytes_peak = context->cl.bytes;
   const mcor_status status = body(context, input, options, result);
-  context->last_input = *input;
-  context->last_options = *options;
-  mcor_keep_globals(context, options->globals);
+  mcor_keep_call(context, input, options);
   context->options = NULL;
   context->statistics = NULL;
   mcor_end_box(context);
+  mcor_end_rounds(context);
   mcor_end_caps(context);
   if (status != MCOR_OK)
   {

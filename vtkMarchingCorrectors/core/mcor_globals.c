@@ -9,54 +9,6 @@
 
 #include <float.h>
 #include <stdlib.h>
-#include <string.h>
-
-void mcor_take_globals(mcor_context* context, const mcor_globals* globals)
-{
-  mcor_measure* m = &context->measure;
-  m->fluid_count = globals->fluid_particles;
-  m->solid_count = globals->solid_particles;
-  memcpy(m->low, globals->low, sizeof m->low);
-  memcpy(m->high, globals->high, sizeof m->high);
-  m->h_min = globals->smoothing_length_min;
-  m->h_max = globals->smoothing_length_max;
-  m->support_min = globals->support_min;
-  m->support_max = globals->support_max;
-  m->h_estimate = globals->smoothing_length;
-  m->scalar_min = globals->scalar_min;
-  m->scalar_max = globals->scalar_max;
-  m->h_median = globals->smoothing_length_median;
-  m->neighbours = globals->neighbours_median;
-  m->spacing = globals->spacing_median;
-  m->filled = globals->filled_median;
-  m->wall_share = globals->wall_share;
-  memcpy(m->x_low, globals->fluid_low, sizeof m->x_low);
-  memcpy(m->x_high, globals->fluid_high, sizeof m->x_high);
-}
-
-/* The other direction; what the measure does not hold is left. */
-static void mcor_give_globals(const mcor_measure* m, mcor_globals* globals)
-{
-  globals->fluid_particles = m->fluid_count;
-  globals->solid_particles = m->solid_count;
-  memcpy(globals->low, m->low, sizeof m->low);
-  memcpy(globals->high, m->high, sizeof m->high);
-  globals->smoothing_length_min = m->h_min;
-  globals->smoothing_length_max = m->h_max;
-  globals->support_min = m->support_min;
-  globals->support_max = m->support_max;
-  globals->smoothing_length = m->h_estimate;
-  globals->cube_size = m->cube;
-  globals->scalar_min = m->scalar_min;
-  globals->scalar_max = m->scalar_max;
-  globals->smoothing_length_median = m->h_median;
-  globals->neighbours_median = m->neighbours;
-  globals->spacing_median = m->spacing;
-  globals->filled_median = m->filled;
-  globals->wall_share = m->wall_share;
-  memcpy(globals->fluid_low, m->x_low, sizeof m->x_low);
-  memcpy(globals->fluid_high, m->x_high, sizeof m->x_high);
-}
 
 /* Of an attribute, the first particle that is not finite, of the rank where it has the least number;
  * -1: there is none. */
@@ -197,42 +149,4 @@ void mcor_free_globals(mcor_globals* globals)
     free(globals->splits);
     *globals = (mcor_globals){ 0 };
   }
-}
-
-/* A number that other split bricks do not have. */
-static uint64_t mcor_hash_splits(const mcor_globals* globals)
-{
-  uint64_t hash = (uint64_t)globals->split_count;
-  for (int64_t i = 0; i < globals->split_count; ++i)
-  {
-    hash = (hash ^ globals->splits[i]) * UINT64_C(0x9E3779B97F4A7C15);
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
-void mcor_keep_globals(mcor_context* context, const mcor_globals* globals)
-{
-  context->last_globals = globals ? *globals : (mcor_globals){ 0 };
-  context->last_splits = globals ? mcor_hash_splits(globals) : 0;
-}
-
-/* Whether they are as in the last call; components matter to nothing that is kept. */
-bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
-{
-  const mcor_globals none = { 0 };
-  const mcor_globals *a = &context->last_globals, *b = globals ? globals : &none;
-  bool same = a->fluid_particles == b->fluid_particles &&
-    a->solid_particles == b->solid_particles &&
-    a->smoothing_length_min == b->smoothing_length_min && a->support_min == b->support_min &&
-    a->support_max == b->support_max && a->smoothing_length == b->smoothing_length &&
-    a->mass_max == b->mass_max && a->wall_share == b->wall_share &&
-    a->scalar_min == b->scalar_min && a->scalar_max == b->scalar_max &&
-    a->scalar_shift == b->scalar_shift;
-  same = same && context->last_splits == (globals ? mcor_hash_splits(globals) : 0);
-  for (int i = 0; i < 3; ++i)
-  {
-    same = same && a->low[i] == b->low[i] && a->high[i] == b->high[i];
-  }
-  return same;
 }

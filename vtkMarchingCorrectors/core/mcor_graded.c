@@ -17,72 +17,7 @@
 #include "mcor_graded_topology.h"
 #include "mcor_tree.h"
 
-#include <math.h>
 #include <string.h>
-
-/* ---- Levels ---- */
-
-mcor_status mcor_view_level(mcor_context* context, int level)
-{
-  mcor_grid* grid = &context->grid;
-  if (grid->view == level)
-  {
-    return MCOR_OK;
-  }
-  grid->view = level;
-  if (level == 0)
-  {
-    return MCOR_OK;
-  }
-  mcor_level levels[MCOR_LEVEL_LIMIT];
-  const int count = grid->count + MCOR_PADDING;
-  memcpy(levels, grid->levels, sizeof levels);
-  for (int l = 0; l < grid->level_count; ++l)
-  {
-    levels[l].support = ldexpf(levels[l].support, -level);
-  }
-  MCOR_TRY(
-    mcor_write(context, &grid->view_levels, levels, (size_t)grid->level_count * sizeof levels[0]));
-  MCOR_TRY(mcor_reserve(context, &grid->view_inv_h, (size_t)count * context->cl.real_size));
-  return MCOR_LAUNCH(context, "mcor_graded_scale", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
-}
-
-#define MCOR_SPAN_SECONDS 0.1
-#define MCOR_FIRST_SPAN 256
-
-mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
-{
-  const mcor_cl* cl = &context->cl;
-  const bool waited_for = cl->is_cpu && context->options->progress;
-  const int most = cl->is_cpu ? MCOR_LARGE_LAUNCH - 1 : span->end;
-  int size = waited_for ? MCOR_FIRST_SPAN : most;
-  if (waited_for && span->count > 0)
-  {
-    MCOR_TRY(mcor_finish(context));
-    const double seconds = mcor_seconds() - span->begin;
-    size = seconds < MCOR_SPAN_SECONDS / 2             ? 2 * span->count
-      : seconds > MCOR_SPAN_SECONDS && span->count > 1 ? span->count / 2
-                                                       : span->count;
-  }
-  span->first += span->count;
-  const int rest = span->end - span->first;
-  size = size < most ? size : most;
-  span->count = size < rest ? size : rest;
-  span->begin = mcor_seconds();
-  return MCOR_OK;
-}
-
-void mcor_level_vertices(
-  const mcor_context* context, bool boundary, int level, int* first, int* count)
-{
-  const mcor_mesh* mesh = &context->mesh;
-  const bool one = context->lattice.top == 0;
-  const int begin = boundary ? mesh->march_count : 0;
-  const int end = boundary ? mesh->vertex_count : mesh->march_count;
-  *first = one ? begin : mesh->level_first[boundary][level];
-  *count = (one ? end : mesh->level_first[boundary][level + 1]) - *first;
-}
 
 /* ---- Nodes ---- */
 

@@ -423,22 +423,23 @@ mcor_status mcor_report_launch(mcor_context* context);
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 
-/* mcor_context.c. Whether the caller's version stands for the same particles as in the last call. */
+/* mcor_reuse.c. What of the last call still holds; whether the caller's version stands for the same
+ * particles as then. */
+void mcor_check_reuse(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
+void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* mcor_check.c, mcor_measure.c */
 mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
+/* What the measure does not hold is left. */
+void mcor_give_globals(const mcor_measure* m, mcor_globals* globals);
 
 /* mcor_measure_wall.c. The wall share, where the options ask for it and it is not yet measured. */
 mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input);
-
-/* mcor_globals.c */
-void mcor_take_globals(mcor_context* context, const mcor_globals* globals);
-bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals);
-void mcor_keep_globals(mcor_context* context, const mcor_globals* globals);
 
 /* mcor_scan.c */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total);

@@ -22,7 +22,10 @@ bool mcor_kept_folder(char* path, size_t size);
  * it is there, too, then. */
 bool mcor_take_kept(const char* ready);
 
-/* Compiles the usual surfaces' kernels into the folder that is kept; POCL_CACHE_DIR names it. Bit k of
+/* Lets all users read the folder that is kept. */
+bool mcor_share_kept(const char* folder);
+
+/* mcor_keep.c. Compiles the usual surfaces' kernels into the folder that is kept; POCL_CACHE_DIR names it. Bit k of
  * sph_kernels: those of mcor_sph_kernel k. */
 mcor_status mcor_keep(mcor_context* context, unsigned sph_kernels, const char* folder);
 

@@ -11,7 +11,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Views of the mesh's vertices; see mcor_is_output. */
 enum
@@ -110,18 +109,6 @@ static mcor_status mcor_grow(
   mcor_use_large_pages(grown, bytes);
   *array = grown;
   return MCOR_OK;
-}
-
-void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS])
-{
-  const mcor_surface_array all[MCOR_SURFACE_ARRAYS] = { { (void**)&s->points, 3 * sizeof(double) },
-    { (void**)&s->normals, 3 * sizeof(float) }, { (void**)&s->gradients, 3 * sizeof(double) },
-    { (void**)&s->weight_sum, sizeof(float) }, { (void**)&s->boundary_eigenvalue, sizeof(float) },
-    { (void**)&s->correction_length, sizeof(float) }, { (void**)&s->residual, sizeof(float) },
-    { (void**)&s->boundary_flag, 1 }, { (void**)&s->iso_value, sizeof(double) },
-    { (void**)&s->nearest_particle, sizeof(int64_t) },
-    { (void**)&s->point_keys, MCOR_POINT_KEY * sizeof(uint64_t) } };
-  memcpy(arrays, all, sizeof all);
 }
 
 static mcor_status mcor_grow_surface(
@@ -467,27 +454,4 @@ mcor_status mcor_append_output(
   free(download.owned);
   free(download.cuts);
   return status != MCOR_OK ? status : unmapped;
-}
-
-void mcor_free_surface(mcor_surface* surface)
-{
-  if (!surface)
-  {
-    return;
-  }
-  void* const arrays[] = { surface->points, surface->triangles, surface->normals,
-    surface->gradients, surface->weight_sum, surface->boundary_eigenvalue,
-    surface->correction_length, surface->residual, surface->boundary_flag, surface->iso_value,
-    surface->nearest_particle, surface->point_keys, surface->triangle_keys };
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
-  {
-    free(arrays[i]);
-  }
-  for (int a = 0; surface->attributes && a < surface->attribute_count; ++a)
-  {
-    free(surface->attributes[a]);
-  }
-  free(surface->attributes);
-  free(surface->attribute_not_finite);
-  *surface = (mcor_surface){ 0 };
 }

@@ -7,101 +7,7 @@
 #include "mcor_tree.h"
 #include "mcor_box.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* ---- Levels ---- */
-
-int mcor_tree_level_of(double h, double h_min, int top)
-{
-  int level = 0;
-  while (level < top && h >= ldexp(h_min, level + 1))
-  {
-    ++level;
-  }
-  return level;
-}
-
-int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
-{
-  return options->cube_size_mode == MCOR_CUBES_ADAPTIVE
-    ? mcor_tree_level_of(measure->h_max, measure->h_min, options->level_limit)
-    : 0;
-}
-
-/* Of level 0. Those of all levels are a seventh more. */
-#define MCOR_BRICK_LIMIT 0x1p63
-
-/* The lattice is a whole number of the largest ones. */
-mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  uint64_t base = 0;
-  double most = 1; /* bricks of all levels, nearly */
-  tree->top = lattice->top;
-  memcpy(tree->period, lattice->period, sizeof tree->period);
-  memcpy(tree->period_first, lattice->period_first, sizeof tree->period_first);
-  for (int l = 0; l <= tree->top + 1; ++l)
-  {
-    mcor_rung* rung = &tree->rungs[l];
-    uint64_t bricks = 1;
-    for (int a = 0; a < 3; ++a)
-    {
-      const int above = MCOR_BRICK << (tree->top + 1);
-      rung->n[a] = (int)((lattice->last[a] / above + 2) << (tree->top + 1 - l));
-      bricks *= (uint64_t)rung->n[a];
-      most *= l == 0 ? rung->n[a] : 1;
-    }
-    MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-      "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
-      "remove particles whose smoothing length is far from that of the others.",
-      lattice->top + 1);
-    rung->base = base;
-    rung->unused = 0;
-    base += bricks;
-  }
-  tree->key_limit = base;
-  return MCOR_OK;
-}
-
-bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3])
-{
-  const mcor_rung* rung = &tree->rungs[level];
-  bool within = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    placed[a] = brick[a];
-    const int edge = MCOR_BRICK << level;
-    if (tree->period[a] >= edge) /* divisions cost much here */
-    {
-      const int period = tree->period[a] / edge;
-      const int first = tree->period_first[a] / edge, from = brick[a] - first;
-      placed[a] = (from % period + period) % period + first;
-    }
-    within = within && placed[a] >= 0 && placed[a] < rung->n[a];
-  }
-  return within;
-}
-
-bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
-{
-  int b[3];
-  return level > 0 && mcor_place_brick(tree, level, brick, b) &&
-    mcor_set_find(&tree->split[level], mcor_cluster_key(&tree->rungs[level], b)) >>
-      mcor_cluster_bit(b) &
-    1;
-}
-
-/* ---- Leaves ---- */
-
-mcor_status mcor_fail_leaves(mcor_context* context)
-{
-  return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
-    "Adaptive cubes have more than %d leaves, or more than host memory has room for. Use a larger "
-    "cube size.",
-    MCOR_LEAF_LIMIT);
-}
 
 /* Room for eight more leaves. False: too many, or no memory. */
 static bool mcor_extend_leaves(mcor_tree* tree, size_t* room)
@@ -238,6 +144,23 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   }
   tree->regions[tree->region_count] = tree->leaf_count;
   return MCOR_OK;
+}
+
+mcor_status mcor_measure_splits(
+  mcor_context* context, const mcor_input* input, mcor_globals* globals)
+{
+  mcor_tree tree = { 0 };
+  if (context->lattice.top == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_status status = mcor_split_bricks(context, input, &tree);
+  if (status == MCOR_OK)
+  {
+    status = mcor_list_splits(context, &tree, &globals->splits, &globals->split_count);
+  }
+  mcor_release_tree(&tree);
+  return status;
 }
 
 void mcor_release_tree(mcor_tree* tree)

@@ -70,7 +70,7 @@ bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other);
 bool mcor_are_too_many(const mcor_brick_set* levels);
 void mcor_set_free(mcor_brick_set* set);
 
-/* mcor_tree.c. Numbers the bricks of all levels up to the one above the highest leaves'. */
+/* mcor_tree_brick.c. Numbers the bricks of all levels up to the one above the highest leaves'. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree);
 /* Where a brick is, or with a period its image there; false: it is off the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
@@ -87,7 +87,8 @@ mcor_status mcor_list_splits(
 /* Splits the bricks with these keys. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
-/* Which bricks are split, over the particles of all ranks; none with one level. */
+
+/* mcor_tree.c. Which bricks are split, over the particles of all ranks; none with one level. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 /* The leaves in the box. */

@@ -137,20 +137,3 @@ mcor_status mcor_take_splits(
   }
   return MCOR_OK;
 }
-
-mcor_status mcor_measure_splits(
-  mcor_context* context, const mcor_input* input, mcor_globals* globals)
-{
-  mcor_tree tree = { 0 };
-  if (context->lattice.top == 0)
-  {
-    return MCOR_OK;
-  }
-  mcor_status status = mcor_split_bricks(context, input, &tree);
-  if (status == MCOR_OK)
-  {
-    status = mcor_list_splits(context, &tree, &globals->splits, &globals->split_count);
-  }
-  mcor_release_tree(&tree);
-  return status;
-}

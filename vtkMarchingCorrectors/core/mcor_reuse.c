@@ -1,0 +1,101 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What of the last call still holds. */
+
+#include "mcor_internal.h"
+
+static bool mcor_same_array(const mcor_array* a, const mcor_array* b)
+{
+  return (a->data == NULL) == (b->data == NULL) && a->type == b->type &&
+    (a->data || a->constant == b->constant);
+}
+
+bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
+{
+  return input->particles_version != 0 && input->particles_version == last->particles_version &&
+    input->count == last->count &&
+    mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
+    input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
+    input->estimate_smoothing_length == last->estimate_smoothing_length &&
+    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
+    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
+    mcor_same_array(&input->density, &last->density) &&
+    mcor_same_array(&input->volume, &last->volume) &&
+    (input->solid == NULL) == (last->solid == NULL);
+}
+
+/* A number that other split bricks do not have. */
+static uint64_t mcor_hash_splits(const mcor_globals* globals)
+{
+  uint64_t hash = (uint64_t)globals->split_count;
+  for (int64_t i = 0; i < globals->split_count; ++i)
+  {
+    hash = (hash ^ globals->splits[i]) * UINT64_C(0x9E3779B97F4A7C15);
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+/* Whether they are as in the last call; components matter to nothing that is kept. */
+static bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
+{
+  const mcor_globals none = { 0 };
+  const mcor_globals *a = &context->last_globals, *b = globals ? globals : &none;
+  bool same = a->fluid_particles == b->fluid_particles &&
+    a->solid_particles == b->solid_particles &&
+    a->smoothing_length_min == b->smoothing_length_min && a->support_min == b->support_min &&
+    a->support_max == b->support_max && a->smoothing_length == b->smoothing_length &&
+    a->mass_max == b->mass_max && a->wall_share == b->wall_share &&
+    a->scalar_min == b->scalar_min && a->scalar_max == b->scalar_max &&
+    a->scalar_shift == b->scalar_shift;
+  same = same && context->last_splits == (globals ? mcor_hash_splits(globals) : 0);
+  for (int i = 0; i < 3; ++i)
+  {
+    same = same && a->low[i] == b->low[i] && a->high[i] == b->high[i];
+  }
+  return same;
+}
+
+/* Whether the same particles and images reach the box, and as much is needed of them. */
+static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
+{
+  bool same = a->has_box == b->has_box && !a->ranks == !b->ranks, part = a->has_box;
+  for (int i = 0; i < 6; ++i)
+  {
+    same = same && (!a->has_box || a->box[i] == b->box[i]) && a->periodic[i] == b->periodic[i];
+    part = part || a->periodic[i] != 0;
+  }
+  return same && (!part || (a->seeds == b->seeds && a->nearest_particle == b->nearest_particle));
+}
+
+/* What of the last call still holds. The caller's version numbers stand for the arrays' content;
+ * all else that the search grid, the scalar and the node values depend on is compared. */
+void mcor_check_reuse(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
+{
+  const mcor_input* last = &context->last_input;
+  const mcor_options* o = &context->last_options;
+  const bool particles = mcor_same_particles(input, last);
+  const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
+    options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
+    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
+    options->cube_size_mode == o->cube_size_mode && options->level_limit == o->level_limit &&
+    mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
+  context->grid_valid =
+    context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
+  context->value_valid = context->value_valid && context->grid_valid &&
+    input->scalar_version != 0 && input->scalar_version == last->scalar_version &&
+    input->scalar_component == last->scalar_component &&
+    (input->scalar_dot.data == NULL) == (last->scalar_dot.data == NULL);
+  context->nodes_valid = context->nodes_valid && context->value_valid;
+}
+
+void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  const mcor_globals* globals = options->globals;
+  context->last_input = *input;
+  context->last_options = *options;
+  context->last_globals = globals ? *globals : (mcor_globals){ 0 };
+  context->last_splits = globals ? mcor_hash_splits(globals) : 0;
+}

@@ -91,5 +91,6 @@ double MCOR_BUILTIN convert_double(long);
 double4 MCOR_BUILTIN convert_double4(int4);
 MCOR_DECLARE_VECTOR(4, double4, double, long4, long)
 MCOR_DECLARE_VECTOR(8, double8, double, long8, long)
+MCOR_DECLARE_VECTOR(16, double16, double, long16, long)
 #endif
 #endif

@@ -85,8 +85,8 @@ FAULTS = [
     Fault("graded: inside is proved by any lane for all", ["core_graded"],
           "MCOR_ALL(sums.w[g] > iso * (real)1.0001f); } return inside;",
           "MCOR_ANY(sums.w[g] > iso * (real)1.0001f); } return inside;"),
-    Fault("graded: a leaf does not see one of the finer bricks around it", ["core_graded"],
-          "d < 27 && split; ++d)", "d < 26 && split; ++d)"),
+    Fault("graded: a leaf does not see finer bricks up along an edge of it", ["core_graded"],
+          "d < 27 && split; ++d)", "d < 25 && split; ++d)"),
     # ---- graded cells ----
     Fault("graded: diagonals on an edge of the cell", ["core_graded_cell", "core_graded_trees"],
           "(common & 0xffffff) != 0 || (faces & (faces - 1)) != 0;", "(common & 0xffffff) != 0;"),

@@ -164,7 +164,7 @@ static int fuzz_pass(void* user, const void* records, int64_t count, size_t widt
   return fuzz_gather(user, records, count, width, all, all_count);
 }
 
-/* What a rank alone measures and extracts is what no rank does. */
+/* What a rank alone measures and extracts is what no rank does; without particles it can measure nothing. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);
@@ -181,7 +181,8 @@ static void fuzz_ranks(unsigned failing, const fuzz_call* call)
   {
     options.has_box = 0; /* without ranks there is none */
   }
-  const mcor_status expected = mcor_extract(context, &call->input, &options, &alone);
+  mcor_status expected = mcor_extract(context, &call->input, &options, &alone);
+  expected = expected == MCOR_OK && call->input.count == 0 ? MCOR_INVALID_DATA : expected;
   options.ranks = &ranks;
   mcor_status status = mcor_measure_globals(context, &call->input, &options, &globals);
   if (status == MCOR_OK)

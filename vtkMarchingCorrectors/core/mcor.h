@@ -502,7 +502,8 @@ extern "C"
   void mcor_free_surface(mcor_surface* surface);
 
   /* Measures an input for options.globals of later calls, in this or other contexts, with the same
-   * options otherwise. *globals is overwritten; free with mcor_free_globals. */
+   * options otherwise. *globals is overwritten; free with mcor_free_globals. Where there are no
+   * particles, in all ranks, that is MCOR_INVALID_DATA. */
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);

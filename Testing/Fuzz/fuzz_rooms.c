@@ -71,7 +71,7 @@ static void fuzz_one_level(const fuzz_call* call)
   mcor_options uniform = call->options, adaptive = call->options;
   adaptive.seeds = uniform.seeds = MCOR_COMPLETE;
   adaptive.cube_size_mode = MCOR_CUBES_ADAPTIVE;
-  adaptive.level_limit = 0;
+  adaptive.level_limit = uniform.level_limit = 0;
   uniform.cube_size_mode = MCOR_CUBES_UNIFORM;
   fuzz_check_alike(call, &adaptive, &uniform);
 }

@@ -53,6 +53,9 @@
 
 /* ---- Cells ---- */
 
+/* Further than any cell, in halves of a cube. */
+#define MCOR_NO_SIDE (1 << 30)
+
 /* The sides of a box between `low` and `high` for cells of all levels, whose centres are at whole numbers of
  * halves; NULL, and where cells end at the lattice's sides: without end, as large cells stick out of it. */
 static void mcor_place_halves(
@@ -65,9 +68,10 @@ static void mcor_place_halves(
   {
     const int side = s == 0 ? low : high, end = s == 0 ? first : last;
     const double at = sides ? ceil(2 * (sides[2 * axis + s] / lattice->cube)) : 0;
-    const int open = periodic ? 2 * end : s == 0 ? -(1 << 30) : 1 << 30;
+    const double half = at - 2 * (double)lattice->origin[axis];
+    const int open = periodic ? 2 * end : s == 0 ? -MCOR_NO_SIDE : MCOR_NO_SIDE;
     halves[3 * s + axis] =
-      !sides || side == end ? open : (int)(at - 2 * (double)lattice->origin[axis]);
+      !sides || side == end ? open : (int)fmin(fmax(half, -MCOR_NO_SIDE), MCOR_NO_SIDE);
   }
 }
 

@@ -41,6 +41,9 @@ static mcor_status mcor_make_cap_face(
     face->end[i] = box->last[a] - face->first[i];
   }
   const size_t nodes = (size_t)face->count[0] * (size_t)face->count[1];
+  MCOR_RETURN_IF(nodes > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "A side of the period has %zu nodes; a cap may have %d. Use a larger cube size, or no caps.",
+    nodes, MCOR_COUNT_LIMIT);
   face->state = calloc(nodes, 1);
   face->within = calloc(nodes, 1);
   face->margin = calloc(nodes, sizeof(double));

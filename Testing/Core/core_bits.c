@@ -95,10 +95,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   options.precision = at->precision;
   options.seeds = at->seeds;
   options.topology = at->topology;
-  const double small_cubes = 0.325 * mcor_support_factor(at->kernel);
-  options.cube_size_factor = noise ? (small ? 1 : 0.7)
-    : small                        ? small_cubes
-                                   : options.cube_size_factor;
+  const double small_cubes = noise ? 1 : 0.325 * mcor_support_factor(at->kernel);
+  options.cube_size_factor = small ? small_cubes : noise ? 0.7 : options.cube_size_factor;
   options.h_scale = noise ? 0.5 : options.h_scale;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
   options.boundary_detection = at->boundary;

@@ -8,7 +8,6 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
-#include "OwnLinker.h"
 #include "ParticleFile.h"
 #include "ProbeRun.h"
 #include "RankLaunch.h"
@@ -18,7 +17,6 @@
 #include "SurfaceFile.h"
 #include "SurfacePicture.h"
 #include "SurfaceRun.h"
-#include "TemporaryCache.h"
 #if MCOR_HAS_RANKS
 #include "RankRun.h"
 #endif
@@ -207,7 +205,6 @@ void OpenStandardStreams()
 int main(int argc, char* argv[])
 {
   OpenStandardStreams();
-  UseOwnLinker();
   CommandLineOptions options;
   std::unique_ptr<FilmRecord> record;
   const int status = Status(
@@ -236,9 +233,6 @@ int main(int argc, char* argv[])
   {
     return status;
   }
-  CompileOnce();
-  TemporaryCache cache;
   return RunSupervised([&](int first)
-    { return Status([&] { return Execute(options, first, record.get()); }); },
-    [&] { cache.Remove(); });
+    { return Status([&] { return Execute(options, first, record.get()); }); });
 }

@@ -39,8 +39,8 @@ def copy_tree(to):
             shutil.copyfile(source, target)
             shutil.copymode(source, target)
     for folder in SOURCES:
-        for file in (to / folder).iterdir():
-            if not (ROOT / folder / file.name).exists():
+        for file in (to / folder).rglob("*.*"):
+            if not (ROOT / file.relative_to(to)).exists():
                 file.unlink()
 
 
@@ -49,7 +49,7 @@ def find(tree, text):
     pattern = re.compile(r"\s+".join(re.escape(word) for word in text.split()))
     places = []
     for folder in SOURCES:
-        for file in sorted((tree / folder).iterdir()):
+        for file in sorted((tree / folder).rglob("*.*")):
             if file.suffix in (".c", ".h", ".cl"):
                 places += [(file, m.start(), m.end()) for m in pattern.finditer(file.read_text())]
     return places

@@ -59,11 +59,6 @@ static mcor_status mcor_extract_all(
   {
     return mcor_attend_rounds(context, 0);
   }
-  const mcor_build build = { .sph_kernel = options->sph_kernel,
-    .field = options->field,
-    .precision = options->precision,
-    .solids = mcor_uses_solids(input, options) && input->solid };
-  mcor_begin_ahead(context, &build, input);
   MCOR_TRY(mcor_prepare(context, input, options, mcor_uses_solids(input, options)));
   for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
   {
@@ -95,7 +90,6 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
   const mcor_status status =
     mcor_run_call(context, input, options, &surface->statistics, mcor_extract_all, surface);
-  mcor_end_ahead(context, status == MCOR_OK);
   if (status != MCOR_OK)
   {
     mcor_free_surface(surface);

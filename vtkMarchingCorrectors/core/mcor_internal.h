@@ -6,7 +6,6 @@
 /* State shared by the phases. Each phase is one file of the same name as its kernels. */
 
 #include "mcor.h"
-#include "mcor_ahead.h"
 #include "mcor_cl.h"
 #include "mcor_shared.h"
 
@@ -288,7 +287,6 @@ struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
   mcor_cl cl;
-  mcor_ahead ahead;
   mcor_sort_data sort;
   mcor_stage_data stage;
   mcor_grid grid;

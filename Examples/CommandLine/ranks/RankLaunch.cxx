@@ -38,13 +38,3 @@ int LaunchedRank()
 {
   return LaunchedCount() > 1 ? Number({ "OMPI_COMM_WORLD_RANK", "PMI_RANK" }, 0) : 0;
 }
-
-//------------------------------------------------------------------------------
-void CompileOnce()
-{
-  if (LaunchedCount() > 1 && Number({ "OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID" }, 0) > 0)
-  {
-    const bool keep = false; // what the user has set stays
-    setenv("MCOR_COMPILER", "", keep);
-  }
-}

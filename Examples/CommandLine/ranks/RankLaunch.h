@@ -11,8 +11,5 @@ int LaunchedCount();
 /// The number of this process, 0 where it was started alone.
 int LaunchedRank();
 
-/// Leaves the compiling of kernels ahead to the first of the processes on this machine, unless the user's
-/// environment says otherwise.
-void CompileOnce();
 
 #endif

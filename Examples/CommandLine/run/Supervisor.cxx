@@ -219,7 +219,7 @@ bool StartChild(const std::function<int(int)>& work, int first)
 }
 
 //------------------------------------------------------------------------------
-int RunSupervised(const std::function<int(int)>& work, const std::function<void()>& cleanUp)
+int RunSupervised(const std::function<int(int)>& work)
 {
   void* memory =
     mmap(nullptr, sizeof(SharedState), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -233,11 +233,6 @@ int RunSupervised(const std::function<int(int)>& work, const std::function<void(
   {
     const int status = WaitAndCleanUp();
     const bool goesOn = GoesOn(status, first);
-    if (!goesOn)
-    {
-      const SignalPause pause;
-      cleanUp();
-    }
     const int result = Report(status);
     if (!goesOn)
     {
@@ -247,7 +242,6 @@ int RunSupervised(const std::function<int(int)>& work, const std::function<void(
     Reset();
   }
   const int error = errno;
-  cleanUp();
   Say(std::string("no process could be started: ") + std::strerror(error));
   return 1;
 }

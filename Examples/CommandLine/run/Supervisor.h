@@ -13,8 +13,7 @@
 /// sent to this process are handed on, and end both. Returns the exit status: what the work
 /// returned, or 1. Where the work has parts (see BeginPart) and ended unexpectedly in one, it goes on
 /// in a new child: work(first) begins with part `first`, the one after it; at the start that is 0.
-/// `cleanUp` runs here when the last child is gone, however it ended.
-int RunSupervised(const std::function<int(int first)>& work, const std::function<void()>& cleanUp);
+int RunSupervised(const std::function<int(int first)>& work);
 
 /// A part of the work begins: from 0, each one higher than those before it. Below 0: what comes now
 /// belongs to no part.

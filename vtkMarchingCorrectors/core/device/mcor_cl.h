@@ -123,15 +123,6 @@ typedef enum mcor_load
 /* From so many work-items on, PoCL compiles a kernel once more. */
 #define MCOR_LARGE_LAUNCH 65535
 
-/* A kernel to be compiled before it is needed, see mcor_ahead.h. */
-typedef struct mcor_ahead_kernel
-{
-  const char* name;
-  mcor_program program;
-  mcor_load load;
-  bool large; /* to be launched with many work-items */
-} mcor_ahead_kernel;
-
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
@@ -158,13 +149,6 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
 
-/* For compiling ahead. Whether it is of use: kernels of the build are not at hand, the driver
- * compiles them one after the other, and keeps them where other processes find them. */
-bool mcor_can_compile_ahead(const mcor_cl* cl, const mcor_build* build);
-/* As mcor_choose_build, but lanes are guessed, since asking the compiler takes as long as a program. */
-void mcor_guess_build(mcor_context* context, const mcor_build* build);
-/* Has a kernel compiled, by a launch whose counts are all 0: it does nothing. */
-mcor_status mcor_compile_kernel(mcor_context* context, const mcor_ahead_kernel* kernel);
 /* Of all that compiled programs depend on beside their sources and options. */
 mcor_cache_key mcor_device_key(const mcor_cl* cl);
 

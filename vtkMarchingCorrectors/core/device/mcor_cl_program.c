@@ -289,19 +289,3 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
   }
   return MCOR_OK;
 }
-
-bool mcor_can_compile_ahead(const mcor_cl* cl, const mcor_build* build)
-{
-  return mcor_is_pocl(cl) && cl->is_cpu && cl->units > 1 &&
-    !(cl->programs[MCOR_PROGRAM_FIELD] && mcor_same_build(&cl->build, build));
-}
-
-void mcor_guess_build(mcor_context* context, const mcor_build* build)
-{
-  mcor_cl* cl = &context->cl;
-  const char* forced = getenv("MCOR_LANES");
-  cl_uint width = 1;
-  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  const int lanes = build->precision == MCOR_FLOAT64 || width < 16 ? 8 : 16;
-  mcor_set_build(cl, build, forced && *forced ? mcor_forced_lanes(forced) : lanes);
-}

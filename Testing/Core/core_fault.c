@@ -22,7 +22,7 @@ static int counted;
 static cl_int fail_with;
 static char failed_call[64];
 
-/* Buffers that OpenCL still holds; its threads release them. */
+/* Buffers that were made and not released. */
 static atomic_int live_buffers;
 
 static int fails(const char* name, int kind)
@@ -40,48 +40,48 @@ static int fails(const char* name, int kind)
   cl_int __wrap_##name parameters;                                                                 \
   cl_int __wrap_##name parameters                                                                  \
   {                                                                                                \
-    const int kind = strcmp(#name, "clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
+    const int kind = strcmp(#name, "mcor_clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
     return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
   }
 
-FAULT_CALL(clBuildProgram,
+FAULT_CALL(mcor_clBuildProgram,
   (cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
     void(CL_CALLBACK* notify)(cl_program, void*), void* data),
   (program, count, devices, options, notify, data))
-FAULT_CALL(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
+FAULT_CALL(mcor_clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
   (kernel, index, size, value))
-FAULT_CALL(clEnqueueNDRangeKernel,
+FAULT_CALL(mcor_clEnqueueNDRangeKernel,
   (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
     const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait,
     cl_event* event),
   (queue, kernel, dimensions, offset, global, local, waits, wait, event))
-FAULT_CALL(clEnqueueReadBuffer,
+FAULT_CALL(mcor_clEnqueueReadBuffer,
   (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size, void* data,
     cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_CALL(clEnqueueWriteBuffer,
+FAULT_CALL(mcor_clEnqueueWriteBuffer,
   (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
     const void* data, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_CALL(clEnqueueFillBuffer,
+FAULT_CALL(mcor_clEnqueueFillBuffer,
   (cl_command_queue queue, cl_mem mem, const void* pattern, size_t pattern_size, size_t offset,
     size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, pattern, pattern_size, offset, size, waits, wait, event))
-FAULT_CALL(clEnqueueCopyBuffer,
+FAULT_CALL(mcor_clEnqueueCopyBuffer,
   (cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset, size_t to_offset,
     size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, from, to, from_offset, to_offset, size, waits, wait, event))
-FAULT_CALL(clFinish, (cl_command_queue queue), (queue))
+FAULT_CALL(mcor_clFinish, (cl_command_queue queue), (queue))
 
 /* Reports a failure but unmaps, as else the buffer would stay mapped by this test's fault. */
-cl_int __real_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+cl_int __real_mcor_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
   cl_uint waits, const cl_event* wait, cl_event* event);
-cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+cl_int __wrap_mcor_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
   cl_uint waits, const cl_event* wait, cl_event* event);
-cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+cl_int __wrap_mcor_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
   cl_uint waits, const cl_event* wait, cl_event* event)
 {
-  const cl_int error = __real_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
+  const cl_int error = __real_mcor_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
   return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
 }
 
@@ -92,9 +92,9 @@ void core_set_build_log(const char* log)
   build_log = log;
 }
 
-cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
+cl_int __wrap_mcor_clGetProgramBuildInfo(cl_program program, cl_device_id device,
   cl_program_build_info info, size_t size, void* value, size_t* needed);
-cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
+cl_int __wrap_mcor_clGetProgramBuildInfo(cl_program program, cl_device_id device,
   cl_program_build_info info, size_t size, void* value, size_t* needed)
 {
   (void)program;
@@ -115,18 +115,19 @@ cl_int __wrap_clGetProgramBuildInfo(cl_program program, cl_device_id device,
   return CL_SUCCESS;
 }
 
-static void CL_CALLBACK on_destroyed(cl_mem mem, void* data)
+cl_int __real_mcor_clReleaseMemObject(cl_mem mem);
+cl_int __wrap_mcor_clReleaseMemObject(cl_mem mem);
+cl_int __wrap_mcor_clReleaseMemObject(cl_mem mem)
 {
-  (void)mem;
-  (void)data;
   atomic_fetch_sub(&live_buffers, 1);
+  return __real_mcor_clReleaseMemObject(mem);
 }
 
-cl_mem __real_clCreateBuffer(
+cl_mem __real_mcor_clCreateBuffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
-cl_mem __wrap_clCreateBuffer(
+cl_mem __wrap_mcor_clCreateBuffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
-cl_mem __wrap_clCreateBuffer(
+cl_mem __wrap_mcor_clCreateBuffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
   if (fails("clCreateBuffer", COMMAND))
@@ -134,21 +135,18 @@ cl_mem __wrap_clCreateBuffer(
     *error = fail_with;
     return NULL;
   }
-  cl_mem mem = __real_clCreateBuffer(context, flags, size, host, error);
-  if (mem && clSetMemObjectDestructorCallback(mem, on_destroyed, NULL) == CL_SUCCESS)
-  {
-    atomic_fetch_add(&live_buffers, 1);
-  }
+  cl_mem mem = __real_mcor_clCreateBuffer(context, flags, size, host, error);
+  atomic_fetch_add(&live_buffers, mem != NULL);
   return mem;
 }
 
-void* __real_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+void* __real_mcor_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
   cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
   cl_event* event, cl_int* error);
-void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+void* __wrap_mcor_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
   cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
   cl_event* event, cl_int* error);
-void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+void* __wrap_mcor_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
   cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
   cl_event* event, cl_int* error)
 {
@@ -157,20 +155,20 @@ void* __wrap_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool bloc
     *error = fail_with;
     return NULL;
   }
-  return __real_clEnqueueMapBuffer(
+  return __real_mcor_clEnqueueMapBuffer(
     queue, mem, blocking, flags, offset, size, waits, wait, event, error);
 }
 
-cl_kernel __real_clCreateKernel(cl_program program, const char* name, cl_int* error);
-cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error);
-cl_kernel __wrap_clCreateKernel(cl_program program, const char* name, cl_int* error)
+cl_kernel __real_mcor_clCreateKernel(cl_program program, const char* name, cl_int* error);
+cl_kernel __wrap_mcor_clCreateKernel(cl_program program, const char* name, cl_int* error);
+cl_kernel __wrap_mcor_clCreateKernel(cl_program program, const char* name, cl_int* error)
 {
   if (fails("clCreateKernel", COMMAND))
   {
     *error = fail_with;
     return NULL;
   }
-  return __real_clCreateKernel(program, name, error);
+  return __real_mcor_clCreateKernel(program, name, error);
 }
 
 #define FAULT_ALLOCATION(name, parameters, arguments)                                              \

@@ -334,9 +334,9 @@ static cl_program core_make_program(mcor_context* context, const char* source)
 {
   const mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  const int count = mcor_program_sources(cl, MCOR_PROGRAM_OPTIONS, sources);
+  const int count = mcor_program_sources(cl, MCOR_PROGRAM_FIELD, sources);
   char options[512];
-  mcor_program_options(cl, MCOR_PROGRAM_OPTIONS, options, sizeof options);
+  mcor_program_options(cl, MCOR_PROGRAM_FIELD, options, sizeof options);
   sources[count] = source;
   cl_int error;
   cl_program program =
@@ -371,7 +371,7 @@ void core_extend_program(mcor_context* context, const char* source)
     {
       mcor_kernel* kernel = &cl->kernels[cl->kernel_count++];
       cl_int error;
-      *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_OPTIONS };
+      *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_FIELD };
       strcpy(kernel->name, name);
       kernel->kernel = clCreateKernel(program, name, &error);
       assert_int_equal(error, CL_SUCCESS);

@@ -54,16 +54,10 @@ mcor_status mcor_create_shared_context(
     return MCOR_OUT_OF_CAPACITY;
   }
   (*context)->report_interval = MCOR_REPORT_SECONDS;
-  mcor_status status = place >= 0 && place < count
+  const mcor_status status = place >= 0 && place < count
     ? mcor_open_device(*context, device, place, count)
     : mcor_fail(
         *context, MCOR_INVALID_ARGUMENT, "There is no number %d of %d processes.", place, count);
-  if (status == MCOR_OK)
-  {
-    uint8_t table[256][16];
-    mcor_make_case_table(table);
-    status = mcor_write(*context, &(*context)->case_table, table, sizeof table);
-  }
   (*context)->created = status == MCOR_OK;
   return status;
 }
@@ -101,9 +95,6 @@ void mcor_free_context(mcor_context* context)
     return;
   }
   mcor_release_memory(context);
-  mcor_release(context, &context->case_table);
-  mcor_release(context, &context->topology.cases);
-  mcor_release(context, &context->topology.rows);
   mcor_close_device(context);
   free(context);
 }
@@ -125,6 +116,7 @@ mcor_status mcor_prepare(
     .field = options->field,
     .precision = options->precision,
     .solids = context->grid.has_solids };
+  MCOR_TRY(mcor_settle_device(context, &build));
   MCOR_TRY(mcor_choose_build(context, &build));
   if (!context->grid_valid)
   {

@@ -5,11 +5,9 @@
 
 /* OpenCL: device, programs, buffers, launches. Only mcor_cl_*.c call cl*. */
 
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-
 #include "mcor.h"
 #include "mcor_cache.h"
+#include "mcor_opencl.h"
 
 #include <stdbool.h>
 
@@ -35,8 +33,7 @@ typedef struct mcor_build
 typedef enum mcor_program
 {
   MCOR_PROGRAM_LATTICE, /* the same for all kernels and fields, with solids and without */
-  MCOR_PROGRAM_FIELD,   /* what every surface of the build needs */
-  MCOR_PROGRAM_OPTIONS, /* what options need */
+  MCOR_PROGRAM_FIELD,   /* what surfaces of the build need */
   MCOR_PROGRAM_PROBE,   /* mcor_probe and mcor_derive */
   MCOR_PROGRAM_GRADED,  /* adaptive cubes */
   MCOR_PROGRAM_COUNT
@@ -63,13 +60,14 @@ typedef struct mcor_cl
   mcor_kernel kernels[MCOR_KERNEL_LIMIT];
   int kernel_count;
   int device_number, units;       /* in the list of devices; that compute side by side */
+  int place, count;               /* of the processes that share devices */
+  bool is_default, is_replaced;   /* none was named; the first choice could not do a build */
   bool is_cpu;                    /* the kernels' form for CPUs is used */
   bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
   bool declares_builtins;         /* programs do so themselves, see mcor_builtin.cl */
   int lanes;                      /* of the programs */
   int segments;                   /* runs into which scans and sorts cut their arrays */
-  int register_lanes;  /* that the device's compiler has registers for; 0: not asked yet */
-  bool keeps_binaries; /* programs are kept in files, see mcor_cache.h */
+  bool keeps_binaries;            /* programs are kept in files, see mcor_cache.h */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
   uint64_t memory_limit; /* what of device_memory may be used; of the call under way */
@@ -123,7 +121,10 @@ typedef enum mcor_load
 /* From so many work-items on, PoCL compiles a kernel once more. */
 #define MCOR_LARGE_LAUNCH 65535
 
+/* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
+/* Before a call: where no device was named and this one cannot do the build, another one is opened. */
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);

@@ -29,6 +29,10 @@ mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
 /* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
+/* mcor_native.c; its header has OpenCL's own names. */
+cl_platform_id mcor_native_platform(void);
+bool mcor_native_has(const char* options);
+
 static inline bool mcor_is_pocl(const mcor_cl* cl)
 {
   return strcmp(cl->platform_name, MCOR_DEFAULT_PLATFORM) == 0;

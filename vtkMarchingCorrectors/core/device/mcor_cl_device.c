@@ -5,6 +5,7 @@
 
 #include "mcor_cl_call.h"
 #include "mcor_parallel.h"
+#include "mcor_program.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,8 +65,9 @@ static void mcor_write_devices(
   {
     char device[128], platform[128];
     mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
-    length += (size_t)snprintf(
-      text + length, room - length, "%s%d: %s (%s)", i > 0 ? separator : "", i, device, platform);
+    const bool same = strncmp(device, platform, strlen(platform)) == 0; /* the built-in one */
+    length += (size_t)snprintf(text + length, room - length, "%s%d: %s%s%s%s",
+      i > 0 ? separator : "", i, device, same ? "" : " (", same ? "" : platform, same ? "" : ")");
   }
 }
 
@@ -112,12 +114,11 @@ static bool mcor_contains(const char* text, const char* part)
 }
 
 /* Index into the list of the device that the user named, or -1. */
-static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
+static int mcor_find_device(const mcor_device_list* list, const char* wanted)
 {
   char* end = NULL;
-  const bool is_default = !wanted || !*wanted;
-  const long number = is_default ? -1 : strtol(wanted, &end, 10);
-  if (!is_default && *end == '\0')
+  const long number = strtol(wanted, &end, 10);
+  if (*end == '\0')
   {
     return number >= 0 && number < list->count ? (int)number : -1;
   }
@@ -125,13 +126,13 @@ static int mcor_choose_device(const mcor_device_list* list, const char* wanted)
   {
     char device[128], platform[128];
     mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
-    if (is_default ? strcmp(platform, MCOR_DEFAULT_PLATFORM) == 0
-                   : mcor_contains(device, wanted) || mcor_contains(platform, wanted))
+    if (mcor_contains(device, wanted) || mcor_contains(platform, wanted) ||
+      (mcor_contains("pocl", wanted) && strcmp(platform, MCOR_DEFAULT_PLATFORM) == 0))
     {
       return i;
     }
   }
-  return is_default && list->count > 0 ? 0 : -1;
+  return -1;
 }
 
 /* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
@@ -148,6 +149,13 @@ static bool mcor_has_cpu_form(const mcor_cl* cl)
   clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
   return (type & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
+}
+
+static cl_device_type mcor_type_of(cl_device_id device)
+{
+  cl_device_type type = 0;
+  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
 }
 
 static void mcor_query_device(mcor_cl* cl)
@@ -170,13 +178,6 @@ static void mcor_query_device(mcor_cl* cl)
   cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
   cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
-}
-
-static cl_device_type mcor_type_of(cl_device_id device)
-{
-  cl_device_type type = 0;
-  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
-  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
 }
 
 /* Of `count` processes number `place` takes one of the devices like the chosen one, in turn; both become
@@ -227,32 +228,48 @@ static void mcor_take_share(mcor_cl* cl, int place, int count)
   free(made);
 }
 
-mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count)
+/* How well a device suits where none is named: a GPU best, then the built-in one, then PoCL, then any. */
+static int mcor_rank_device(cl_platform_id platform, cl_device_id device)
+{
+  char name[128], platform_name[128];
+  mcor_device_names(platform, device, name, platform_name, sizeof name);
+  return (mcor_type_of(device) & CL_DEVICE_TYPE_GPU) != 0 ? 4
+    : platform == mcor_native_platform()                  ? 3
+    : strcmp(platform_name, MCOR_DEFAULT_PLATFORM) == 0   ? 2
+                                                          : 1;
+}
+
+/* Whether a device has what a build needs. The built-in one has the kernels that were compiled. */
+static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const mcor_build* build)
+{
+  mcor_cl tried = { .platform = platform, .device = device };
+  mcor_query_device(&tried);
+  return platform == mcor_native_platform() ? mcor_has_ahead(&tried, build)
+                                            : build->precision == MCOR_FLOAT32 || tried.has_fp64;
+}
+
+/* The best of the devices that can do a build; -1: none. */
+static int mcor_choose_device(const mcor_device_list* list, const mcor_build* build)
+{
+  int best = -1, rank = 0;
+  for (int i = 0; i < list->count; ++i)
+  {
+    const int own = mcor_rank_device(list->platforms[i], list->devices[i]);
+    if (own > rank && mcor_can_build(list->platforms[i], list->devices[i], build))
+    {
+      best = i;
+      rank = own;
+    }
+  }
+  return best;
+}
+
+static mcor_status mcor_start_device(
+  mcor_context* context, const mcor_device_list* list, int chosen, int place, int count)
 {
   mcor_cl* cl = &context->cl;
-  mcor_device_list list;
-  mcor_find_devices(&list);
-  char fault[1200];
-  MCOR_RETURN_IF(list.count == 0 && mcor_pocl_folder_fault(fault, sizeof fault), context,
-    MCOR_DEVICE_ERROR, "No OpenCL device was found. If PoCL is installed: %s", fault);
-  MCOR_RETURN_IF(list.count == 0, context, MCOR_DEVICE_ERROR,
-    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
-    "runs on the CPU.");
-  int chosen = mcor_choose_device(&list, device);
-  if (chosen < 0)
-  {
-    char devices[300];
-    mcor_write_devices(&list, ", ", devices, sizeof devices);
-    return mcor_fail(context, MCOR_DEVICE_ERROR,
-      "There is no OpenCL device \"%s\"; give the number of one, or part of its name: %s.", device,
-      devices);
-  }
-  if (!device || !*device)
-  {
-    chosen = mcor_take_turn(&list, chosen, &place, &count);
-  }
-  cl->platform = list.platforms[chosen];
-  cl->device = list.devices[chosen];
+  cl->platform = list->platforms[chosen];
+  cl->device = list->devices[chosen];
   cl->device_number = chosen;
   mcor_device_names(
     cl->platform, cl->device, cl->device_name, cl->platform_name, sizeof cl->device_name);
@@ -266,12 +283,91 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   cl->timed_queue =
     clCreateCommandQueue(cl->context, cl->device, CL_QUEUE_PROFILING_ENABLE, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
-  return MCOR_OK;
+  uint8_t table[256][16];
+  mcor_make_case_table(table);
+  return mcor_write(context, &context->case_table, table, sizeof table);
+}
+
+/* A device where none was named. */
+static mcor_status mcor_start_default(
+  mcor_context* context, const mcor_device_list* list, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  const mcor_build usual = { 0 };
+  const int best = mcor_choose_device(list, &usual), chosen = mcor_choose_device(list, build);
+  char fault[1200];
+  MCOR_RETURN_IF(chosen < 0 && mcor_pocl_folder_fault(fault, sizeof fault), context,
+    MCOR_DEVICE_ERROR, "No OpenCL device was found. If PoCL is installed: %s", fault);
+  MCOR_RETURN_IF(chosen < 0 && best >= 0, context, MCOR_DEVICE_ERROR,
+    "The built-in device has no kernels for double precision: they were not compiled with this "
+    "library. Use single precision, install an OpenCL driver (PoCL, Debian package "
+    "pocl-opencl-icd, runs on the CPU), or build with MCOR_AHEAD=all.");
+  MCOR_RETURN_IF(chosen < 0, context, MCOR_DEVICE_ERROR,
+    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
+    "runs on the CPU.");
+  int place = cl->place, count = cl->count;
+  cl->is_replaced = chosen != best;
+  const int own = mcor_take_turn(list, chosen, &place, &count);
+  return mcor_start_device(context, list, own, place, count);
+}
+
+mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count)
+{
+  mcor_cl* cl = &context->cl;
+  const char* wanted = device && *device ? device : getenv("MCOR_DEVICE");
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  cl->place = place;
+  cl->count = count;
+  cl->is_default = !wanted || !*wanted;
+  if (cl->is_default)
+  {
+    const mcor_build usual = { 0 };
+    return mcor_start_default(context, &list, &usual);
+  }
+  const int chosen = mcor_find_device(&list, wanted);
+  if (chosen < 0)
+  {
+    char devices[300];
+    mcor_write_devices(&list, ", ", devices, sizeof devices);
+    return mcor_fail(context, MCOR_DEVICE_ERROR,
+      "There is no OpenCL device \"%s\"; give the number of one, or part of its name: %s.", wanted,
+      devices);
+  }
+  return mcor_start_device(context, &list, chosen, place, count);
+}
+
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  if (!cl->is_default || (!cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
+  {
+    return MCOR_OK;
+  }
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  const int chosen = mcor_choose_device(&list, build);
+  if (chosen >= 0 && list.platforms[chosen] == cl->platform)
+  {
+    return MCOR_OK;
+  }
+  const mcor_cl before = *cl;
+  mcor_release_memory(context);
+  mcor_close_device(context);
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+  *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
+  const mcor_status status = mcor_start_default(context, &list, build);
+  cl->memory_limit =
+    before.memory_limit < cl->device_memory ? before.memory_limit : cl->device_memory;
+  return status;
 }
 
 void mcor_close_device(mcor_context* context)
 {
   mcor_cl* cl = &context->cl;
+  mcor_release(context, &context->case_table);
+  mcor_release(context, &context->topology.cases);
+  mcor_release(context, &context->topology.rows);
   mcor_drop_programs(cl, true);
   if (cl->timed_queue)
   {

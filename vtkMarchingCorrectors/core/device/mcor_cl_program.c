@@ -58,6 +58,10 @@ static mcor_status mcor_fail_build(
   mcor_context* context, cl_program program, cl_int error, const char* options)
 {
   const mcor_cl* cl = &context->cl;
+  MCOR_RETURN_IF(cl->platform == mcor_native_platform(), context, MCOR_DEVICE_ERROR,
+    "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
+    "another device, or build with MCOR_AHEAD=all.",
+    cl->build.precision == MCOR_FLOAT64 ? "double precision" : "these options");
   size_t size = 0;
   clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
   char* log = calloc(size + 1, 1);
@@ -204,26 +208,6 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   return status;
 }
 
-/* What the device's compiler has registers for; of the width that it claims where that does not
- * say. */
-static mcor_status mcor_ask_lanes(mcor_context* context)
-{
-  mcor_cl* cl = &context->cl;
-  cl_uint width = 1;
-  cl_int error;
-  size_t lanes[3] = { 1, 1, 1 };
-  MCOR_TRY(mcor_need_program(context, MCOR_PROGRAM_LATTICE));
-  cl_kernel kernel =
-    clCreateKernel(cl->programs[MCOR_PROGRAM_LATTICE], "mcor_register_lanes", &error);
-  MCOR_CL_TRY(context, error, "mcor_register_lanes");
-  clGetKernelWorkGroupInfo(
-    kernel, cl->device, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof lanes, lanes, NULL);
-  clReleaseKernel(kernel);
-  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  cl->register_lanes = lanes[0] > 1 ? (int)lanes[0] : width >= 16 ? 16 : 8;
-  return MCOR_OK;
-}
-
 /* MCOR_LANES of the environment, for tests. */
 static int mcor_forced_lanes(const char* text)
 {
@@ -232,21 +216,25 @@ static int mcor_forced_lanes(const char* text)
 }
 
 /* Evaluation points that a work-item treats at once, MCOR_LANES of the programs. */
-static mcor_status mcor_choose_lanes(mcor_context* context, mcor_type precision, int* lanes)
+static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
-  mcor_cl* cl = &context->cl;
   const char* forced = getenv("MCOR_LANES");
-  if (forced && *forced)
-  {
-    *lanes = mcor_forced_lanes(forced);
-    return MCOR_OK;
-  }
-  if (cl->is_cpu && cl->register_lanes == 0)
-  {
-    MCOR_TRY(mcor_ask_lanes(context));
-  }
-  *lanes = !cl->is_cpu ? 1 : precision == MCOR_FLOAT64 ? 8 : cl->register_lanes;
-  return MCOR_OK;
+  cl_uint width = 1;
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  return forced && *forced                    ? mcor_forced_lanes(forced)
+    : !cl->is_cpu                             ? 1
+    : precision == MCOR_FLOAT64 || width < 16 ? 8
+                                              : 16;
+}
+
+bool mcor_has_ahead(const mcor_cl* cl, const mcor_build* build)
+{
+  char options[512];
+  mcor_cl tried = *cl;
+  tried.build = *build;
+  tried.lanes = mcor_choose_lanes(cl, build->precision);
+  mcor_program_options(&tried, MCOR_PROGRAM_FIELD, options, sizeof options);
+  return mcor_native_has(options);
 }
 
 static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
@@ -269,7 +257,7 @@ static void mcor_set_precision(mcor_cl* cl, mcor_type precision)
 static void mcor_set_build(mcor_cl* cl, const mcor_build* build, int lanes)
 {
   mcor_set_precision(cl, build->precision);
-  mcor_drop_programs(cl, (cl->lanes == 1) != (lanes == 1));
+  mcor_drop_programs(cl, cl->lanes != lanes);
   cl->lanes = lanes;
   cl->build = *build;
 }
@@ -277,12 +265,10 @@ static void mcor_set_build(mcor_cl* cl, const mcor_build* build, int lanes)
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
-  int lanes;
   MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
     "OpenCL device %s has no double precision; choose another device or single precision.",
     cl->device_name);
-  mcor_set_precision(cl, build->precision);
-  MCOR_TRY(mcor_choose_lanes(context, build->precision, &lanes));
+  const int lanes = mcor_choose_lanes(cl, build->precision);
   if (cl->lanes != lanes || !mcor_same_build(&cl->build, build))
   {
     mcor_set_build(cl, build, lanes);

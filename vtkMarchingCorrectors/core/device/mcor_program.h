@@ -7,13 +7,29 @@
 
 #include "mcor_cl.h"
 
-#define MCOR_SOURCE_LIMIT 32
+#define MCOR_SOURCE_LIMIT 64
+
+/* An OpenCL source; made by the build (kernels/programs.cmake). */
+typedef struct mcor_kernel_source
+{
+  const char* text; /* NULL: the last */
+  int programs;     /* bits of mcor_program */
+  enum
+  {
+    MCOR_ANY_FORM,
+    MCOR_CPU_FORM,
+    MCOR_GPU_FORM
+  } form; /* of the kernels that it is in */
+} mcor_kernel_source;
+extern const mcor_kernel_source mcor_kernel_sources[];
 
 /* The sources of a program, in order; returns how many. */
 int mcor_program_sources(
   const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT]);
 /* False where a look into the program for this kernel, which builds it, is in vain. */
 bool mcor_program_may_have(mcor_program program, const char* kernel);
+/* Whether the built-in device has the programs of a build. */
+bool mcor_has_ahead(const mcor_cl* cl, const mcor_build* build);
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size);
 
 #endif

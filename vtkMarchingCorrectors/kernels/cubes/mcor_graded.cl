@@ -5,6 +5,7 @@
  * level as everywhere: those of a leaf, and those that hold the far ends of its cells and the finer
  * nodes. */
 
+#if MCOR_OF_LATTICE
 /* Bricks whose nodes a leaf needs: of its level bits 0 to 7 (x, y, z up), of the finer one from bit 8
  * on, (x, y, z) 0 to 2 from its first one. Where a leaf beyond a far side is finer, that one has the
  * leaf's nodes there, too. */
@@ -120,6 +121,9 @@ __kernel void mcor_graded_tables(MCOR_SLOT_PARAMS, const int count, __global con
   }
 }
 
+#endif
+
+#if MCOR_OF_GRADED
 /* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, or
  * proven to lie inside, reads the particles that reach them; tries the proof first where it was not tried.
  * Writes their values and weights, or the proof. */
@@ -175,7 +179,9 @@ __kernel void mcor_graded_sign(const int slot_count, __global const uchar* proof
   mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold,
     above + slot, valid + slot);
 }
+#endif
 
+#if MCOR_OF_LATTICE
 /* One work-item = one leaf. Writes whether any of its slots has a node below: if none has, there is no
  * surface. If one has, values are needed, of the slots that were proven to lie inside, too. */
 __kernel void mcor_graded_need(const int count, __global const int* tables,
@@ -227,3 +233,4 @@ __kernel void mcor_graded_move(MCOR_SLOT_PARAMS, const int old_count,
     node_weight[slot * (long)words + n] = old_weight[old * (long)words + n];
   }
 }
+#endif

@@ -52,6 +52,7 @@ void mcor_leaf_reach(
 
 /* ---- Cells between pairs ---- */
 
+#if MCOR_OF_GRADED
 /* What marking takes, last among a kernel's parameters. top: the highest level. */
 #define MCOR_MARK_PARAMS MCOR_PLACE_PARAMS, const int top, __global uint *reached
 #define MCOR_MARK_ARGS MCOR_PLACE_ARGS, top, reached
@@ -127,8 +128,11 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
   }
 }
 
+#endif
+
 /* ---- Growth ---- */
 
+#if MCOR_OF_LATTICE
 /* Of a cell's nodes those with a coordinate. */
 uint mcor_leaf_plane(int axis, int at)
 {
@@ -316,3 +320,4 @@ __kernel void mcor_graded_pair_keep(
     cells[i] &= reached[i];
   }
 }
+#endif

@@ -21,6 +21,7 @@ ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, 
   return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
 }
 
+#if MCOR_OF_LATTICE
 /* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
 __kernel void mcor_graded_scale(
   const int count, __global const real* inv_h, const real factor, __global real* scaled)
@@ -32,19 +33,22 @@ __kernel void mcor_graded_scale(
   }
 }
 
+#endif
+
+/* What is known of a slot. */
+#define MCOR_UNTRIED 0
+#define MCOR_PROVEN 1 /* its nodes lie inside */
+#define MCOR_OPEN 2   /* its nodes' values are needed */
+
 /* ---- Bounds and proofs ---- */
 
+#if MCOR_OF_GRADED
 /* Whether that proof is tried: where a work-item evaluates whole bricks. */
 #define MCOR_LEAF_PROOFS (MCOR_FIELD == 2 && !MCOR_TENSOR && MCOR_LANES > 1)
 
 /* Of each particle's support: within are a fifth of the particles, and in the midst of others four fifths
  * of the weight sum. */
 #define MCOR_LEAF_SHARE 0.6f
-
-/* What is known of a slot. */
-#define MCOR_UNTRIED 0
-#define MCOR_PROVEN 1 /* its nodes lie inside */
-#define MCOR_OPEN 2   /* its nodes' values are needed */
 
 #if MCOR_LANES == 1
 /* One work-item = one leaf, of `count` from `first` on. Reads the particles that reach it, sides
@@ -261,9 +265,11 @@ __kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int c
   }
 }
 #endif
+#endif
 
 /* ---- Leaves by their place ---- */
 
+#if MCOR_OF_LATTICE
 /* One work-item = one region. Writes the key of the brick whose parts its leaves are. */
 __kernel void mcor_graded_region_keys(const int region_count, __global const mcor_rung* rungs,
   __global const int* regions, __global const int4* leaves, __global ulong* keys)
@@ -275,6 +281,8 @@ __kernel void mcor_graded_region_keys(const int region_count, __global const mco
     keys[r] = mcor_graded_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
   }
 }
+
+#endif
 
 /* Regions by their sorted keys; `order`: which one has a key. */
 #define MCOR_REGION_PARAMS                                                                         \
@@ -306,6 +314,7 @@ int mcor_leaf_of_region(
   return -1;
 }
 
+#if MCOR_OF_LATTICE
 /* One work-item = one region. Writes of its leaves whether they are to be examined: one whose own nodes
  * lie inside need not be if the others are in like bricks. */
 __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
@@ -343,6 +352,9 @@ __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
   }
 }
 
+#endif
+
+#if MCOR_OF_GRADED
 /* One work-item = one slot. Takes over what was found of the leaf whose brick it is, if it is one's:
  * words: of 4 bytes, that the values of a brick's nodes take; 0: there are none. */
 __kernel void mcor_graded_take(MCOR_REGION_PARAMS, const int slot_count,
@@ -371,3 +383,4 @@ __kernel void mcor_graded_take(MCOR_REGION_PARAMS, const int slot_count,
     }
   }
 }
+#endif

@@ -5,7 +5,7 @@
  * values on both sides, and all cells on the straight line between them; then the growth from cell
  * to cell through crossed faces. */
 
-#if MCOR_OF_OPTIONS
+#if MCOR_OF_FIELD
 /* What marking takes, last among a kernel's parameters; mcor_graded_pair.cl has that of adaptive cubes. */
 #define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint *cells
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, cells
@@ -76,6 +76,7 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
 
 #endif
 
+#if !MCOR_OF_LATTICE
 /* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that
  * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
@@ -219,7 +220,9 @@ __kernel void MCOR_PAIR_SEED(MCOR_GRID_PARAMS, __global const uchar* side_flags,
   }
 }
 
-#if MCOR_OF_OPTIONS
+#endif
+
+#if MCOR_OF_LATTICE
 /* One work-item = one brick of a block. Reads its cells. Requests the bricks that have their
  * nodes. */
 __kernel void mcor_pair_request(

@@ -12,6 +12,7 @@
 #define MCOR_SAMPLE_ABOVE 1
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
+#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next
  * to used cells, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
@@ -94,6 +95,9 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
   }
 }
 
+#endif
+
+#if MCOR_OF_FIELD
 /* One work-item = one group of samples. Writes on which side of the iso value the field is. */
 __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* sample_node, __global const real4* sample_offset,
@@ -124,7 +128,9 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
     }
   }
 }
+#endif
 
+#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads the sides of its faces' saddles. Keeps the joined faces
  * only, and writes their number. */
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
@@ -361,3 +367,4 @@ __kernel void mcor_topology_triangles(const int brick_count, __global const int*
     to = mcor_march_emit(row->edges, row->triangles, numbers, cell, to);
   }
 }
+#endif

@@ -18,25 +18,6 @@
 #define MCOR_FOR_CPU 0
 #endif
 
-#if MCOR_OF_LATTICE
-/* Lanes of single precision that the compiler has registers for: 16, 8, or 1 where it does not say. A
- * device may claim more than its compiler can do. */
-#if !MCOR_FOR_CPU
-#define MCOR_REGISTER_LANES 1
-#elif defined(__AVX512F__)
-#define MCOR_REGISTER_LANES 16
-#else
-#define MCOR_REGISTER_LANES 8
-#endif
-
-/* Never run: the host asks for its work-group size. */
-__kernel __attribute__((reqd_work_group_size(MCOR_REGISTER_LANES, 1, 1))) void mcor_register_lanes(
-  __global int* unused)
-{
-  unused[get_global_id(0)] = 0;
-}
-#endif
-
 /* Asks for an element that will be needed. */
 #if MCOR_LANES > 1 && MCOR_FOR_CPU && __has_builtin(__builtin_prefetch)
 #define MCOR_PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))

@@ -15,12 +15,11 @@
  * cubes, counted from the lattice origin, so that a difference of two positions is exact: a node's
  * value does not depend on the brick it is evaluated in, nor on how far away the origin is. */
 
-/* Programs. That of the lattice is compiled once for all SPH kernels and fields: it knows none of what is
- * named after MCOR_DOUBLE, and fewer lanes than the others maybe. */
+/* Programs, see mcor_program.c. That of the lattice is compiled once for all SPH kernels and fields, with
+ * solids and without: of what is set, it knows MCOR_LANES and MCOR_DOUBLE alone. */
 #define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
-#define MCOR_OF_OPTIONS (MCOR_PROGRAM == 2)
-#define MCOR_OF_GRADED (MCOR_PROGRAM == 4)
+#define MCOR_OF_GRADED (MCOR_PROGRAM == 3)
 
 /* Every device is to give the same bits. Additions and multiplications are exact to the last bit
  * everywhere, and so is fma, slow as it may be where it is no instruction; but a compiler may not
@@ -37,13 +36,6 @@
 /* PoCL makes three functions of a kernel, and would put all of it into each. */
 #define __kernel __kernel MCOR_ONE_COPY
 #endif
-#endif
-
-/* The lattice's kernels are many, and as fast when compiled for size, which takes PoCL about a tenth
- * less time. mcor_end.cl ends this. */
-#if MCOR_OF_LATTICE && MCOR_LANES > 1 && defined(__clang__)
-#define MCOR_FOR_SIZE 1
-#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
 #endif
 
 #define MCOR_CAT_(a, b) a##b
@@ -122,6 +114,10 @@ real mcor_lane_sum(realv v)
 #define MCOR_BATCH MCOR_BATCH_OF(MCOR_LANES)
 #define MCOR_CLUSTER MCOR_CLUSTER_OF(MCOR_LANES)
 #define MCOR_GROUPED_POINTS MCOR_GROUPED_POINTS_OF(MCOR_LANES)
+
+/* A vertex keeps this distance from the ends of its edge, so that vertices of edges which meet in a
+ * node at the iso value stay apart and no triangle loses its area. */
+#define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
 
 /* Masks of a brick's nodes or cells, see mcor_shared.h. */
 #define MCOR_LOW_X 0x1111111111111111UL

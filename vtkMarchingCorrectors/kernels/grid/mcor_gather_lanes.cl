@@ -453,10 +453,6 @@ __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
   }
 }
 
-/* Whether the program adds them at points that were not just evaluated, too: where not, there is
- * little to gain from a loop for each number of arrays, which compilers take their time for. */
-#define MCOR_ATTRIBUTES_ALONE (!(MCOR_OF_FIELD && MCOR_FIELD == 2))
-
 #define MCOR_ATTRIBUTE_BEGIN(of_tile, step)                                                        \
   mcor_attribute_begin(                                                                            \
     grid, query, points, reach, of_tile, step, count, stride, attributes, weight, &w, sums)
@@ -470,7 +466,7 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
   __global const real* attributes, realv sums[MCOR_ATTRIBUTE_LIMIT], realv* weight_sum)
 {
   const bool known = evaluated && reach->tile.complete;
-  const bool of_tile = MCOR_ATTRIBUTES_ALONE && MCOR_PARTS > 1 && !known &&
+  const bool of_tile = MCOR_PARTS > 1 && !known &&
     count <= MCOR_ATTRIBUTE_STEP && mcor_reach_is_tile(grid, query, points);
   realv w = 0;
   bool first = true;
@@ -484,11 +480,7 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
       weight[i] = MCOR_REACH(reach, weight, i) * reach->w[i];
       w += weight[i];
     }
-    if (!known && !MCOR_ATTRIBUTES_ALONE)
-    {
-      MCOR_ATTRIBUTE_BEGIN(false, MCOR_ATTRIBUTE_STEP);
-    }
-    else if (!known)
+    if (!known)
     {
       of_tile ? MCOR_ATTRIBUTE_BEGIN_ANY(true) : MCOR_ATTRIBUTE_BEGIN_ANY(false);
     }

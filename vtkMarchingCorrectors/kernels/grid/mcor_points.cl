@@ -16,6 +16,7 @@
 
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
+#if !MCOR_OF_LATTICE
 /* Points: lattice node plus offset in cubes. */
 typedef struct
 {
@@ -25,6 +26,7 @@ typedef struct
   /* The box of each part, in cubes from the query's origin. */
   real center[3][MCOR_PARTS], half_size[3][MCOR_PARTS];
 } mcor_points;
+#endif
 
 bool mcor_same_brick(int4 a, int4 b)
 {
@@ -68,6 +70,7 @@ mcor_grouping mcor_group_start(int4 node)
   return grouping;
 }
 
+#if MCOR_OF_LATTICE
 /* One work-item = MCOR_GROUPED_POINTS points, of `count` from `first`. Writes 1 where a group
  * starts. */
 __kernel void mcor_group_count(
@@ -87,6 +90,7 @@ __kernel void mcor_group_count(
   }
 }
 
+#else
 /* Gives the points of a group to lanes; `from` is the point to load in each lane. */
 void mcor_points_place(
   __global const int4* node, int begin, int end, mcor_points* points, int from[MCOR_LANES])
@@ -220,3 +224,4 @@ void mcor_points_from(
   d[1] = (at[1] - y) + points->oy;
   d[2] = (at[2] - z) + points->oz;
 }
+#endif

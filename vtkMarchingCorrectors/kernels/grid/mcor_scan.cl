@@ -29,8 +29,21 @@ __kernel void mcor_scan_sum(
   sums[segment] = sum;
 }
 
-/* One work-group of 64 in all; a work-item = a 64th of the sums. Reads the segment sums. Writes their
- * exclusive prefix sums. */
+#if MCOR_LANES > 1
+/* One work-item in all, as a CPU has few segments. Reads the segment sums. Writes their exclusive prefix
+ * sums. */
+__kernel void mcor_scan_top(const int segments, __global long* sums)
+{
+  long sum = 0;
+  for (int i = 0; i < segments && get_global_id(0) == 0; ++i)
+  {
+    const long s = sums[i];
+    sums[i] = sum;
+    sum += s;
+  }
+}
+#else
+/* The same by one work-group of 64; a work-item = a 64th of the sums. */
 __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
   const int segments, __global long* sums)
 {
@@ -57,6 +70,8 @@ __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
     sum += s;
   }
 }
+
+#endif
 
 /* One work-item = one segment. Reads counts, and the scanned segment sums if there are several. Writes
  * the exclusive prefix sums in place of the counts; element `count` becomes the total, and so does

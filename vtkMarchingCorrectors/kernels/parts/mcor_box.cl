@@ -8,7 +8,6 @@
   const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,     \
     const int last_z
 
-#if !MCOR_OF_FIELD
 /* Those of a brick's cells that are in the box. */
 ulong mcor_box_cells(MCOR_BOX_PARAMS, int4 brick)
 {
@@ -24,9 +23,7 @@ ulong mcor_box_cells(MCOR_BOX_PARAMS, int4 brick)
 }
 
 #define MCOR_BOX_ARGS first_x, first_y, first_z, last_x, last_y, last_z
-#endif
 
-#if MCOR_OF_LATTICE
 /* Whether the box's cells have nodes among those of a cube, `size` nodes long. */
 bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
 {
@@ -104,9 +101,7 @@ __kernel void mcor_box_mark(const int brick_count, const int blocks_x, const int
     to += count;
   }
 }
-#endif
 
-#if MCOR_OF_OPTIONS
 /* The same, where the field decided on the topology. */
 __kernel void mcor_box_mark_resolved(const int brick_count, const int blocks_x,
   const int blocks_y, __global const int4* bricks,
@@ -138,9 +133,7 @@ __kernel void mcor_box_mark_resolved(const int brick_count, const int blocks_x,
     to += count;
   }
 }
-#endif
 
-#if MCOR_OF_FIELD
 /* One work-item = one batch of triangles. Reads what mcor_trim_count did. Writes to what remains of a
  * triangle the cell it was in. */
 __kernel void mcor_box_trim(const int triangle_count, __global const int* triangles,
@@ -168,4 +161,3 @@ __kernel void mcor_box_trim(const int triangle_count, __global const int* triang
     }
   }
 }
-#endif

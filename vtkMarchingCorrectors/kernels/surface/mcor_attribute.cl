@@ -40,7 +40,7 @@ MCOR_ONE_COPY void mcor_attribute_group(const mcor_grid* grid, mcor_query* query
   }
 }
 
-#if MCOR_FIELD == 2 ? MCOR_OF_OPTIONS : MCOR_OF_FIELD
+#if MCOR_OF_FIELD
 /* One work-item = one group of points. Writes the means there. */
 __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
@@ -59,9 +59,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   mcor_tile_init(&reach.tile);
   mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
-#endif
 
-#if MCOR_OF_FIELD
 /* Updates each point's nearest fluid particle from those that reach it, or from all within the
  * query's radius and maybe more. Those that do not reach it may be too far away for positions that
  * count from the query's origin: differences are made first. */

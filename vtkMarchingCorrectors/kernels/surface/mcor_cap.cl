@@ -3,7 +3,6 @@
 
 /* Caps, which close the surface at the sides of a period. */
 
-#if MCOR_OF_OPTIONS
 /* One work-item = one group of points. Writes value, gradient, weight and attributes there. */
 __kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
   __global const int4* node, const real iso, __global real4* offset, __global real* value,
@@ -35,4 +34,3 @@ __kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global 
     }
   }
 }
-#endif

@@ -62,10 +62,6 @@ MCOR_ONE_COPY void mcor_points_store(const mcor_points* points, const mcor_field
   weight[v] = MCOR_GET(at->weight, lane);
 }
 
-/* A vertex keeps this distance from the ends of its edge, so that vertices of edges which meet in a
- * node at the iso value stay apart and no triangle loses its area. */
-#define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
-
 /* Where the gradient is small, a small residual alone may be far from the surface: along the edge,
  * a vertex is also to come this close. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
@@ -171,7 +167,6 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
-#if MCOR_OF_FIELD
 /* One work-item = one group of vertices. Reads edges and end values (against iso). Writes position
  * (node, offset), linear less final position along the edge, value, gradient and trimming weight,
  * how many evaluations were made, and attributes. limit 0: no correction (preview). */
@@ -214,4 +209,3 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     }
   }
 }
-#endif

@@ -6,7 +6,7 @@
  * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
  * there. */
 
-#if !MCOR_OF_LATTICE
+#if MCOR_OF_LATTICE
 /* Bits 0..2: corner above the threshold. One at the threshold is outside, for every triangle around
  * it, so that what remains is a manifold there, too, and one which merely touches the threshold
  * leaves nothing [Fig. 3 b]. */
@@ -18,20 +18,6 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
     inside |= (weight[t[c]] > threshold) << c;
   }
   return inside;
-}
-
-/* One work-item = one vertex. Writes how far it is inside, of a threshold of `quantity` and of the
- * fluid's share of the weight, whichever is nearer: what is trimmed by, its threshold being 0. */
-__kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
-  __global const real* weight, __global const real4* gradient, const real fluid_share,
-  __global real* margin)
-{
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    const real share = gradient[i].w - fluid_share * weight[i];
-    margin[i] = MCOR_FIELD == 2 ? share : fmin(quantity[i] - threshold, share);
-  }
 }
 
 /* One work-item = one batch of triangles. Writes how many triangles remain of them, and their cut
@@ -170,6 +156,22 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const real4 to = offset[b] * (real)(1 << above) + (real4)(d.x, d.y, d.z, 0);
   node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
   offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
+}
+#endif
+
+#if MCOR_OF_FIELD
+/* One work-item = one vertex. Writes how far it is inside, of a threshold of `quantity` and of the
+ * fluid's share of the weight, whichever is nearer: what is trimmed by, its threshold being 0. */
+__kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
+  __global const real* weight, __global const real4* gradient, const real fluid_share,
+  __global real* margin)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    const real share = gradient[i].w - fluid_share * weight[i];
+    margin[i] = MCOR_FIELD == 2 ? share : fmin(quantity[i] - threshold, share);
+  }
 }
 
 /* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */
@@ -323,9 +325,9 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     gradient, weight, flag, MCOR_ATTRIBUTE_ARGS
 
 /* What the next two kernels do. */
-void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
+void mcor_trim_solve_group(
+  const mcor_grid* grid, int group, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
 {
-  const int group = get_global_id(0);
   if (group >= group_count)
   {
     return;
@@ -360,14 +362,14 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
 __kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;
-  mcor_trim_solve_group(&grid, false, MCOR_TRIM_SOLVE_ARGS);
+  mcor_trim_solve_group(&grid, get_global_id(0), false, MCOR_TRIM_SOLVE_ARGS);
 }
 
 /* The same for the boundary eigenvalue; the linear cut also stays where it has no gradient. */
 __kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;
-  mcor_trim_solve_group(&grid, true, MCOR_TRIM_SOLVE_ARGS);
+  mcor_trim_solve_group(&grid, get_global_id(0), true, MCOR_TRIM_SOLVE_ARGS);
 }
 #endif
 

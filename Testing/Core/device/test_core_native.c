@@ -1,0 +1,348 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The built-in device: its functions against PoCL's, its threads, its objects. */
+
+#include "core_fixture.h"
+#include "mcor_pool.h"
+
+#include <fenv.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* native_functions.cl, compiled ahead. */
+void test_native(unsigned number, void* const* arguments, size_t first, size_t last);
+extern const char test_native_kernels[];
+
+enum
+{
+  ITEMS = 4096,
+  ITEM_BYTES = 128, /* of the largest type */
+  BYTES = ITEMS * ITEM_BYTES
+};
+
+/* Numbers at which functions differ, as float and as double. */
+static const float extremes[] = { 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, 1.5f, 2.5f, -2.5f, 1e-45f, -1e-45f,
+  1.17549435e-38f, 1.1754942e-38f, 3.4028235e38f, -3.4028235e38f, 8388607.5f, 16777217.0f, -0.49999997f,
+  0.49999997f, 1e10f, -1e10f, 0x1p-126f, 0x1p127f };
+
+/* Bits of numbers of `size` bytes: extreme ones, infinite ones, NaN, small integers, and any. */
+static void fill(unsigned char* bytes, size_t size, uint64_t seed)
+{
+  const size_t many = sizeof extremes / sizeof extremes[0];
+  for (size_t i = 0; i < BYTES / size; ++i)
+  {
+    const uint64_t kind = (random_bits(&seed) >> 20) % 8, pick = random_bits(&seed) >> 20;
+    const float real = kind == 0 ? 1.0f / 0.0f * (pick & 1 ? 1.0f : -1.0f)
+      : kind == 1                ? 0.0f / 0.0f
+      : kind < 5                 ? extremes[pick % many]
+                                 : (float)(int)(pick % 41) - 20;
+    const double wide = kind == 4 ? (double)real * 0x1p-1000 : (double)real;
+    const uint64_t any = random_bits(&seed);
+    memcpy(bytes + i * size, kind == 7 ? (const void*)&any
+        : size == 4                    ? (const void*)&real
+                                       : (const void*)&wide,
+      size);
+  }
+}
+
+static int is_nan(const unsigned char* bytes, size_t size)
+{
+  float single;
+  double wide;
+  memcpy(&single, bytes, sizeof single);
+  memcpy(&wide, bytes, size == 8 ? sizeof wide : 0);
+  return size == 4 ? single != single : wide != wide;
+}
+
+/* Runs a kernel of a driver, whose last argument is read and written. */
+static void run_driver(mcor_context* context, cl_program program, const char* name,
+  unsigned char* const data[4])
+{
+  const mcor_cl* cl = &context->cl;
+  const size_t items = ITEMS;
+  cl_int error;
+  cl_kernel kernel = clCreateKernel(program, name, &error);
+  assert_int_equal(error, CL_SUCCESS);
+  mcor_buffer buffers[4] = { { 0 } };
+  for (int i = 0; i < 4; ++i)
+  {
+    CORE_OK(context, mcor_write(context, &buffers[i], data[i], BYTES));
+    assert_int_equal(
+      clSetKernelArg(kernel, (cl_uint)i, sizeof(cl_mem), &buffers[i].mem), CL_SUCCESS);
+  }
+  assert_int_equal(
+    clEnqueueNDRangeKernel(cl->queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL), CL_SUCCESS);
+  CORE_OK(context, mcor_read(context, &buffers[3], 0, data[3], BYTES));
+  for (int i = 0; i < 4; ++i)
+  {
+    mcor_release(context, &buffers[i]);
+  }
+  clReleaseKernel(kernel);
+}
+
+static cl_program build(mcor_context* context)
+{
+  static char text[1 << 16];
+  const char* source = text;
+  cl_int error;
+  FILE* file = fopen(CORE_NATIVE_FUNCTIONS, "r");
+  assert_non_null(file);
+  assert_true(fread(text, 1, sizeof text - 1, file) > 1000);
+  fclose(file);
+  cl_program program = clCreateProgramWithSource(context->cl.context, 1, &source, NULL, &error);
+  assert_int_equal(error, CL_SUCCESS);
+  assert_int_equal(
+    clBuildProgram(program, 1, &context->cl.device,
+      "-w -cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt", NULL, NULL),
+    CL_SUCCESS);
+  return program;
+}
+
+/* Bytes of the numbers that a kernel returns. */
+static size_t result_size(const char* name)
+{
+  const int wide = strstr(name, "_double") || strncmp(name, "try_double", 10) == 0 ||
+    strncmp(name, "try_long", 8) == 0 || strncmp(name, "try_ulong", 9) == 0;
+  return wide && !strstr(name, "_float") && !strstr(name, "_any") && !strstr(name, "_all") ? 8 : 4;
+}
+
+static void test_functions(void** state)
+{
+  (void)state;
+  mcor_context* context = NULL;
+  if (mcor_create_context("pocl", &context) != MCOR_OK)
+  {
+    mcor_free_context(context);
+    skip();
+  }
+  cl_program program = build(context);
+  unsigned char* data[5];
+  for (int i = 0; i < 5; ++i)
+  {
+    data[i] = aligned_alloc(ITEM_BYTES, BYTES);
+    assert_non_null(data[i]);
+  }
+  unsigned number = 0;
+  for (const char* at = test_native_kernels; *at; at = strchr(at, ';') + 1, ++number)
+  {
+    char name[64] = "";
+    memcpy(name, at, strcspn(at, ";"));
+    const size_t size = result_size(name);
+    for (int i = 0; i < 3; ++i)
+    {
+      fill(data[i], size, 7u * number + (unsigned)i);
+    }
+    memset(data[3], 0, BYTES);
+    memset(data[4], 0, BYTES);
+    run_driver(context, program, name, data);
+    void* const arguments[] = { &data[0], &data[1], &data[2], &data[4] };
+    test_native(number, arguments, 0, ITEMS);
+    for (size_t i = 0; i < BYTES; i += size)
+    {
+      if (memcmp(data[3] + i, data[4] + i, size) != 0 &&
+        !(is_nan(data[3] + i, size) && is_nan(data[4] + i, size)))
+      {
+        fail_msg("%s differs in number %zu", name, i / size);
+      }
+    }
+  }
+  assert_true(number > 150);
+  for (int i = 0; i < 5; ++i)
+  {
+    free(data[i]);
+  }
+  clReleaseProgram(program);
+  mcor_free_context(context);
+}
+
+/* ---- Threads ---- */
+
+typedef struct
+{
+  unsigned char seen[100000];
+  int rounding;
+} marks;
+
+static void mark(void* data, size_t first, size_t last)
+{
+  marks* m = data;
+  for (size_t i = first; i < last; ++i)
+  {
+    ++m->seen[i];
+  }
+  if (fegetround() != FE_TONEAREST)
+  {
+    m->rounding = 1;
+  }
+}
+
+static void check_loops(mcor_pool* pool)
+{
+  marks* m = calloc(1, sizeof *m);
+  assert_non_null(m);
+  for (int i = 0; i < 200; ++i)
+  {
+    const size_t first = (size_t)i, last = sizeof m->seen - (size_t)i * 7;
+    memset(m->seen, 0, sizeof m->seen);
+    mcor_pool_run(pool, first, last, (size_t)(1 + i * i), mark, m);
+    for (size_t k = 0; k < sizeof m->seen; ++k)
+    {
+      assert_int_equal(m->seen[k], k >= first && k < last);
+    }
+  }
+  assert_int_equal(m->rounding, 0);
+  free(m);
+}
+
+static void test_loops(void** state)
+{
+  (void)state;
+  for (int threads = 1; threads < 9; ++threads)
+  {
+    mcor_pool* pool = mcor_make_pool(threads);
+    assert_non_null(pool);
+    fesetround(FE_UPWARD); /* the caller's own affair */
+    check_loops(pool);
+    assert_int_equal(fegetround(), FE_UPWARD);
+    fesetround(FE_TONEAREST);
+    mcor_free_pool(pool);
+  }
+  mcor_free_pool(NULL);
+}
+
+static void* loops(void* pool)
+{
+  check_loops(pool);
+  return NULL;
+}
+
+static void test_callers_take_turns(void** state)
+{
+  (void)state;
+  mcor_pool* pool = mcor_make_pool(3);
+  pthread_t threads[4];
+  for (int t = 0; t < 4; ++t)
+  {
+    assert_int_equal(pthread_create(&threads[t], NULL, loops, pool), 0);
+  }
+  for (int t = 0; t < 4; ++t)
+  {
+    pthread_join(threads[t], NULL);
+  }
+  mcor_free_pool(pool);
+}
+
+/* ---- The device ---- */
+
+static uint64_t extract(mcor_context* context)
+{
+  core_set set = core_make_block(9, 0.3, 3, core_ball);
+  const double iso = 3;
+  const mcor_input input = core_input(&set);
+  const mcor_options options = core_options(&iso);
+  mcor_surface surface = core_extract(context, &input, &options);
+  assert_true(surface.triangle_count > 100);
+  const uint64_t hash = core_hash(&surface);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+  return hash;
+}
+
+static mcor_context* make_native(void)
+{
+  mcor_context* context = NULL;
+  CORE_OK(context, mcor_create_context("built in", &context));
+  return context;
+}
+
+/* A process made by fork goes on with threads of its own. */
+static void test_fork(void** state)
+{
+  (void)state;
+  mcor_context* context = make_native();
+  const uint64_t hash = extract(context);
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    const int same = extract(context) == hash;
+    mcor_free_context(context);
+    _exit(same ? 0 : 1);
+  }
+  int status = -1;
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_int_equal(status, 0);
+  assert_true(extract(context) == hash);
+  mcor_free_context(context);
+}
+
+static void* extract_alone(void* hash)
+{
+  mcor_context* context = make_native();
+  *(uint64_t*)hash = extract(context);
+  mcor_free_context(context);
+  return NULL;
+}
+
+static void test_contexts_side_by_side(void** state)
+{
+  (void)state;
+  pthread_t threads[4];
+  uint64_t hashes[4];
+  for (int t = 0; t < 4; ++t)
+  {
+    assert_int_equal(pthread_create(&threads[t], NULL, extract_alone, &hashes[t]), 0);
+  }
+  for (int t = 0; t < 4; ++t)
+  {
+    pthread_join(threads[t], NULL);
+    assert_true(hashes[t] == hashes[0]);
+  }
+}
+
+static void test_threads_of_environment(void** state)
+{
+  (void)state;
+  setenv("MCOR_THREADS", "1", 1);
+  mcor_context* context = make_native();
+  assert_int_equal(context->cl.units, 1);
+  const uint64_t hash = extract(context);
+  mcor_free_context(context);
+  unsetenv("MCOR_THREADS");
+  context = make_native();
+  assert_true(extract(context) == hash);
+  mcor_free_context(context);
+}
+
+/* What was not compiled is done by a driver, if none is named, and refused else. */
+static void test_what_was_not_compiled(void** state)
+{
+  (void)state;
+  core_set set = core_make_block(7, 0.3, 3, core_ball);
+  const double iso = 2;
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  setenv("MCOR_LANES", "1", 1); /* of a GPU's form nothing is */
+  mcor_context* context = make_native();
+  mcor_surface surface;
+  assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
+  assert_non_null(strstr(mcor_last_error(context), "were not compiled with this library"));
+  unsetenv("MCOR_LANES");
+  CORE_OK(context, mcor_extract(context, &input, &options, &surface));
+  mcor_free_surface(&surface);
+  mcor_free_context(context);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
+    cmocka_unit_test(test_loops), cmocka_unit_test(test_callers_take_turns),
+    cmocka_unit_test(test_fork), cmocka_unit_test(test_contexts_side_by_side),
+    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_what_was_not_compiled) };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

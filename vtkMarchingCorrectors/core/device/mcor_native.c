@@ -1,0 +1,652 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The built-in device's objects, memory, programs and kernels. A buffer is memory of the host, and a
+ * command queue has nothing in it. */
+
+#if !defined(_WIN32) && !defined(_DEFAULT_SOURCE)
+#define _DEFAULT_SOURCE /* for sysconf's names */
+#endif
+
+#include "mcor_native.h"
+#include "mcor_parallel.h"
+#include "mcor_pool.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define MCOR_ARGUMENT_LIMIT 64
+#define MCOR_BUFFER_ALIGNMENT 128
+/* Work-groups of one work-item, in which the host launches what takes long, make a launch worth waking
+ * threads; of 64, in which it launches what takes some nanoseconds, many do. */
+#define MCOR_FEW_LIGHT_ITEMS 8192
+/* Parts of a launch for each thread, as work-items differ; and work-items of a part, at most. */
+#define MCOR_PARTS_PER_THREAD 16
+#define MCOR_PART_ITEMS 4096
+
+extern const cl_icd_dispatch mcor_native_table;
+
+struct _cl_platform_id
+{
+  const cl_icd_dispatch* table;
+};
+
+struct _cl_device_id
+{
+  const cl_icd_dispatch* table;
+  cl_uint units; /* of a part of the CPU; 0: all of it */
+};
+
+struct _cl_context
+{
+  const cl_icd_dispatch* table;
+  cl_uint units;
+  mcor_pool* pool; /* from the first launch on */
+  long process;    /* whose threads those are */
+};
+
+struct _cl_command_queue
+{
+  const cl_icd_dispatch* table;
+  cl_context context;
+};
+
+struct _cl_mem
+{
+  const cl_icd_dispatch* table;
+  char* data;
+};
+
+struct _cl_program
+{
+  const cl_icd_dispatch* table;
+  const mcor_native_program* program; /* NULL: not built */
+};
+
+struct _cl_kernel
+{
+  const cl_icd_dispatch* table;
+  const mcor_native_program* program;
+  unsigned number;
+  cl_uint count;
+  const char* kinds; /* see mcor_native_program */
+  char values[MCOR_ARGUMENT_LIMIT][8];
+  void* arguments[MCOR_ARGUMENT_LIMIT];
+};
+
+struct _cl_event
+{
+  const cl_icd_dispatch* table;
+  cl_ulong start, end; /* ns */
+};
+
+static struct _cl_platform_id mcor_platform = { &mcor_native_table };
+static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
+
+/* ---- Platform and device ---- */
+
+/* The best of the instruction sets for which programs are compiled. */
+static mcor_instructions mcor_best_instructions(void)
+{
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+    __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+    __builtin_cpu_supports("avx512vl");
+  return v4 ? MCOR_INSTRUCTIONS_V4 : v3 ? MCOR_INSTRUCTIONS_V3 : MCOR_INSTRUCTIONS_BASE;
+#else
+  return MCOR_INSTRUCTIONS_BASE;
+#endif
+}
+
+static const char* mcor_device_text(void)
+{
+  static const char* const texts[] = { "built in: this CPU", "built in: this CPU, AVX2",
+    "built in: this CPU, AVX-512" };
+  return texts[mcor_best_instructions()];
+}
+
+cl_platform_id mcor_native_platform(void)
+{
+  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
+  {
+    if (p->instructions <= mcor_best_instructions())
+    {
+      return &mcor_platform;
+    }
+  }
+  return NULL;
+}
+
+/* Threads that compute, the calling one included; MCOR_THREADS of the environment: at most. */
+static cl_uint mcor_units(cl_uint units)
+{
+  const char* text = getenv("MCOR_THREADS");
+  const int limit = text ? atoi(text) : 0, usable = units > 0 ? (int)units : mcor_processors(1);
+  return (cl_uint)(limit > 0 && limit < usable ? limit : usable);
+}
+
+/* Of the machine. What other programs use, nobody can know. */
+static cl_ulong mcor_memory(void)
+{
+  const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+  return pages > 0 && page > 0 ? (cl_ulong)pages * (cl_ulong)page : (cl_ulong)1 << 32;
+}
+
+/* Answers a question: `size` bytes at `from`. */
+static cl_int mcor_answer(const void* from, size_t size, size_t room, void* to, size_t* needed)
+{
+  if (needed)
+  {
+    *needed = size;
+  }
+  if (to && room < size)
+  {
+    return CL_INVALID_VALUE;
+  }
+  if (to)
+  {
+    memcpy(to, from, size);
+  }
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_answer_text(const char* text, size_t room, void* to, size_t* needed)
+{
+  return mcor_answer(text, strlen(text) + 1, room, to, needed);
+}
+
+static cl_int mcor_platform_info(
+  cl_platform_id platform, cl_platform_info what, size_t room, void* to, size_t* needed)
+{
+  (void)platform;
+  return what == CL_PLATFORM_NAME ? mcor_answer_text("built in", room, to, needed)
+                                  : CL_INVALID_VALUE;
+}
+
+static cl_int mcor_device_ids(
+  cl_platform_id platform, cl_device_type type, cl_uint room, cl_device_id* devices, cl_uint* count)
+{
+  (void)platform;
+  if (!(type & (CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_DEFAULT)))
+  {
+    return CL_DEVICE_NOT_FOUND;
+  }
+  if (devices && room > 0)
+  {
+    devices[0] = &mcor_device;
+  }
+  if (count)
+  {
+    *count = 1;
+  }
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_device_info(
+  cl_device_id device, cl_device_info what, size_t room, void* to, size_t* needed)
+{
+  const cl_device_type type = CL_DEVICE_TYPE_CPU;
+  const cl_uint units = mcor_units(device->units);
+  const cl_uint width = mcor_best_instructions() == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
+  const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
+    CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
+  const cl_ulong memory = mcor_memory();
+  switch (what)
+  {
+    case CL_DEVICE_NAME:
+      return mcor_answer_text(mcor_device_text(), room, to, needed);
+    case CL_DEVICE_TYPE:
+      return mcor_answer(&type, sizeof type, room, to, needed);
+    case CL_DEVICE_MAX_COMPUTE_UNITS:
+      return mcor_answer(&units, sizeof units, room, to, needed);
+    case CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT:
+      return mcor_answer(&width, sizeof width, room, to, needed);
+    case CL_DEVICE_SINGLE_FP_CONFIG:
+    case CL_DEVICE_DOUBLE_FP_CONFIG:
+      return mcor_answer(&rounding, sizeof rounding, room, to, needed);
+    case CL_DEVICE_GLOBAL_MEM_SIZE:
+    case CL_DEVICE_MAX_MEM_ALLOC_SIZE:
+      return mcor_answer(&memory, sizeof memory, room, to, needed);
+    default:
+      return CL_INVALID_VALUE;
+  }
+}
+
+/* Parts of the CPU are counts of threads: the system's scheduler sees to the rest. */
+static cl_int mcor_sub_devices(cl_device_id device, const cl_device_partition_property* how,
+  cl_uint room, cl_device_id* made, cl_uint* count)
+{
+  const cl_uint each = (cl_uint)how[1], parts = each > 0 ? mcor_units(device->units) / each : 0;
+  if (how[0] != CL_DEVICE_PARTITION_EQUALLY || parts == 0)
+  {
+    return CL_DEVICE_PARTITION_FAILED;
+  }
+  if (count)
+  {
+    *count = parts;
+  }
+  for (cl_uint i = 0; made && i < parts && i < room; ++i)
+  {
+    made[i] = malloc(sizeof *made[i]);
+    if (!made[i])
+    {
+      while (i > 0)
+      {
+        free(made[--i]);
+      }
+      return CL_OUT_OF_HOST_MEMORY;
+    }
+    *made[i] = (struct _cl_device_id){ &mcor_native_table, each };
+  }
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_release_device(cl_device_id device)
+{
+  if (device != &mcor_device)
+  {
+    free(device);
+  }
+  return CL_SUCCESS;
+}
+
+/* ---- Objects ---- */
+
+/* A new object, all zero but its table; NULL and the error where there is no memory. */
+static void* mcor_make_object(size_t size, cl_int no_memory, cl_int* error)
+{
+  struct _cl_platform_id* object = calloc(1, size);
+  if (object)
+  {
+    object->table = &mcor_native_table;
+  }
+  *error = object ? CL_SUCCESS : no_memory;
+  return object;
+}
+
+static cl_context mcor_make_context(const cl_context_properties* properties, cl_uint count,
+  const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
+  void* user, cl_int* error)
+{
+  (void)properties;
+  (void)count;
+  (void)notify;
+  (void)user;
+  cl_context context = mcor_make_object(sizeof *context, CL_OUT_OF_HOST_MEMORY, error);
+  if (context)
+  {
+    context->units = mcor_units(devices[0]->units);
+  }
+  return context;
+}
+
+static cl_int mcor_release_context(cl_context context)
+{
+  if (context->process == (long)getpid())
+  {
+    mcor_free_pool(context->pool);
+  }
+  free(context);
+  return CL_SUCCESS;
+}
+
+static cl_command_queue mcor_make_queue(
+  cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* error)
+{
+  (void)device;
+  (void)properties;
+  cl_command_queue queue = mcor_make_object(sizeof *queue, CL_OUT_OF_HOST_MEMORY, error);
+  if (queue)
+  {
+    queue->context = context;
+  }
+  return queue;
+}
+
+static cl_int mcor_release_queue(cl_command_queue queue)
+{
+  free(queue);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_finish_queue(cl_command_queue queue)
+{
+  (void)queue;
+  return CL_SUCCESS;
+}
+
+static cl_ulong mcor_now(void)
+{
+  struct timespec now;
+  timespec_get(&now, TIME_UTC);
+  return (cl_ulong)now.tv_sec * 1000000000u + (cl_ulong)now.tv_nsec;
+}
+
+static cl_int mcor_event_time(
+  cl_event event, cl_profiling_info what, size_t room, void* to, size_t* needed)
+{
+  return mcor_answer(what == CL_PROFILING_COMMAND_START ? &event->start : &event->end,
+    sizeof event->end, room, to, needed);
+}
+
+static cl_int mcor_release_event(cl_event event)
+{
+  free(event);
+  return CL_SUCCESS;
+}
+
+/* ---- Buffers ---- */
+
+static cl_mem mcor_make_buffer(
+  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
+{
+  (void)context;
+  (void)flags;
+  (void)host;
+  const size_t padded = (size + MCOR_BUFFER_ALIGNMENT - 1) / MCOR_BUFFER_ALIGNMENT;
+  cl_mem buffer = mcor_make_object(sizeof *buffer, CL_MEM_OBJECT_ALLOCATION_FAILURE, error);
+  if (buffer)
+  {
+    buffer->data = aligned_alloc(MCOR_BUFFER_ALIGNMENT, padded * MCOR_BUFFER_ALIGNMENT);
+    if (!buffer->data)
+    {
+      free(buffer);
+      *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+      return NULL;
+    }
+  }
+  return buffer;
+}
+
+static cl_int mcor_release_buffer(cl_mem buffer)
+{
+  free(buffer->data);
+  free(buffer);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_read_buffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+  size_t offset, size_t size, void* to, cl_uint count, const cl_event* wait, cl_event* event)
+{
+  (void)queue, (void)blocking, (void)count, (void)wait, (void)event;
+  memcpy(to, buffer->data + offset, size);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_write_buffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+  size_t offset, size_t size, const void* from, cl_uint count, const cl_event* wait,
+  cl_event* event)
+{
+  (void)queue, (void)blocking, (void)count, (void)wait, (void)event;
+  memcpy(buffer->data + offset, from, size);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_copy_buffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
+  size_t to_offset, size_t size, cl_uint count, const cl_event* wait, cl_event* event)
+{
+  (void)queue, (void)count, (void)wait, (void)event;
+  memcpy(to->data + to_offset, from->data + from_offset, size);
+  return CL_SUCCESS;
+}
+
+/* Patterns are bytes here. */
+static cl_int mcor_fill_buffer(cl_command_queue queue, cl_mem buffer, const void* pattern,
+  size_t pattern_size, size_t offset, size_t size, cl_uint count, const cl_event* wait,
+  cl_event* event)
+{
+  (void)queue, (void)count, (void)wait, (void)event;
+  if (pattern_size != 1)
+  {
+    return CL_INVALID_VALUE;
+  }
+  memset(buffer->data + offset, *(const unsigned char*)pattern, size);
+  return CL_SUCCESS;
+}
+
+static void* mcor_map_buffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+  cl_map_flags flags, size_t offset, size_t size, cl_uint count, const cl_event* wait,
+  cl_event* event, cl_int* error)
+{
+  (void)queue, (void)blocking, (void)flags, (void)size, (void)count, (void)wait, (void)event;
+  *error = CL_SUCCESS;
+  return buffer->data + offset;
+}
+
+static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* mapped, cl_uint count,
+  const cl_event* wait, cl_event* event)
+{
+  (void)queue, (void)buffer, (void)mapped, (void)count, (void)wait, (void)event;
+  return CL_SUCCESS;
+}
+
+/* ---- Programs and kernels ---- */
+
+/* The program of these options for this processor; NULL: none. */
+static const mcor_native_program* mcor_find_program(const char* options)
+{
+  const mcor_instructions best = mcor_best_instructions();
+  const char* own = strstr(options, "-DMCOR_PROGRAM");
+  const mcor_native_program* found = NULL;
+  for (const mcor_native_program* p = mcor_native_programs; own && p->options; ++p)
+  {
+    if (p->instructions <= best && strcmp(p->options, own) == 0 &&
+      (!found || p->instructions > found->instructions))
+    {
+      found = p;
+    }
+  }
+  return found;
+}
+
+bool mcor_native_has(const char* options)
+{
+  return mcor_find_program(options) != NULL;
+}
+
+/* The sources are those that were compiled. */
+static cl_program mcor_make_program(
+  cl_context context, cl_uint count, const char** texts, const size_t* lengths, cl_int* error)
+{
+  (void)context, (void)count, (void)texts, (void)lengths;
+  cl_program program = mcor_make_object(sizeof *program, CL_OUT_OF_HOST_MEMORY, error);
+  return program;
+}
+
+static cl_program mcor_load_binary(cl_context context, cl_uint count, const cl_device_id* devices,
+  const size_t* sizes, const unsigned char** binaries, cl_int* loaded, cl_int* error)
+{
+  (void)context, (void)count, (void)devices, (void)sizes, (void)binaries;
+  *loaded = *error = CL_INVALID_BINARY;
+  return NULL;
+}
+
+static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_device_id* devices,
+  const char* options, void(CL_CALLBACK* notify)(cl_program, void*), void* user)
+{
+  (void)count, (void)devices, (void)notify, (void)user;
+  program->program = mcor_find_program(options);
+  return program->program ? CL_SUCCESS : CL_BUILD_PROGRAM_FAILURE;
+}
+
+static cl_int mcor_release_program(cl_program program)
+{
+  free(program);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_build_info(cl_program program, cl_device_id device, cl_program_build_info what,
+  size_t room, void* to, size_t* needed)
+{
+  (void)program, (void)device, (void)what;
+  return mcor_answer_text("These kernels were not compiled with the library.", room, to, needed);
+}
+
+static cl_int mcor_program_info(
+  cl_program program, cl_program_info what, size_t room, void* to, size_t* needed)
+{
+  const size_t none = 0;
+  return what == CL_PROGRAM_KERNEL_NAMES
+    ? mcor_answer_text(program->program->kernels, room, to, needed)
+    : what == CL_PROGRAM_BINARY_SIZES ? mcor_answer(&none, sizeof none, room, to, needed)
+                                      : CL_INVALID_VALUE;
+}
+
+static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* error)
+{
+  const size_t length = strlen(name);
+  const char *at = program->program->kernels, *kinds = program->program->arguments;
+  unsigned number = 0;
+  for (; *at && !(strncmp(at, name, length) == 0 && at[length] == ';'); ++number)
+  {
+    at = strchr(at, ';') + 1;
+    kinds = strchr(kinds, ';') + 1;
+  }
+  if (!*at)
+  {
+    *error = CL_INVALID_KERNEL_NAME;
+    return NULL;
+  }
+  cl_kernel kernel = mcor_make_object(sizeof *kernel, CL_OUT_OF_HOST_MEMORY, error);
+  if (!kernel)
+  {
+    return NULL;
+  }
+  kernel->program = program->program;
+  kernel->number = number;
+  kernel->kinds = kinds;
+  kernel->count = (cl_uint)strcspn(kinds, ";");
+  for (cl_uint i = 0; i < kernel->count; ++i)
+  {
+    kernel->arguments[i] = kernel->values[i];
+  }
+  return kernel;
+}
+
+static cl_int mcor_release_kernel(cl_kernel kernel)
+{
+  free(kernel);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_set_argument(cl_kernel kernel, cl_uint i, size_t size, const void* value)
+{
+  if (i >= kernel->count)
+  {
+    return CL_INVALID_ARG_INDEX;
+  }
+  if (kernel->kinds[i] == 'b')
+  {
+    const cl_mem buffer = *(const cl_mem*)value;
+    char* const data = buffer ? buffer->data : NULL;
+    memcpy(kernel->values[i], &data, sizeof data);
+    return CL_SUCCESS;
+  }
+  if (size != (size_t)(kernel->kinds[i] - '0'))
+  {
+    return CL_INVALID_ARG_SIZE;
+  }
+  memcpy(kernel->values[i], value, size);
+  return CL_SUCCESS;
+}
+
+static cl_int mcor_kernel_info(
+  cl_kernel kernel, cl_kernel_info what, size_t room, void* to, size_t* needed)
+{
+  return what == CL_KERNEL_NUM_ARGS
+    ? mcor_answer(&kernel->count, sizeof kernel->count, room, to, needed)
+    : CL_INVALID_VALUE;
+}
+
+/* ---- Launches ---- */
+
+static void mcor_run_items(void* data, size_t first, size_t last)
+{
+  const cl_kernel kernel = data;
+  kernel->program->run(kernel->number, kernel->arguments, first, last);
+}
+
+/* A process made by fork has no threads: it gets its own. */
+static mcor_pool* mcor_pool_of(cl_context context)
+{
+  if (!context->pool || context->process != (long)getpid())
+  {
+    context->pool = mcor_make_pool((int)context->units);
+    context->process = (long)getpid();
+  }
+  return context->pool;
+}
+
+static size_t mcor_launch_step(cl_uint units, size_t items, size_t group)
+{
+  const size_t parts = (size_t)units * MCOR_PARTS_PER_THREAD, step = (items + parts - 1) / parts;
+  return group > 1 && items < MCOR_FEW_LIGHT_ITEMS ? items
+    : step < MCOR_PART_ITEMS                       ? step
+                                                   : MCOR_PART_ITEMS;
+}
+
+static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+  const size_t* offset, const size_t* items, const size_t* group, cl_uint count,
+  const cl_event* wait, cl_event* event)
+{
+  (void)dimensions, (void)count, (void)wait;
+  const cl_ulong start = mcor_now();
+  const size_t first = offset ? *offset : 0;
+  mcor_pool* pool = mcor_pool_of(queue->context);
+  if (!pool)
+  {
+    return CL_OUT_OF_HOST_MEMORY;
+  }
+  mcor_pool_run(pool, first, first + *items,
+    mcor_launch_step(queue->context->units, *items, *group), mcor_run_items, kernel);
+  if (event)
+  {
+    cl_int error;
+    *event = mcor_make_object(sizeof **event, CL_OUT_OF_HOST_MEMORY, &error);
+    if (!*event)
+    {
+      return error;
+    }
+    (*event)->start = start;
+    (*event)->end = mcor_now();
+  }
+  return CL_SUCCESS;
+}
+
+const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_info,
+  .clGetDeviceIDs = mcor_device_ids,
+  .clGetDeviceInfo = mcor_device_info,
+  .clCreateSubDevices = mcor_sub_devices,
+  .clReleaseDevice = mcor_release_device,
+  .clCreateContext = mcor_make_context,
+  .clReleaseContext = mcor_release_context,
+  .clCreateCommandQueue = mcor_make_queue,
+  .clReleaseCommandQueue = mcor_release_queue,
+  .clFinish = mcor_finish_queue,
+  .clGetEventProfilingInfo = mcor_event_time,
+  .clReleaseEvent = mcor_release_event,
+  .clCreateBuffer = mcor_make_buffer,
+  .clReleaseMemObject = mcor_release_buffer,
+  .clEnqueueReadBuffer = mcor_read_buffer,
+  .clEnqueueWriteBuffer = mcor_write_buffer,
+  .clEnqueueCopyBuffer = mcor_copy_buffer,
+  .clEnqueueFillBuffer = mcor_fill_buffer,
+  .clEnqueueMapBuffer = mcor_map_buffer,
+  .clEnqueueUnmapMemObject = mcor_unmap_buffer,
+  .clCreateProgramWithSource = mcor_make_program,
+  .clCreateProgramWithBinary = mcor_load_binary,
+  .clBuildProgram = mcor_build_program,
+  .clReleaseProgram = mcor_release_program,
+  .clGetProgramBuildInfo = mcor_build_info,
+  .clGetProgramInfo = mcor_program_info,
+  .clCreateKernel = mcor_make_kernel,
+  .clReleaseKernel = mcor_release_kernel,
+  .clSetKernelArg = mcor_set_argument,
+  .clGetKernelInfo = mcor_kernel_info,
+  .clEnqueueNDRangeKernel = mcor_launch_kernel };

@@ -493,6 +493,27 @@ extern "C"
    * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
   const char* mcor_find_layout(const char* names);
 
+  /* A numeric array of a particle file's field data, in tuples of any size. */
+  typedef struct mcor_field_data
+  {
+    const char* name;     /* may be NULL */
+    const double* values; /* [count]; borrowed until return */
+    int64_t count;
+  } mcor_field_data;
+
+  /* The period that field data tell of: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box where
+   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_rank. Returns how many numbers
+   * `period` has: 6 bounds, as mcor_options.periodic; 3 lengths, for mcor_place_period; 0: no array
+   * tells of a period. which: the number of the array; may be NULL. */
+  int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
+
+  /* Bounds of a period of which only the lengths are known: along each axis from 0 on or around 0, if
+   * the particles, of this extent (x0, x1, ...), lie in them, else from the first particle on. */
+  void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
+
+  /* Whether mcor_find_period looks at arrays of this name. */
+  int mcor_tells_of_period(const char* name);
+
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
 
@@ -530,6 +551,13 @@ extern "C"
    * or memory ran out. Takes what mcor_extract was given and made. */
   char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
+
+  /* A sentence, to be freed with free(), about an array of particle types (MCOR_PARTICLE_TYPE) where
+   * all particles count as fluid: it has counts[i] times values[i]. NULL where such an array tells
+   * nothing, as it has one value, or more than MCOR_PARTICLE_TYPES; or memory ran out. */
+  char* mcor_describe_unused_type(
+    const char* name, const double* values, const int64_t* counts, int count);
+#define MCOR_PARTICLE_TYPES 8
 
   /* The field at points of the caller's choice. Owned; free with mcor_free_samples. */
   typedef struct mcor_samples

@@ -10,9 +10,10 @@
 #include "vtkPoints.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <map>
-#include <sstream>
+#include <memory>
 
 namespace
 {
@@ -214,27 +215,25 @@ bool vtkSPHParticles::CollectSolids()
 }
 
 //------------------------------------------------------------------------------
-// An array of one value, or of many, tells nothing of that sort.
 std::string vtkSPHParticles::DescribeUnusedType()
 {
   vtkDataArray* type = this->Fluid ? nullptr : this->Detect(MCOR_PARTICLE_TYPE);
-  const std::map<double, vtkIdType> counts =
-    type ? vtkMarchingCorrectorsCountValues(type, 8) : std::map<double, vtkIdType>();
-  if (counts.size() < 2)
+  std::vector<double> values;
+  std::vector<std::int64_t> counts;
+  if (type)
   {
-    return {};
+    for (const auto& count : vtkMarchingCorrectorsCountValues(type, MCOR_PARTICLE_TYPES))
+    {
+      values.push_back(count.first);
+      counts.push_back(count.second);
+    }
   }
-  std::ostringstream text;
-  text << "Point array " << Quote(NameOf(type))
-       << " is not used, all particles count as fluid: it has";
-  const char* between = " ";
-  for (const auto& count : counts)
-  {
-    text << between << count.second << " x " << count.first;
-    between = ", ";
-  }
-  text << ". If it tells fluid from walls, name it and the fluid's value.";
-  return text.str();
+  const std::unique_ptr<char, decltype(&std::free)> text(type
+      ? mcor_describe_unused_type(
+          type->GetName(), values.data(), counts.data(), static_cast<int>(values.size()))
+      : nullptr,
+    std::free);
+  return text ? text.get() : "";
 }
 
 //------------------------------------------------------------------------------

@@ -211,7 +211,8 @@ static void test_lattice_limits(void** state)
   CAPACITY("cube size|axis 0|larger", call.set.position[0] = 1e9);
   CAPACITY("cube size|axis 2|larger", call.set.position[2] = -1e300);
   CAPACITY("cube size 1e-09|larger", call.options.cube_size = 1e-9);
-  CAPACITY("1e+15 away from the origin|digits",
+  CAPACITY(
+    "1e+15 away from the origin|digits",
     for (int64_t i = 0; i < 3 * call.set.count; ++i) { call.set.position[i] += 1e15; });
   CAPACITY("cube size", call.options.cube_size_factor = 1e-300);
   CAPACITY("cube size", call.set.smoothing_length[5] = 1e-30);
@@ -570,6 +571,44 @@ static void test_names(void** state)
   (void)state;
 }
 
+/* What lies where: of several the first in the order of the core, and none that is no period. */
+static void test_period_of_field_data(void** state)
+{
+  const double bounds[6] = { -1, 1, 0, 0, 0, 0 }, cube = 2, edges[3] = { 2, 0, 4 };
+  const double box[6] = { -1, 3, -2, 2, 5, 6 }, kinds[3] = { 1, 0, 2 }, empty[6] = { 0 };
+  const double wrong[6] = { 1, -1, 0, 0, 0, 0 }, extent[6] = { -1, 0.5, 0, 1, 7, 8 };
+  mcor_field_data all[] = { { "boundaryType", kinds, 3 }, { "box", box, 6 },
+    { "BoxSize", &cube, 1 }, { "BOX_SIZE", edges, 3 }, { "PeriodicBounds", bounds, 6 },
+    { NULL, bounds, 6 } };
+  double period[6];
+  int which;
+  assert_int_equal(mcor_find_period(all, 6, period, &which), 6);
+  assert_int_equal(which, 4);
+  assert_memory_equal(period, bounds, sizeof bounds);
+  assert_int_equal(mcor_find_period(all, 4, period, &which), 3);
+  assert_int_equal(which, 3);
+  assert_memory_equal(period, edges, sizeof edges);
+  assert_int_equal(mcor_find_period(all, 3, period, NULL), 3);
+  assert_true(period[0] == 2 && period[1] == 2 && period[2] == 2);
+  assert_int_equal(mcor_find_period(all, 2, period, &which), 6);
+  assert_true(which == 1 && period[0] == -1 && period[1] == 3 && period[2] == 0 && period[5] == 0);
+  assert_int_equal(mcor_find_period(all, 1, period, &which), 0);
+  assert_int_equal(which, -1);
+  all[4].values = wrong;
+  assert_int_equal(mcor_find_period(all + 4, 1, period, NULL), 0);
+  all[4].values = empty;
+  assert_int_equal(mcor_find_period(all + 4, 1, period, NULL), 0);
+  mcor_place_period((const double[3]){ 2, 2, 2 }, extent, period);
+  assert_true(period[0] == -1 && period[1] == 1); /* around 0 */
+  assert_true(period[2] == 0 && period[3] == 2);  /* from 0 on */
+  assert_true(period[4] == 7 && period[5] == 9);  /* from the first particle on */
+  mcor_place_period((const double[3]){ 0, 2, 2 }, extent, period);
+  assert_true(period[0] == 0 && period[1] == 0);
+  assert_true(mcor_tells_of_period("boundarytype") && mcor_tells_of_period("Box"));
+  assert_false(mcor_tells_of_period("Boxes") || mcor_tells_of_period(NULL));
+  (void)state;
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
@@ -581,6 +620,7 @@ int main(void)
     cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids),
     cmocka_unit_test(test_magnitudes), cmocka_unit_test(test_bad_products),
     cmocka_unit_test(test_computed_volumes), cmocka_unit_test(test_units_of_length),
-    cmocka_unit_test(test_far_options), cmocka_unit_test(test_names) };
+    cmocka_unit_test(test_far_options), cmocka_unit_test(test_names),
+    cmocka_unit_test(test_period_of_field_data) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

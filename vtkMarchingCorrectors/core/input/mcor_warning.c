@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define MCOR_SENTENCE 800
 
@@ -193,6 +194,13 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
                : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
 }
 
+static char* mcor_copy_text(const char* text)
+{
+  const size_t size = strlen(text) + 1;
+  char* copy = malloc(size);
+  return copy ? memcpy(copy, text, size) : NULL;
+}
+
 char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
@@ -209,14 +217,23 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   {
     return NULL;
   }
-  size_t length = 0;
-  while (suspicion.text[length++])
+  return mcor_copy_text(suspicion.text);
+}
+
+char* mcor_describe_unused_type(
+  const char* name, const double* values, const int64_t* counts, int count)
+{
+  char text[MCOR_SENTENCE], *end = text;
+  if (!name || !values || !counts || count < 2 || count > MCOR_PARTICLE_TYPES)
   {
+    return NULL;
   }
-  char* text = malloc(length);
-  for (size_t i = 0; text && i < length; ++i)
+  end += snprintf(end, MCOR_SENTENCE / 2,
+    "Point array '%.200s' is not used, all particles count as fluid: it has", name);
+  for (int i = 0; i < count; ++i)
   {
-    text[i] = suspicion.text[i];
+    end += snprintf(end, 40, "%s %lld x %g", i ? "," : "", (long long)counts[i], values[i]);
   }
-  return text;
+  strcpy(end, ". If it tells fluid from walls, name it and the fluid's value.");
+  return mcor_copy_text(text);
 }

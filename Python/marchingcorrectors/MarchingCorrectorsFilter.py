@@ -31,10 +31,11 @@ from marchingcorrectors._library import lib
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._vtk_ahead import Ahead
 from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of
-from marchingcorrectors._vtk_period import find_period
+from marchingcorrectors._vtk_period import NO_PERIOD, find_period
 from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
 from marchingcorrectors._vtk_surface import (add_run_statistics, build_field_data, build_mesh, computed_arrays,
                                              left_out)
+from marchingcorrectors._warnings import describe_warnings
 
 BIG = 2147483647
 # name: (default, type, lowest, highest). "flag" has NameOn() and NameOff().
@@ -255,7 +256,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
 
     def RequestData(self, request, inInfo, outInfo):
         data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)
-        self.ErrorMessage, self.BlockName = "", ""
+        self.ErrorMessage, self.BlockName, self._warned = "", "", set()
         self.RunStatistics = vtkFieldData()
         if isinstance(data, vtkDataObjectTree):
             self._process_blocks(data, output)
@@ -301,6 +302,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         finally:
             self.UsedNames = {"".join(part.capitalize() for part in quantity.split("_")): name_of(array)
                               for quantity, array in particles.used.items()}
+        self._warn_once("type", particles.describe_unused_type())
         if particles.solid is not None and particles.solid.all():
             self._say(f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}, so there is no fluid and "
                       "no surface.", "Warning")
@@ -311,8 +313,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def _period_of(data):
         period = find_period(data)
         if not period:
-            raise Unusable("The particles' field data tell of no period: there is no array PeriodicBounds, BoxSize, or box "
-                           "with boundaryType. Set the periodic bounds, and turn their detection off.")
+            raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
         return period
 
     def _choice(self):
@@ -366,6 +367,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             self.summarize(arguments, surface)
             for sentence in left_out(surface, particles):
                 self._say(sentence, "Warning")
+            for kind, sentence in describe_warnings(arguments, surface).items():
+                self._warn_once(kind, sentence)
             build_field_data(output.GetFieldData(), surface, particles, arguments)
             add_run_statistics(self.RunStatistics, surface)
             single = particles.positions.GetDataTypeAsString() == "float"
@@ -410,10 +413,16 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def _report(self, fraction, phase):
         self.SetProgressText(phase)
         self.UpdateProgress(fraction)
-        return self._is_aborted()
+        return not self._is_aborted()
 
     def _is_aborted(self):
         return bool(self.CheckAbort() if hasattr(self, "CheckAbort") else self.GetAbortExecute())
+
+    def _warn_once(self, kind, sentence):
+        """Of several blocks the first one tells, as the others will have the same."""
+        if sentence and kind not in self._warned:
+            self._warned.add(kind)
+            self._say(sentence, "Warning")
 
     def _fail(self, sentence):
         """The sentences of all blocks are kept, one a line."""
@@ -424,7 +433,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         if not vtkObject.GetGlobalWarningDisplay():
             return
         if self.HasObserver(kind + "Event"):
-            self.InvokeEvent(kind + "Event")
+            self.InvokeEvent(kind + "Event", self.BlockName + sentence)
         else:
             show = getattr(vtkOutputWindow.GetInstance(), f"Display{kind}Text")
             show(f"{kind.upper()}: vtkMarchingCorrectors: {self.BlockName}{sentence}\n\n")

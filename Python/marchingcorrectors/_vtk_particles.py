@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The particles of a VTK data set as arguments of the core, as vtkSPHParticles finds them in C++."""
+import ctypes
+
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
@@ -9,10 +11,12 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _structs as c
 from ._arrays import Arguments
 from ._library import lib
+from ._warnings import describe_unused_type
+
+lib.mcor_find_layout.restype, lib.mcor_find_layout.argtypes = ctypes.c_char_p, [ctypes.c_char_p]
 
 GHOSTS = "vtkGhostType"
-QUANTITIES = {"smoothing_length": "MCOR_SMOOTHING_LENGTH", "volume": "MCOR_VOLUME", "mass": "MCOR_MASS",
-              "density": "MCOR_DENSITY"}
+QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 
 
 class Unusable(Exception):
@@ -44,7 +48,7 @@ def to_numpy(array):
 
 def detect(data, count, quantity):
     """The point array with the most usual name for a quantity. The core has the names."""
-    number = c.ENUMS["mcor_quantity"][QUANTITIES[quantity]]
+    number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
     best = None
     for i in range(data.GetNumberOfArrays()):
         array = data.GetArray(i)
@@ -54,6 +58,30 @@ def detect(data, count, quantity):
         if rank >= 0 and (best is None or rank < best[0]):
             best = (rank, array)
     return best[1] if best else None
+
+
+def join_velocity(data, count):
+    """The point arrays vx, vy and vz as one vector, "Velocity", of float only where all are; None where they
+    are not there, or such an array is."""
+    parts = [data.GetArray(name) for name in ("vx", "vy", "vz")]
+    if data.HasArray("Velocity") or not all(
+            part is not None and is_real(part) and part.GetNumberOfComponents() == 1
+            and part.GetNumberOfTuples() == count for part in parts):
+        return None
+    joined = (vtkFloatArray if all(part.GetDataTypeAsString() == "float" for part in parts) else vtkDoubleArray)()
+    joined.SetName("Velocity")
+    joined.SetNumberOfComponents(3)
+    joined.SetNumberOfTuples(count)
+    for component, part in enumerate(parts):
+        joined.CopyComponent(component, part, 0)
+    return joined
+
+
+def describe_missing_length(data):
+    """What to do where no smoothing length is found."""
+    names = "\n".join(name_of(data.GetAbstractArray(i)) for i in range(data.GetNumberOfArrays()))
+    dual = lib.mcor_find_layout(names.encode(errors="replace")) == b"DualSPHysics"
+    return "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual
 
 
 class Particles:
@@ -109,6 +137,8 @@ class Particles:
         if not scalar.on_points or not dot.on_points:
             raise Unusable(f"The scalar '{dot.name if scalar.on_points else scalar.name}' is not a point array; "
                            f"SPH particles are points. {self.list_point_arrays()}")
+        if scalar.name == "Velocity" and scalar.array is None:
+            scalar.array = join_velocity(self.data, self.count)
         self.scalar = self.check("scalar", scalar.name, scalar.array)
         components, component = self.scalar.GetNumberOfComponents(), self.choice.ScalarComponent
         if real_name(dot.name):
@@ -128,7 +158,7 @@ class Particles:
             if "smoothing_length" not in self.values:
                 raise Unusable("The particles have no smoothing length: no point array has one of its usual names "
                                "(SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask for an "
-                               f"estimate. {self.list_point_arrays()}")
+                               f"estimate. {describe_missing_length(self.data)}{self.list_point_arrays()}")
         mass_or_density_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName)
                                or choice.Mass or choice.Density)
         self.collect_quantity("volume", choice.VolumeArrayName, 0.0, may_detect=not mass_or_density_set)
@@ -175,11 +205,17 @@ class Particles:
 
     def collect_attributes(self, taken):
         left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS}
-        for i in range(self.data.GetNumberOfArrays()):
-            array = self.data.GetAbstractArray(i)
+        arrays = [self.data.GetAbstractArray(i) for i in range(self.data.GetNumberOfArrays())]
+        velocity = join_velocity(self.data, self.count)
+        for array in arrays + ([] if velocity is None else [velocity]):
             if name_of(array) not in left and array.GetNumberOfTuples() == self.count:
                 real = isinstance(array, vtkDataArray) and is_real(array)
                 (self.interpolated if real else self.from_nearest).append(array)
+
+    def describe_unused_type(self):
+        """A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else ""."""
+        kinds = None if self.fluid is not None else detect(self.data, self.count, "particle_type")
+        return "" if kinds is None else describe_unused_type(name_of(kinds), to_numpy(kinds)[:, 0])
 
     # -- for the core -------------------------------------------------------------------------------
 
@@ -187,13 +223,10 @@ class Particles:
         result = Arguments(to_numpy(self.positions))
         result.set_solid(self.solid)
         for quantity, value in self.values.items():
-            if isinstance(value, float):
-                result.set_quantities({quantity: value})
-                getattr(result.input, quantity).name = None  # it is no array's
-            else:
-                setattr(result.input, quantity, self.view(result, value))
-                if hasattr(result.input, "has_" + quantity):
-                    setattr(result.input, "has_" + quantity, 1)
+            view = c.mcor_array(constant=value) if isinstance(value, float) else self.view(result, value)
+            setattr(result.input, quantity, view)
+            if hasattr(result.input, "has_" + quantity):
+                setattr(result.input, "has_" + quantity, 1)
         if self.scalar is not None:
             result.input.scalar = self.view(result, self.scalar)
             several = self.scalar.GetNumberOfComponents() > 1

@@ -3,7 +3,8 @@
 """PyVista's particles.sph, which PyVista finds by the package's entry point."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Iterable, Optional, Sequence, Tuple, Union
+import inspect
+from typing import TYPE_CHECKING, Callable, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import pyvista
@@ -11,8 +12,8 @@ import pyvista
 from . import _functions
 from ._context import Context
 from ._library import InvalidArgument
-from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Options, check_names, did_you_mean,
-                       with_options)
+from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, Options, check_names,
+                       did_you_mean, with_options)
 from ._vtk_particles import (GHOSTS, QUANTITIES, describe_missing_length, detect, join_velocity, name_of)
 from ._vtk_period import NO_PERIOD, find_period
 from ._warnings import describe_unused_type, warn
@@ -54,18 +55,16 @@ class Particles(Options, total=False):
 OWN = tuple(name for name in Particles.__annotations__ if name not in Options.__annotations__)
 
 
-def _method(names):
+def _method(names: Sequence[str]) -> Callable[[Function], Function]:
     """Decorator: the keywords of all methods, and these options, in signature and text."""
-    def decorate(function):
-        import inspect
-
+    def decorate(function: Function) -> Function:
         function.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
         signature = inspect.signature(function)
         own = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
         own += [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None,
                                   annotation=Particles.__annotations__[name])
                 for name in OWN if name not in signature.parameters]
-        function.__signature__ = signature.replace(parameters=own)
+        function.__signature__ = signature.replace(parameters=own)  # type: ignore[attr-defined]
         return with_options(names)(function)
 
     return decorate

@@ -5,10 +5,12 @@ import ctypes
 import difflib
 import inspect
 import textwrap
-from typing import Literal, Optional, Sequence, TypedDict, Union
+from typing import Callable, Literal, Optional, Sequence, TypedDict, TypeVar, Union
 
 from . import _structs as c
 from ._library import lib
+
+Function = TypeVar("Function", bound=Callable)  # type checkers see it as it is written
 
 
 class Options(TypedDict, total=False):
@@ -63,7 +65,7 @@ WORDS = {
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
     "seeds": "where the surface is looked for: everywhere, so that no part of it is missed, or between pairs of "
              "particles on both sides of the iso value, as in the paper.",
-    "topology": "how nodes are connected where their values leave it open: by a fixed table, or as the field itself says.",
+    "topology": "how nodes are connected where their values leave it open: by a fixed table, or as the field says.",
     "h_scale": "the kernel uses this times the smoothing length; below 1 it smooths less. Volumes do not change.",
     "cube_size_factor": "edge of the smallest cubes of the marching grid, in smallest smoothing lengths.",
     "cube_size": "the same in the unit of the positions; 0: the factor counts.",
@@ -178,14 +180,14 @@ def describe(names):
     return lines
 
 
-def with_options(names):
+def with_options(names: Sequence[str]) -> Callable[[Function], Function]:
     """Decorator: the options stand in the function's signature and in its text, in place of {options}."""
-    def decorate(function):
+    def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
         own = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
         more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=Options.__annotations__[name],
                                   default=default_of(name)) for name in names if name not in signature.parameters]
-        function.__signature__ = signature.replace(parameters=own + more)
+        function.__signature__ = signature.replace(parameters=own + more)  # type: ignore[attr-defined]
         lines = (function.__doc__ or "").split("\n")
         at = [i for i, line in enumerate(lines) if line.strip() == "{options}"]
         for i in at:

@@ -8,8 +8,10 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkSPHBlocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <sstream>
@@ -20,6 +22,9 @@ bool IsReal(vtkAbstractArray* array)
 {
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
 }
+
+/** Kinds of particles that an array tells apart; one with more values is of something else. */
+constexpr std::size_t KindsAtMost = 8;
 
 /** An array without values has no pointer, which to the core would be a constant. */
 const void* OrEmpty(const void* values)
@@ -214,27 +219,85 @@ bool vtkSPHParticles::CollectSolids()
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::string> vtkSPHParticles::ListTypes(
+  const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+{
+  std::multimap<int, std::string> names;
+  vtkPointData* pointData = points->GetPointData();
+  for (int i = 0; RealName(choice.FluidArrayName).empty() && i < pointData->GetNumberOfArrays();
+       ++i)
+  {
+    vtkDataArray* array = pointData->GetArray(i);
+    const int rank = array ? mcor_name_rank(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
+    if (rank >= 0 && array->GetNumberOfComponents() == 1)
+    {
+      names.emplace(rank, array->GetName());
+    }
+  }
+  std::vector<std::string> list;
+  for (const auto& name : names)
+  {
+    list.push_back(name.second);
+  }
+  return list;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
+{
+  const std::map<double, vtkIdType> counts =
+    vtkMarchingCorrectorsCountValues(points->GetPointData()->GetArray(name.c_str()), KindsAtMost);
+  const bool whole = std::all_of(counts.begin(), counts.end(),
+    [](const std::pair<const double, vtkIdType>& count)
+    { return count.first == std::floor(count.first); });
+  if (whole && !counts.empty())
+  {
+    range[0] = counts.begin()->first;
+    range[1] = counts.rbegin()->first;
+  }
+  return whole && !counts.empty();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::DescribeFluid() const
+{
+  std::ostringstream text;
+  if (this->Fluid)
+  {
+    text << NameOf(this->Fluid) << " = " << this->Description.FluidValue;
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
 // An array of one value, or of many, tells nothing of that sort.
 std::string vtkSPHParticles::DescribeUnusedType()
 {
-  vtkDataArray* type = this->Fluid ? nullptr : this->Detect(MCOR_PARTICLE_TYPE);
-  const std::map<double, vtkIdType> counts =
-    type ? vtkMarchingCorrectorsCountValues(type, 8) : std::map<double, vtkIdType>();
-  if (counts.size() < 2)
+  for (const std::string& name : ListTypes(this->Description, this->Points))
   {
-    return {};
+    const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
+      this->Points->GetPointData()->GetArray(name.c_str()), KindsAtMost);
+    if (counts.size() >= 2)
+    {
+      std::ostringstream text;
+      text << "Point array " << Quote(name) << " is not used, all particles count as fluid: it has";
+      const char* between = " ";
+      for (const auto& count : counts)
+      {
+        text << between << count.second << " x " << count.first;
+        between = ", ";
+      }
+      double fluid = 0.0, range[2];
+      text << ". If it tells fluid from walls, name it and the fluid's value";
+      if (FindWholeRange(this->Points, name, range) &&
+        mcor_find_fluid_value(name.c_str(), range[0], range[1], &fluid))
+      {
+        text << ", which seems to be " << fluid;
+      }
+      return text.str() + ".";
+    }
   }
-  std::ostringstream text;
-  text << "Point array " << Quote(NameOf(type))
-       << " is not used, all particles count as fluid: it has";
-  const char* between = " ";
-  for (const auto& count : counts)
-  {
-    text << between << count.second << " x " << count.first;
-    between = ", ";
-  }
-  text << ". If it tells fluid from walls, name it and the fluid's value.";
-  return text.str();
+  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -244,7 +307,7 @@ bool vtkSPHParticles::IsCarried(
 {
   const std::string name = NameOf(array);
   return !name.empty() && !Contains(taken, name) &&
-    name != vtkDataSetAttributes::GhostArrayName() &&
+    name != vtkDataSetAttributes::GhostArrayName() && name != vtkSPHWallBlockName &&
     !Contains(this->Description.ExcludedArrays, name) &&
     array->GetNumberOfTuples() == this->Core.count;
 }

@@ -44,12 +44,22 @@ mcor_say(mcor_suspicion* s, const char* format, ...)
 #define MCOR_LEAST_RATIO 0.9
 #define MCOR_MOST_RATIO 2.2
 #define MCOR_MOST_RATIO_WENDLAND 2.6
+#define MCOR_LEAST_RATIO_QUINTIC 0.7
 
 /* Particles strewn at random lie as near as with the former, but have not so many neighbours (per cube
  * of the kernel's support in smoothing lengths); sheets and drops have few. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
+
+/* The kernel with which such particles, `ratio` smoothing lengths to the nearest one, would be usual: that
+ * of many neighbours, or the one that reaches farther. */
+static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
+{
+  return few && kernel != MCOR_QUINTIC_SPLINE && ratio >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
+    : !few && kernel != MCOR_WENDLAND_C2 && ratio <= MCOR_MOST_RATIO_WENDLAND      ? "wendland"
+                                                                                   : "";
+}
 
 static bool mcor_warn_neighbours(mcor_suspicion* s)
 {
@@ -77,6 +87,7 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
       "of the positions."
     : few ? "Perhaps it is not in the unit of the positions."
           : "Perhaps it is the support radius (then say so), or not in the unit of the positions.";
+  const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
   char times[100] = "no other particle is within that";
   if (spacing > 0)
   {
@@ -85,9 +96,9 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   }
   return mcor_say(s,
     "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
-    "%s (medians). Usual for the %s kernel are %s neighbours and 1 to %g times. %s",
+    "%s (medians). Usual for the %s kernel are %s neighbours and 1 to %g times. %s%s%s%s",
     n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel],
-    wendland ? 2.2 : 1.7, why);
+    wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
 static bool mcor_warn_plane(mcor_suspicion* s)

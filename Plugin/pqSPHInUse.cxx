@@ -43,9 +43,9 @@ const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComp
   "BoxLength" };
 
 // What the next update would find, and the panel shows elsewhere, or begins with.
-const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextFluid",
-  "NextCells" };
-const char* const HIDDEN[] = { "NextScalarRange", "NextIsoValue", "NextArray" };
+const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
+  "NextFluid", "NextCells" };
+const char* const HIDDEN[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents" };
 
 // "-" for what is not known: nothing was drawn, or the free surface has no such thing.
 QString textOf(vtkSMProperty* property)
@@ -63,7 +63,7 @@ QString textOf(vtkSMProperty* property)
   return isKnown ? texts.join(" to ") : QString("-");
 }
 
-bool isHidden(vtkSMProperty* property)
+bool isShownElsewhere(vtkSMProperty* property)
 {
   return std::any_of(std::begin(HIDDEN), std::end(HIDDEN),
     [property](const char* name)
@@ -133,7 +133,7 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
     vtkSMProperty* property = group->GetProperty(i);
-    if (isHidden(property))
+    if (isShownElsewhere(property))
     {
       continue;
     }
@@ -168,10 +168,16 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
       &this->Pause, SLOT(start()));
   }
   this->showValues();
-  if (isNew(proxy))
+  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel is there
+}
+
+//------------------------------------------------------------------------------
+void pqSPHInUse::beginNew()
+{
+  if (isNew(this->proxy()))
   {
     this->Given << std::numeric_limits<double>::quiet_NaN(); // none yet
-    this->Pause.start(0);
+    this->lookAhead();
   }
 }
 

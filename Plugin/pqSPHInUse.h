@@ -34,6 +34,7 @@ public:
 private Q_SLOTS:
   void showValues();
   void lookAhead();
+  void beginNew();
 
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();

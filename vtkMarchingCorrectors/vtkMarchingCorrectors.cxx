@@ -306,6 +306,13 @@ double vtkMarchingCorrectors::GetNextIsoValue()
 }
 
 //------------------------------------------------------------------------------
+int vtkMarchingCorrectors::GetNextComponents()
+{
+  this->LookAhead();
+  return this->NextComponents;
+}
+
+//------------------------------------------------------------------------------
 const char* vtkMarchingCorrectors::GetNextFluid()
 {
   this->LookAhead();
@@ -334,6 +341,7 @@ void vtkMarchingCorrectors::LookAhead()
     std::copy_n(this->FluidScalarRange, 2, this->NextScalarRange);
     this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
     this->NextFluid = this->UsedFluid;
+    this->NextComponents = 0;
     this->NextArray.clear();
     this->NextCells = this->EstimatedCells;
     return;
@@ -351,6 +359,7 @@ void vtkMarchingCorrectors::LookAhead()
   this->NextScalarRange[1] = -none;
   this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
   this->NextCells = 0.0;
+  this->NextComponents = 0;
   this->NextFluid.clear();
   this->NextArray.clear();
   const bool together = this->TakesTogether();
@@ -385,6 +394,7 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
     this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
     this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
     this->NextIsoValue = std::isnan(this->NextIsoValue) ? value : this->NextIsoValue;
+    this->NextComponents = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
   }
   choice.FreeSurface = true;
   vtkMarchingCorrectorsInput input(choice, particles);

@@ -609,13 +609,14 @@ public:
   /**
    * What an update with the properties and the input as they are now would find: the range that
    * FluidScalarRange would have, the iso value that would be taken if none were given (NaN: not known), the
-   * cells of EstimatedCells (of all blocks), what UsedFluid would be, and the point array that is taken where
+   * cells of EstimatedCells (of all blocks), what UsedFluid would be, how many components the chosen array has (1 for a dot product), and the array that is taken where
    * nobody has chosen one. The input is read as it is, and not updated. 0 to 0, 0, or empty, where it is not
    * known: without particles, or without a scalar. Where processes share a run these are the last update's: one process alone has but some of
    * the particles, and to ask the others could be to wait for ever.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2);
   double GetNextIsoValue();
+  int GetNextComponents();
   double GetNextCells();
   const char* GetNextFluid();
   const char* GetNextArray();
@@ -673,6 +674,7 @@ protected:
   double EstimatedCells = 0.0;
   double NextScalarRange[2] = { 0.0, 0.0 };
   double NextIsoValue = 0.0;
+  int NextComponents = 0;
   double NextCells = 0.0;
   std::string NextFluid, NextArray;
 

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The particles of a VTK data set as arguments of the core, as vtkSPHParticles finds them in C++."""
+import ctypes
+
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
@@ -11,6 +13,7 @@ from ._arrays import Arguments
 from ._library import lib
 
 GHOSTS = "vtkGhostType"
+WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls
 QUANTITIES = {"smoothing_length": "MCOR_SMOOTHING_LENGTH", "volume": "MCOR_VOLUME", "mass": "MCOR_MASS",
               "density": "MCOR_DENSITY"}
 
@@ -56,11 +59,43 @@ def detect(data, count, quantity):
     return best[1] if best else None
 
 
+def rank_of(array):
+    """How fit it is to be looked at where nobody has chosen an array; -1: not."""
+    varies = any(low < high for low, high in map(array.GetRange, range(array.GetNumberOfComponents())))
+    return lib.mcor_view_rank(name_of(array).encode(), array.GetNumberOfComponents(), is_real(array), varies)
+
+
+def choose_array(data, names=None):
+    """The fittest one; None where none is."""
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())] if names is None else \
+        [data.GetArray(name) for name in names]
+    ranks = [(rank_of(array), i) for i, array in enumerate(arrays) if array is not None]
+    best = min(((rank, i) for rank, i in ranks if rank >= 0), default=None)
+    return arrays[best[1]] if best else None
+
+
+def find_fluid(data):
+    """The array and its value that clearly tell which particles are fluid; None where none does."""
+    number = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
+    ranks = [(lib.mcor_name_rank(number, name_of(array).encode()), i) for i, array in enumerate(arrays)
+             if array is not None and array.GetNumberOfComponents() == 1]
+    for _, i in sorted(pair for pair in ranks if pair[0] >= 0):
+        values, fluid = np.unique(to_numpy(arrays[i])), ctypes.c_double()
+        if 0 < len(values) <= 8 and (values == np.floor(values)).all() and lib.mcor_find_fluid_value(
+                name_of(arrays[i]).encode(), values[0], values[-1], ctypes.byref(fluid)):
+            return name_of(arrays[i]), fluid.value
+    return None
+
+
 class Particles:
     """Finds the arrays; raises Unusable. choice: the filter's properties, copied."""
 
     def __init__(self, choice, points):
         self.choice, self.points = choice, points
+        found = find_fluid(points.GetPointData()) if choice.DetectFluid and not real_name(choice.FluidArrayName) else None
+        if found:
+            choice.FluidArrayName, choice.FluidValue = found
         self.data, self.count = points.GetPointData(), points.GetNumberOfPoints()
         self.positions = points.GetPoints().GetData()
         self.scalar = self.dot = self.fluid = None
@@ -169,12 +204,13 @@ class Particles:
             self.scalar_name += "_Dot_" + name_of(self.dot)
         elif self.scalar.GetNumberOfComponents() > 1:
             label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
-            self.scalar_name += "_" + (label or str(component))
+            label = label or ("XYZ"[component] if self.scalar.GetNumberOfComponents() <= 3 else str(component))
+            self.scalar_name += "_" + label
         if self.scalar_name and self.scalar_name not in taken:
             self.iso_value_name = self.scalar_name
 
     def collect_attributes(self, taken):
-        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS}
+        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS, WALL_BLOCK}
         for i in range(self.data.GetNumberOfArrays()):
             array = self.data.GetAbstractArray(i)
             if name_of(array) not in left and array.GetNumberOfTuples() == self.count:
@@ -226,25 +262,15 @@ class Particles:
                       choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids]
         return particles, [sign(self.scalar), sign(self.dot), choice.ScalarComponent]
 
-    def fluid_values(self):
-        """Those of the scalar (component, magnitude or dot product) at fluid particles that are finite."""
-        values = to_numpy(self.scalar).astype(np.float64, copy=False)
-        if self.dot is not None:
-            values = sum(a * b for a, b in zip(values.T, to_numpy(self.dot).astype(np.float64).T))
-        elif values.shape[1] == 1 or self.choice.ScalarComponent >= 0:
-            values = values[:, max(self.choice.ScalarComponent, 0) if values.shape[1] > 1 else 0]
-        else:
-            values = np.sqrt(sum(column * column for column in values.T))
-        return values[np.isfinite(values) & (True if self.solid is None else ~self.solid)]
+    def describe_fluid(self):
+        return f"{name_of(self.fluid)} = {self.choice.FluidValue:g}" if self.fluid is not None else ""
 
-    def middle_of_range(self):
-        """Of the fluid's scalar, the 2 % lowest and highest values left out."""
-        values = self.fluid_values()
-        if not len(values):
-            return 0.0
-        margin = len(values) // 50
-        values = np.partition(values, [margin, len(values) - 1 - margin])
-        return 0.5 * float(values[margin]) + 0.5 * float(values[-1 - margin])
+    def find_iso_value(self):
+        """The range of the scalar at fluid particles, and an iso value for those who gave none; None where no
+        value is finite. Scalar and solids alone must have been collected."""
+        given, ends, value = self.arguments().input, (ctypes.c_double * 2)(), ctypes.c_double()
+        found = lib.mcor_find_iso_value(ctypes.byref(given), None, ends, ctypes.byref(value))
+        return (tuple(ends), value.value) if found else None
 
 
 class Request:
@@ -256,10 +282,12 @@ class Request:
         if requests is None or index >= requests.GetNumberOfInformationObjects():
             return
         info = requests.GetInformationObject(index)
-        self.name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        self.name = "" if name == "(automatic)" else name
         attribute = info.Get(vtkDataObject.FIELD_ATTRIBUTE_TYPE()) if info.Has(
             vtkDataObject.FIELD_ATTRIBUTE_TYPE()) else None
-        if not self.name and attribute is None:
+        if not self.name and (name or attribute is None):
+            self._take_fittest(index, points)
             return
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
         self.on_points = association in (vtkDataObject.FIELD_ASSOCIATION_POINTS,
@@ -267,3 +295,10 @@ class Request:
         if self.on_points:
             data = points.GetPointData()
             self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(attribute)
+        if not self.name and (self.array is None or not isinstance(self.array, vtkDataArray) or rank_of(self.array) < 0):
+            self._take_fittest(index, points)
+
+    def _take_fittest(self, index, points):
+        """Nobody has chosen the active scalars of a file: they are taken if they are fit."""
+        best = choose_array(points.GetPointData()) if index == 0 else None
+        self.array = best if best is not None else self.array

@@ -389,7 +389,8 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
     this->NextArray.empty() ? vtkSPHChooseArray(particles->GetPointData()) : this->NextArray;
   vtkMarchingCorrectorsInput contoured(choice, particles);
   double range[2], value;
-  if (contoured.CollectContoured() && mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
+  if (!choice.FreeSurface && contoured.CollectContoured() &&
+    mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
   {
     this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
     this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);

@@ -65,8 +65,10 @@ class Ahead:
         try:
             particles.collect_solids()
             ahead["fluid"] = particles.describe_fluid()
-            particles.collect_scalar(Request(self, 0, points), Request(self, 1, points))
-            found = particles.find_iso_value()
+            found = None
+            if not choice.FreeSurface:
+                particles.collect_scalar(Request(self, 0, points), Request(self, 1, points))
+                found = particles.find_iso_value()
             if found:
                 before = [ahead["range"]] if ahead["iso"] == ahead["iso"] else []
                 ranges = [*before, found[0]]

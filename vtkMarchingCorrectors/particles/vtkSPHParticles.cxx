@@ -280,6 +280,14 @@ std::string vtkSPHParticles::DescribeUnusedType()
     if (counts.size() >= 2)
     {
       std::ostringstream text;
+      if (name == vtkSPHWallBlockName)
+      {
+        text << "Names of blocks tell of walls, but all particles count as fluid. Have the fluid "
+                "detected, or "
+                "name "
+             << Quote(name) << " as what tells fluid from walls, and 0 as the fluid's value.";
+        return text.str();
+      }
       text << "Point array " << Quote(name) << " is not used, all particles count as fluid: it has";
       const char* between = " ";
       for (const auto& count : counts)

@@ -14,9 +14,10 @@ from ._context import Context
 from ._library import InvalidArgument
 from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, Options, check_names,
                        did_you_mean, with_options)
-from ._vtk_particles import (GHOSTS, QUANTITIES, describe_missing_length, detect, join_velocity, name_of)
+from ._vtk_particles import (GHOSTS, QUANTITIES, describe_missing_length, describe_unused_types, detect, join_velocity,
+                             name_of)
 from ._vtk_period import NO_PERIOD, find_period
-from ._warnings import describe_unused_type, warn
+from ._warnings import warn
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -182,10 +183,10 @@ class SphAccessor:
         return words
 
     def _warn_of_unused_type(self):
-        kinds = detect(self._particles.GetPointData(), self._particles.n_points, "particle_type")
-        sentence = "" if kinds is None else describe_unused_type(name_of(kinds), self._array(name_of(kinds)))
-        if sentence:
-            warn(sentence.replace("name it and the fluid's value", f"say fluid=('{name_of(kinds)}', VALUE)"))
+        found = describe_unused_types(self._particles.GetPointData())
+        if found:
+            sentence, name = found
+            warn(sentence.replace("name it and the fluid's value", f"say fluid=('{name}', VALUE)"))
 
     def _period(self, word):
         found = find_period(self._particles) if word == "auto" else None

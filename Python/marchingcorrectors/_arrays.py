@@ -18,6 +18,8 @@ WORDS = {int: "whole number", float: "number"}
 OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"},
                "mcor_sph_kernel": {"cubic_spline": "cubic", "m_prime_4": "mprime4", "quintic_spline": "quintic",
                                    "wendland_c2": "wendland"}}
+# Numbers with a word, as mcor.h defines them.
+SPECIAL = {("scalar_component", "magnitude"): -1, ("wall_share", "measured"): -1, ("wall_share", "auto"): -2}
 _double = ctypes.POINTER(ctypes.c_double)
 lib.mcor_place_period.restype, lib.mcor_place_period.argtypes = None, [_double, _double, _double]
 
@@ -221,8 +223,8 @@ def convert(to, name, value):
 
 def number(name, kind, value):
     """An option's value for the core; of an enumeration, a word or its number."""
-    if isinstance(value, str) and (name, value) in (("scalar_component", "magnitude"), ("wall_share", "measured")):
-        return -1
+    if isinstance(value, str) and (name, value) in SPECIAL:
+        return SPECIAL[name, value]
     if kind not in c.ENUMS:
         return convert(float if kind == "double" else int, name, value)
     if isinstance(value, str):

@@ -28,7 +28,7 @@ class Options(TypedDict, total=False):
     node_threshold: float
     boundary_detection: Literal["weight_sum", "eigenvalue"]
     vertex_threshold: float
-    wall_share: Union[float, Literal["measured"]]
+    wall_share: Union[float, Literal["auto", "measured"]]
     preview: bool
     tolerance: float
     iteration_limit: int
@@ -77,7 +77,8 @@ WORDS = {
                           "inverse renormalisation matrix (Marrone et al. 2010), with vertex_threshold=0.3.",
     "vertex_threshold": "the surface is cut where boundary_detection falls below this; 0: nowhere.",
     "wall_share": "above 0, the surface also ends where solids have a greater share of the weight: 0.5 where they "
-                  "weigh more than the fluid; \"measured\" on the layer of solids that faces it. 0: it runs on.",
+                  "weigh more than the fluid; \"measured\" on the layer of solids that faces it. 0: it runs on. "
+                  "\"auto\": \"measured\" for a scalar, 0 for the free surface.",
     "preview": "True: vertices by linear interpolation on the grid's edges, faster and not exact.",
     "tolerance": "the field at a vertex differs from the iso value by at most this share of the scalar's range.",
     "iteration_limit": "Newton iterations of a vertex, 1 to 255.",
@@ -139,8 +140,8 @@ def default_of(name):
     """As a user would write it."""
     options = c.mcor_options()
     lib.mcor_set_default_options(ctypes.byref(options))
-    if name == "scalar_component":
-        return "magnitude"
+    if name in ("scalar_component", "wall_share"):
+        return "magnitude" if name == "scalar_component" else "auto"
     if name == "precision":
         return "float32"
     value, kind = getattr(options, name, 0), kind_of(name)

@@ -17,6 +17,7 @@ lib.mcor_find_layout.restype, lib.mcor_find_layout.argtypes = ctypes.c_char_p, [
 
 GHOSTS = "vtkGhostType"
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
+WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls
 
 
 class Unusable(Exception):
@@ -84,11 +85,57 @@ def describe_missing_length(data):
     return "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual
 
 
+def rank_of(array):
+    """How fit it is to be looked at where nobody has chosen an array; -1: not."""
+    varies = any(low < high for low, high in map(array.GetRange, range(array.GetNumberOfComponents())))
+    return lib.mcor_view_rank(name_of(array).encode(), array.GetNumberOfComponents(), is_real(array), varies)
+
+
+def choose_array(data, names=None):
+    """The fittest one; None where none is."""
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())] if names is None else \
+        [data.GetArray(name) for name in names]
+    ranks = [(rank_of(array), i) for i, array in enumerate(arrays) if array is not None]
+    best = min(((rank, i) for rank, i in ranks if rank >= 0), default=None)
+    return arrays[best[1]] if best else None
+
+
+def list_types(data):
+    """Arrays that tell kinds of particles apart, by their names, the most usual first."""
+    number = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
+    ranks = [(lib.mcor_name_rank(number, name_of(array).encode()), i) for i, array in enumerate(arrays)
+             if array is not None and array.GetNumberOfComponents() == 1]
+    return [arrays[i] for rank, i in sorted(ranks) if rank >= 0]
+
+
+def find_fluid(data):
+    """The array and its value that clearly tell which particles are fluid; None where none does."""
+    for array in list_types(data):
+        values, fluid = np.unique(to_numpy(array)), ctypes.c_double()
+        if 0 < len(values) <= 8 and (values == np.floor(values)).all() and lib.mcor_find_fluid_value(
+                name_of(array).encode(), values[0], values[-1], ctypes.byref(fluid)):
+            return name_of(array), fluid.value
+    return None
+
+
+def describe_unused_types(data):
+    """(A sentence about the first array that does, although all particles count as fluid, its name); or None."""
+    for array in list_types(data):
+        sentence = describe_unused_type(name_of(array), to_numpy(array)[:, 0])
+        if sentence:
+            return sentence, name_of(array)
+    return None
+
+
 class Particles:
     """Finds the arrays; raises Unusable. choice: the filter's properties, copied."""
 
     def __init__(self, choice, points):
         self.choice, self.points = choice, points
+        found = find_fluid(points.GetPointData()) if choice.DetectFluid and not real_name(choice.FluidArrayName) else None
+        if found:
+            choice.FluidArrayName, choice.FluidValue = found
         self.data, self.count = points.GetPointData(), points.GetNumberOfPoints()
         self.positions = points.GetPoints().GetData()
         self.scalar = self.dot = self.fluid = None
@@ -199,12 +246,13 @@ class Particles:
             self.scalar_name += "_Dot_" + name_of(self.dot)
         elif self.scalar.GetNumberOfComponents() > 1:
             label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
-            self.scalar_name += "_" + (label or str(component))
+            label = label or ("XYZ"[component] if self.scalar.GetNumberOfComponents() <= 3 else str(component))
+            self.scalar_name += "_" + label
         if self.scalar_name and self.scalar_name not in taken:
             self.iso_value_name = self.scalar_name
 
     def collect_attributes(self, taken):
-        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS}
+        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS, WALL_BLOCK}
         arrays = [self.data.GetAbstractArray(i) for i in range(self.data.GetNumberOfArrays())]
         velocity = join_velocity(self.data, self.count)
         for array in arrays + ([] if velocity is None else [velocity]):
@@ -214,8 +262,8 @@ class Particles:
 
     def describe_unused_type(self):
         """A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else ""."""
-        kinds = None if self.fluid is not None else detect(self.data, self.count, "particle_type")
-        return "" if kinds is None else describe_unused_type(name_of(kinds), to_numpy(kinds)[:, 0])
+        found = None if self.fluid is not None else describe_unused_types(self.data)
+        return found[0] if found else ""
 
     # -- for the core -------------------------------------------------------------------------------
 
@@ -259,25 +307,15 @@ class Particles:
                       choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids]
         return particles, [sign(self.scalar), sign(self.dot), choice.ScalarComponent]
 
-    def fluid_values(self):
-        """Those of the scalar (component, magnitude or dot product) at fluid particles that are finite."""
-        values = to_numpy(self.scalar).astype(np.float64, copy=False)
-        if self.dot is not None:
-            values = sum(a * b for a, b in zip(values.T, to_numpy(self.dot).astype(np.float64).T))
-        elif values.shape[1] == 1 or self.choice.ScalarComponent >= 0:
-            values = values[:, max(self.choice.ScalarComponent, 0) if values.shape[1] > 1 else 0]
-        else:
-            values = np.sqrt(sum(column * column for column in values.T))
-        return values[np.isfinite(values) & (True if self.solid is None else ~self.solid)]
+    def describe_fluid(self):
+        return f"{name_of(self.fluid)} = {self.choice.FluidValue:g}" if self.fluid is not None else ""
 
-    def middle_of_range(self):
-        """Of the fluid's scalar, the 2 % lowest and highest values left out."""
-        values = self.fluid_values()
-        if not len(values):
-            return 0.0
-        margin = len(values) // 50
-        values = np.partition(values, [margin, len(values) - 1 - margin])
-        return 0.5 * float(values[margin]) + 0.5 * float(values[-1 - margin])
+    def find_iso_value(self):
+        """The range of the scalar at fluid particles, and an iso value for those who gave none; None where no
+        value is finite. Scalar and solids alone must have been collected."""
+        given, ends, value = self.arguments(), (ctypes.c_double * 2)(), ctypes.c_double()  # it holds the arrays
+        found = lib.mcor_find_iso_value(ctypes.byref(given.input), None, ends, ctypes.byref(value))
+        return (tuple(ends), value.value) if found else None
 
 
 class Request:
@@ -289,10 +327,12 @@ class Request:
         if requests is None or index >= requests.GetNumberOfInformationObjects():
             return
         info = requests.GetInformationObject(index)
-        self.name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        self.name = "" if name == "(automatic)" else name
         attribute = info.Get(vtkDataObject.FIELD_ATTRIBUTE_TYPE()) if info.Has(
             vtkDataObject.FIELD_ATTRIBUTE_TYPE()) else None
-        if not self.name and attribute is None:
+        if not self.name and (name or attribute is None):
+            self._take_fittest(index, points)
             return
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
         self.on_points = association in (vtkDataObject.FIELD_ASSOCIATION_POINTS,
@@ -300,3 +340,10 @@ class Request:
         if self.on_points:
             data = points.GetPointData()
             self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(attribute)
+        if not self.name and (self.array is None or not isinstance(self.array, vtkDataArray) or rank_of(self.array) < 0):
+            self._take_fittest(index, points)
+
+    def _take_fittest(self, index, points):
+        """Nobody has chosen the active scalars of a file: they are taken if they are fit."""
+        best = choose_array(points.GetPointData()) if index == 0 else None
+        self.array = best if best is not None else self.array

@@ -48,8 +48,8 @@ def report(file, scalar, value, properties):
     arrays = {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
     found = {"warnings": said, "error": extract.GetErrorMessage(), "arrays": arrays,
              "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
-             "fields": {name: vtk_to_numpy(fields.GetArray(name)).tolist() for name in STATISTICS
-                        if fields.HasArray(name)}}
+             "fields": {name: vtk_to_numpy(data.GetArray(name)).tolist() for name in STATISTICS
+                        for data in (fields, extract.GetRunStatistics()) if data.HasArray(name)}}
     if surface.GetNumberOfPoints():
         found["points"] = hash_of(surface.GetPoints().GetData())
         found["triangles"] = hashlib.sha256(vtk_to_numpy(

@@ -170,6 +170,12 @@ static void test_unused_type(void** state)
     "Point array 'Type' is not used, all particles count as fluid: it has 12 x 0, 5000000000 x 3, "
     "1 x 0.5. If it tells fluid from walls, name it and the fluid's value.");
   free(text);
+  text = mcor_describe_unused_type("Type", values, counts, 2);
+  assert_non_null(strstr(text, "name it and the fluid's value, which seems to be 3."));
+  free(text);
+  text = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
+  assert_non_null(strstr(text, "Names of blocks tell of walls"));
+  free(text);
   assert_null(mcor_describe_unused_type("Type", values, counts, 1));
   assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1));
   assert_null(mcor_describe_unused_type(NULL, values, counts, 3));

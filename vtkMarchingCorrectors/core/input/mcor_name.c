@@ -22,7 +22,7 @@ static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_PARTICLE_ID] = { "idp", "particleid", "particleids", "partid", "id", "ids", "globalids",
     "globalid", "gid", "pid", "iorig" },
   [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
-    "isboundary" },
+    "isboundary", "iswall", "issolid", "isfluid", "wallblock" },
 };
 
 static bool mcor_is_same_name(const char* name, const char* usual)
@@ -53,6 +53,42 @@ int mcor_name_rank(mcor_quantity quantity, const char* name)
     }
   }
   return -1;
+}
+
+int mcor_find_fluid_value(const char* name, double low, double high, double* fluid)
+{
+  if (mcor_name_rank(MCOR_PARTICLE_TYPE, name) < 0)
+  {
+    return 0;
+  }
+  if (low == 0 && high == 1)
+  {
+    *fluid = mcor_is_same_name(name, "isfluid");
+    return 1;
+  }
+  /* DualSPHysics: fixed, moving and floating bodies, fluid. */
+  if (low >= 0 && low < 3 && high == 3 && mcor_is_same_name(name, "type"))
+  {
+    *fluid = 3;
+    return 1;
+  }
+  return 0;
+}
+
+int mcor_view_rank(const char* name, int components, int is_real, int varies)
+{
+  if (!name || !varies || mcor_name_rank(MCOR_PARTICLE_ID, name) >= 0 ||
+    mcor_name_rank(MCOR_PARTICLE_TYPE, name) >= 0)
+  {
+    return -1;
+  }
+  const bool describes = mcor_name_rank(MCOR_SMOOTHING_LENGTH, name) >= 0 ||
+    mcor_name_rank(MCOR_VOLUME, name) >= 0 || mcor_name_rank(MCOR_MASS, name) >= 0;
+  return !is_real                                                 ? 5
+    : components == 3 && mcor_name_rank(MCOR_VELOCITY, name) >= 0 ? 0
+    : components == 3                                             ? 1
+    : components == 1                                             ? 2 + describes
+                                                                  : 4;
 }
 
 /* By which names a solver's output is told, as above; sources: Documentation/Guide/your-data.md. Those

@@ -30,8 +30,7 @@ from marchingcorrectors import _structs as c
 from marchingcorrectors._library import lib
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._vtk_ahead import Ahead
-from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of
-from marchingcorrectors._vtk_period import NO_PERIOD, find_period
+from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of, period_of
 from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
 from marchingcorrectors._vtk_blocks import find_walls, join_blocks, list_all, name_blocks
 from marchingcorrectors._vtk_surface import (add_iso_values, add_run, build_mesh, computed_arrays, describe,
@@ -319,7 +318,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         particles = Particles(choice, data)
         try:
             if choice.DetectPeriod:
-                options.periodic[:] = self._period_of(data)
+                options.periodic[:] = period_of(data)
             particles.collect((Request(self, 0, data), Request(self, 1, data)), computed_arrays(options))
         except Unusable as sentence:
             self._fail(str(sentence))
@@ -334,13 +333,6 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
                       "no surface.", "Warning")
             return
         self._extract(particles, options, output)
-
-    @staticmethod
-    def _period_of(data):
-        period = find_period(data)
-        if not period:
-            raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
-        return period
 
     def _choice(self):
         return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), UsedSolids=self.UsedSolids, Box=self.Box,

@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _structs as c
 from ._arrays import Arguments
 from ._library import lib
+from ._vtk_period import NO_PERIOD, find_period
 from ._warnings import describe_unused_type
 
 lib.mcor_find_layout.restype, lib.mcor_find_layout.argtypes = ctypes.c_char_p, [ctypes.c_char_p]
@@ -126,6 +127,14 @@ def describe_unused_types(data):
         if sentence:
             return sentence, name_of(array)
     return None
+
+
+def period_of(points):
+    """Six bounds that the field data tell of; raises Unusable where they tell of none."""
+    period = find_period(points)
+    if not period:
+        raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
+    return period
 
 
 class Particles:

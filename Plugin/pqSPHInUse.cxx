@@ -22,6 +22,7 @@
 #include <QFormLayout>
 #include <QLabel>
 #include <QStringList>
+#include <QTableView>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -29,6 +30,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <vector>
 
 namespace
 {
@@ -107,12 +109,12 @@ vtkSmartPointer<vtkSMProxy> makeTwin(vtkSMProxy* filter)
 pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent)
   : pqPropertyWidget(proxy, parent)
 {
-  this->setShowLabel(false); // the button has it
+  this->setShowLabel(true); // the group's, as a heading
   auto* all = new QVBoxLayout(this);
   all->setContentsMargins(0, 0, 0, 0);
   this->Button = new QToolButton(this);
   this->Button->setObjectName("Show");
-  this->Button->setText(group->GetXMLLabel());
+  this->Button->setText("What was found, and what is used");
   this->Button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   this->Button->setAutoRaise(true);
   this->Button->setCheckable(true);
@@ -230,6 +232,42 @@ void pqSPHInUse::begin()
   {
     values.Set(&iso, 1);
     this->Given = QList<double>{ iso };
+  }
+}
+
+//------------------------------------------------------------------------------
+// The panel's other widgets come before.
+void pqSPHInUse::apply()
+{
+  this->dropEmptyRows();
+  this->Superclass::apply();
+}
+
+//------------------------------------------------------------------------------
+// An empty row of the list of iso values would count as 0.
+void pqSPHInUse::dropEmptyRows()
+{
+  QWidget* panel = this->parentWidget();
+  auto* list = panel ? panel->findChild<QWidget*>("ContourValues") : nullptr;
+  auto* table = list ? list->findChild<QTableView*>() : nullptr;
+  if (!table || !this->proxy()->GetProperty("ContourValues"))
+  {
+    return;
+  }
+  vtkSMPropertyHelper values(this->proxy(), "ContourValues");
+  const int rows = table->model()->rowCount();
+  std::vector<double> kept;
+  for (int row = 0; row < rows && row < static_cast<int>(values.GetNumberOfElements()); ++row)
+  {
+    if (!table->model()->index(row, 0).data(Qt::EditRole).toString().trimmed().isEmpty())
+    {
+      kept.push_back(values.GetAsDouble(static_cast<unsigned int>(row)));
+    }
+  }
+  if (static_cast<int>(kept.size()) < rows)
+  {
+    values.SetNumberOfElements(0);
+    values.Set(kept.data(), static_cast<unsigned int>(kept.size()));
   }
 }
 

@@ -26,10 +26,13 @@ class vtkSMPropertyGroup;
 class pqSPHInUse : public pqPropertyWidget
 {
   Q_OBJECT
+  using Superclass = pqPropertyWidget;
 
 public:
   pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
   ~pqSPHInUse() override = default;
+
+  void apply() override;
 
 private Q_SLOTS:
   void showValues();
@@ -39,6 +42,7 @@ private Q_SLOTS:
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();
   void begin();
+  void dropEmptyRows();
 
   QToolButton* Button;
   QList<double> Given; // the iso value that the panel chose last; none: it does not choose

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqSPHInUse.h"
 
+#include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
+#include "pqProxy.h"
 #include "pqProxyWidget.h"
+#include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "vtkCommand.h"
 #include "vtkSMDocumentation.h"
@@ -13,11 +16,21 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSmartPointer.h"
 
 #include <QFormLayout>
 #include <QLabel>
 #include <QStringList>
+#include <QTableView>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <vector>
 
 namespace
 {
@@ -27,8 +40,14 @@ constexpr double HUGE_CELLS = 1e9;
 // What the next update's range and number of cells depend on.
 const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComponent",
   "DotProductWith", "SmoothingLengthArray", "SmoothingLength", "EstimateSmoothingLength",
-  "SmoothingLengthIsSupportRadius", "FluidArray", "FluidValue", "Kernel", "CubeSizeMode",
-  "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox", "BoxPosition", "BoxLength" };
+  "SmoothingLengthIsSupportRadius", "FluidArray", "FluidValue", "DetectFluid", "Blocks", "Kernel",
+  "CubeSizeMode", "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox", "BoxPosition",
+  "BoxLength" };
+
+// What the next update would find, and the panel shows elsewhere, or begins with.
+const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
+  "NextFluid", "NextCells" };
+const char* const HIDDEN[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents" };
 
 // "-" for what is not known: nothing was drawn, or the free surface has no such thing.
 QString textOf(vtkSMProperty* property)
@@ -44,6 +63,19 @@ QString textOf(vtkSMProperty* property)
     isKnown = isKnown || (isNumber ? values.GetAsDouble(i) != 0.0 : !texts.back().isEmpty());
   }
   return isKnown ? texts.join(" to ") : QString("-");
+}
+
+bool isShownElsewhere(vtkSMProperty* property)
+{
+  return std::any_of(std::begin(HIDDEN), std::end(HIDDEN),
+    [property](const char* name)
+    { return QLatin1String(property->GetXMLName()) == QLatin1String(name); });
+}
+
+bool isNew(vtkSMProxy* filter)
+{
+  auto* found = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
+  return found && found->modifiedState() == pqProxy::UNINITIALIZED;
 }
 
 bool isHuge(vtkSMProperty* property)
@@ -78,22 +110,41 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   : pqPropertyWidget(proxy, parent)
 {
   this->setShowLabel(true); // the group's, as a heading
-  auto* form = new QFormLayout(this);
+  auto* all = new QVBoxLayout(this);
+  all->setContentsMargins(0, 0, 0, 0);
+  this->Button = new QToolButton(this);
+  this->Button->setObjectName("Show");
+  this->Button->setText("What was found, and what is used");
+  this->Button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  this->Button->setAutoRaise(true);
+  this->Button->setCheckable(true);
+  auto* values = new QWidget(this);
+  values->setObjectName("Values");
+  all->addWidget(this->Button);
+  all->addWidget(values);
+  const auto show = [this, values](bool on)
+  {
+    this->Button->setArrowType(on ? Qt::DownArrow : Qt::RightArrow);
+    values->setVisible(on);
+  };
+  this->connect(this->Button, &QToolButton::toggled, show);
+  show(false);
+  auto* form = new QFormLayout(values);
   form->setContentsMargins(0, 0, 0, 0);
   form->setRowWrapPolicy(QFormLayout::WrapLongRows);
   for (unsigned int i = 0; i < group->GetNumberOfProperties(); ++i)
   {
     vtkSMProperty* property = group->GetProperty(i);
-    if (QLatin1String(property->GetXMLName()) == QLatin1String("NextScalarRange"))
+    if (isShownElsewhere(property))
     {
-      continue; // the list of iso values shows it, as its domain
+      continue;
     }
     if (!property->GetInformationOnly())
     {
-      form->addRow(pqProxyWidget::createWidgetForProperty(property, proxy, this));
+      form->addRow(pqProxyWidget::createWidgetForProperty(property, proxy, values));
       continue;
     }
-    auto* value = new QLabel(this);
+    auto* value = new QLabel(values);
     value->setObjectName(property->GetXMLName());
     value->setWordWrap(true);
     value->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -105,6 +156,11 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     this->Rows << qMakePair(property, value);
   }
   pqCoreUtilities::connect(proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()));
+  if (!proxy->GetProperty(NEXT[0]))
+  {
+    this->showValues();
+    return;
+  }
   this->Pause.setSingleShot(true);
   this->Pause.setInterval(200);
   this->connect(&this->Pause, SIGNAL(timeout()), SLOT(lookAhead()));
@@ -114,6 +170,17 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
       &this->Pause, SLOT(start()));
   }
   this->showValues();
+  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel is there
+}
+
+//------------------------------------------------------------------------------
+void pqSPHInUse::beginNew()
+{
+  if (isNew(this->proxy()))
+  {
+    this->Given << std::numeric_limits<double>::quiet_NaN(); // none yet
+    this->lookAhead();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -134,12 +201,74 @@ void pqSPHInUse::lookAhead()
   {
     return;
   }
-  for (const char* name : { "NextScalarRange", "NextCells" })
+  for (const char* name : NEXT)
   {
     twin->UpdatePropertyInformation(twin->GetProperty(name));
     vtkSMPropertyHelper(this->proxy(), name).Copy(vtkSMPropertyHelper(twin, name));
   }
+  this->begin();
   this->showRows();
+}
+
+//------------------------------------------------------------------------------
+// A new filter's panel begins with an array and an iso value, which then follows the array until the user has
+// another one. What is loaded, or made by a script, stays as it is.
+void pqSPHInUse::begin()
+{
+  vtkSMProxy* filter = this->proxy();
+  const double iso = vtkSMPropertyHelper(filter, "NextIsoValue").GetAsDouble();
+  vtkSMUncheckedPropertyHelper array(filter, "SelectInputScalars");
+  const char* first = vtkSMPropertyHelper(filter, "NextArray").GetAsString();
+  if (isNew(filter) && first && *first && QLatin1String(array.GetAsString(4)) == "(automatic)")
+  {
+    array.Set(4, first);
+  }
+  vtkSMUncheckedPropertyHelper values(filter, "ContourValues");
+  const bool isNone =
+    this->Given.size() == 1 && std::isnan(this->Given.front()) && values.GetNumberOfElements() == 0;
+  const bool isGiven = this->Given.size() == 1 && values.GetNumberOfElements() == 1 &&
+    values.GetAsDouble(0) == this->Given.front();
+  if ((isNone || isGiven) && std::isfinite(iso) && iso != this->Given.front())
+  {
+    values.Set(&iso, 1);
+    this->Given = QList<double>{ iso };
+  }
+}
+
+//------------------------------------------------------------------------------
+// The panel's other widgets come before.
+void pqSPHInUse::apply()
+{
+  this->dropEmptyRows();
+  this->Superclass::apply();
+}
+
+//------------------------------------------------------------------------------
+// An empty row of the list of iso values would count as 0.
+void pqSPHInUse::dropEmptyRows()
+{
+  QWidget* panel = this->parentWidget();
+  auto* list = panel ? panel->findChild<QWidget*>("ContourValues") : nullptr;
+  auto* table = list ? list->findChild<QTableView*>() : nullptr;
+  if (!table || !this->proxy()->GetProperty("ContourValues"))
+  {
+    return;
+  }
+  vtkSMPropertyHelper values(this->proxy(), "ContourValues");
+  const int rows = table->model()->rowCount();
+  std::vector<double> kept;
+  for (int row = 0; row < rows && row < static_cast<int>(values.GetNumberOfElements()); ++row)
+  {
+    if (!table->model()->index(row, 0).data(Qt::EditRole).toString().trimmed().isEmpty())
+    {
+      kept.push_back(values.GetAsDouble(static_cast<unsigned int>(row)));
+    }
+  }
+  if (static_cast<int>(kept.size()) < rows)
+  {
+    values.SetNumberOfElements(0);
+    values.Set(kept.data(), static_cast<unsigned int>(kept.size()));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -151,5 +280,9 @@ void pqSPHInUse::showRows()
     row.second->setText(
       textOf(row.first) + (huge ? ": this may take minutes and much memory" : ""));
     row.second->setStyleSheet(huge ? "color: #c00000; font-weight: bold" : "");
+    if (huge)
+    {
+      this->Button->setChecked(true); // to be seen
+    }
   }
 }

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The group "In Use" of the filter's panel: shows the information properties of the group, which
- * ParaView itself leaves out, as they were after the last update. A group must have another property,
- * too: ParaView asks for its widget when it comes to that one.
+ * The group "In Use" of a filter's panel, folded at first: shows the information properties of the group,
+ * which ParaView itself leaves out, as they were after the last update. A group must have another
+ * property, too: ParaView asks for its widget when it comes to that one.
  *
- * What the next update would find (the properties NextScalarRange and NextCells) is told as soon as
- * something is changed on the panel, before Apply.
+ * What the next update would find (the properties that begin with Next, where the filter has them) is told as
+ * soon as something is changed on the panel, before Apply. The list of iso values begins with the one that
+ * would be taken, and follows it until the user has others.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h
@@ -18,23 +19,33 @@
 #include <QTimer>
 
 class QLabel;
+class QToolButton;
 class vtkSMProperty;
 class vtkSMPropertyGroup;
 
 class pqSPHInUse : public pqPropertyWidget
 {
   Q_OBJECT
+  using Superclass = pqPropertyWidget;
 
 public:
   pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
   ~pqSPHInUse() override = default;
 
+  void apply() override;
+
 private Q_SLOTS:
   void showValues();
   void lookAhead();
+  void beginNew();
 
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();
+  void begin();
+  void dropEmptyRows();
+
+  QToolButton* Button;
+  QList<double> Given; // the iso value that the panel chose last; none: it does not choose
 
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;
   QTimer Pause; // between the last change and the look ahead

@@ -4,9 +4,9 @@
 
     make_structs.py mcor.h FOLDER
 
-_structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of each
-field, and the types of the options. check_structs.c: that the C compiler
-lays the structures out alike. exports.map: the functions that the library shows.
+_structs.py: the structures and enumerations of mcor.h for ctypes, and what its comments say of the shapes
+of arrays. check_structs.c: that the C compiler lays the structures out alike. exports.map: the functions that
+the library shows.
 """
 import ctypes
 import re
@@ -17,7 +17,6 @@ NUMBERS = {
     "int": "c_int", "double": "c_double", "float": "c_float", "char": "c_char",
     "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
 }
-HINTS = {"int": "Union[bool, int]", "double": "float", "int64_t": "int", "uint64_t": "int"}
 
 
 def fail(sentence):
@@ -99,42 +98,31 @@ def without_comments(text):
     return re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
 
 
-def shape_of(struct, name, comment):
+def shape_of(struct, name, comment, constants):
     """"[count][3], unit L" is ("count", 3); "[attribute_count] -> [count][components]" is a list."""
     match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
     if not match:
         fail(f"the comment on {struct}.{name} does not tell the shape of the array")
-    return tuple(int(part) if part.isdigit() else part
+    return tuple(int(part) if part.isdigit() else constants.get(part, part)
                  for part in re.findall(r"->|\w+", match.group()))
 
 
 def python_module(header):
     lines = ['"""Made by make_structs.py from mcor.h; not to be edited."""',
-             "import ctypes", "from typing import Sequence, TypedDict, Union", "", f"VERSION = {header.version!r}", "",
+             "import ctypes", "", f"VERSION = {header.version!r}", "",
              "Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_char_p)", ""]
     for struct, fields in header.structs.items():
         lines += ["", f"class {struct}(ctypes.Structure):", "    _fields_ = ["]
         lines += [f'        ("{name}", {header.ctype(base, pointers, length)}),'
                   for name, base, pointers, length, _ in fields]
         lines += ["    ]", ""]
-    results = {struct: {name: shape_of(struct, name, comment)
+    results = {struct: {name: shape_of(struct, name, comment, header.constants)
                         for name, _, pointers, _, comment in header.structs[struct] if pointers}
                for struct in ("mcor_surface", "mcor_samples", "mcor_derivatives", "mcor_flow")}
     kinds = {struct: {name: f"{base}[{length}]" if length else base
                       for name, base, pointers, length, _ in header.structs[struct] if not pointers}
              for struct in ("mcor_options", "mcor_input")}
-    comments = {struct: {name: comment for name, _, _, _, comment in fields}
-                for struct, fields in header.structs.items()}
-    lines += ["", "", "class Options(TypedDict, total=False):",
-              '    """The options of the core that are keywords, as mcor.h names them."""', ""]
-    for struct in ("mcor_options", "mcor_input"):
-        for name, base in kinds[struct].items():
-            hint = "Union[str, int]" if base in header.enums else "Sequence[float]" if "[" in base else \
-                HINTS.get(base)
-            if hint and not re.match(r"count$|\w+_count$|has_", name):
-                lines.append(f"    {name}: {hint}")
-    for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds),
-                         ("COMMENTS", comments)):
+    for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds)):
         lines += ["", f"{label} = {value!r}"]
     return "\n".join(lines) + "\n"
 

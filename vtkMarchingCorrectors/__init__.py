@@ -5,7 +5,7 @@
 import vtkmodules.vtkCommonExecutionModel  # noqa: F401
 
 from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHDerivatives,
-                                    vtkSPHProbe, vtkSPHTemporalInterpolator)
+                                    vtkSPHProbe, vtkSPHResample, vtkSPHTemporalInterpolator)
 
-__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHDerivatives", "vtkSPHProbe",
+__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHDerivatives", "vtkSPHProbe", "vtkSPHResample",
            "vtkSPHTemporalInterpolator"]

@@ -8,14 +8,15 @@
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkMarchingCorrectorsSummary.h"
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -56,11 +57,11 @@ void vtkMarchingCorrectors::SetFreeSurfaceValue(double value)
 //------------------------------------------------------------------------------
 void vtkMarchingCorrectors::SetSolids(int solids)
 {
-  const int legal = std::min(std::max<int>(solids, SOLIDS_WEIGHT), static_cast<int>(SOLIDS_WALL));
+  const int legal = std::min(std::max<int>(solids, SOLIDS_WEIGHT), static_cast<int>(SOLIDS_AUTO));
   if (legal != this->GetSolids())
   {
     this->IgnoreSolids = legal == SOLIDS_IGNORE;
-    this->EndAtSolids = legal == SOLIDS_WALL;
+    this->UsedSolids = legal == SOLIDS_IGNORE ? this->UsedSolids : legal;
     this->Modified();
   }
 }
@@ -68,19 +69,30 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 //------------------------------------------------------------------------------
 int vtkMarchingCorrectors::GetSolids() const
 {
-  return this->IgnoreSolids ? SOLIDS_IGNORE : this->EndAtSolids ? SOLIDS_WALL : SOLIDS_WEIGHT;
+  return this->IgnoreSolids ? static_cast<int>(SOLIDS_IGNORE) : this->UsedSolids;
 }
 
 //------------------------------------------------------------------------------
+// What is not a number, as an empty row of a panel's list, is none.
 std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrectorsInput& input)
 {
   vtkContourValues* values =
     input.Choice.FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
-  if (values->GetNumberOfContours() == 0)
+  std::vector<double> list(
+    values->GetValues(), values->GetValues() + values->GetNumberOfContours());
+  list.erase(
+    std::remove_if(list.begin(), list.end(), [](double value) { return std::isnan(value); }),
+    list.end());
+  if (list.empty())
   {
-    return { input.Choice.FreeSurface ? 0.5 : vtkMarchingCorrectorsMiddleOfRange(input.Core) };
+    double range[2], value = 0.5;
+    if (!input.Choice.FreeSurface && !mcor_find_iso_value(&input.Core, nullptr, range, &value))
+    {
+      value = 0.0;
+    }
+    list.push_back(value);
   }
-  return { values->GetValues(), values->GetValues() + values->GetNumberOfContours() };
+  return list;
 }
 
 //------------------------------------------------------------------------------
@@ -126,7 +138,9 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->Trim ? this->VertexThreshold : 0.0;
   const double share = this->WallShare == 0.0 ? MCOR_WALL_SHARE_MEASURED : this->WallShare;
-  options.wall_share = this->EndAtSolids && (this->Trim || this->FreeSurface) ? share : 0.0;
+  const bool endsAtSolids =
+    this->UsedSolids == SOLIDS_WALL || (this->UsedSolids == SOLIDS_AUTO && !this->FreeSurface);
+  options.wall_share = endsAtSolids && (this->Trim || this->FreeSurface) ? share : 0.0;
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
@@ -144,12 +158,19 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
 {
   this->Superclass::FillChoice(choice);
-  choice.Scalar = this->FindRequest(0, particles);
-  choice.ScalarDot = this->FindRequest(1, particles);
+  this->FillRequests(choice, particles);
   choice.ScalarComponent = this->ScalarComponent;
   choice.FreeSurface = this->FreeSurface != 0;
   choice.InterpolateAttributes = this->InterpolateAttributes != 0;
   choice.ComputeScalars = this->ComputeScalars != 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectors::FillRequests(
+  vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
+{
+  choice.Scalar = this->FindFirstRequest(particles);
+  choice.ScalarDot = this->FindRequest(1, particles);
 }
 
 //------------------------------------------------------------------------------
@@ -179,6 +200,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(options);
   this->FillChoice(choice, particles);
+  this->FindFluid(choice, particles);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput input(choice, particles);
   const bool usable = input.Collect();
@@ -225,8 +247,8 @@ void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsOutput builder(input, options, surface);
   this->Summarize(input.Core, options, surface.statistics);
   this->WarnOf(input, surface, input.Core, options);
-  builder.BuildFieldData(output->GetFieldData());
-  vtkSPHAddRunStatistics(this->RunStatistics, surface.statistics);
+  builder.AddIsoValues(output->GetFieldData());
+  builder.AddRun(this->RunStatistics);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
 }
@@ -277,6 +299,34 @@ double* vtkMarchingCorrectors::GetNextScalarRange()
 }
 
 //------------------------------------------------------------------------------
+double vtkMarchingCorrectors::GetNextIsoValue()
+{
+  this->LookAhead();
+  return this->NextIsoValue;
+}
+
+//------------------------------------------------------------------------------
+int vtkMarchingCorrectors::GetNextComponents()
+{
+  this->LookAhead();
+  return this->NextComponents;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkMarchingCorrectors::GetNextFluid()
+{
+  this->LookAhead();
+  return this->NextFluid.c_str();
+}
+
+//------------------------------------------------------------------------------
+const char* vtkMarchingCorrectors::GetNextArray()
+{
+  this->LookAhead();
+  return this->NextArray.c_str();
+}
+
+//------------------------------------------------------------------------------
 double vtkMarchingCorrectors::GetNextCells()
 {
   this->LookAhead();
@@ -289,6 +339,10 @@ void vtkMarchingCorrectors::LookAhead()
   if (this->IsShared())
   {
     std::copy_n(this->FluidScalarRange, 2, this->NextScalarRange);
+    this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
+    this->NextFluid = this->UsedFluid;
+    this->NextComponents = 0;
+    this->NextArray.clear();
     this->NextCells = this->EstimatedCells;
     return;
   }
@@ -303,8 +357,15 @@ void vtkMarchingCorrectors::LookAhead()
   this->FillOptions(options);
   this->NextScalarRange[0] = none;
   this->NextScalarRange[1] = -none;
+  this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
   this->NextCells = 0.0;
-  for (vtkPointSet* particles : vtkSPHListPointSets(data))
+  this->NextComponents = 0;
+  this->NextFluid.clear();
+  this->NextArray.clear();
+  const bool together = this->TakesTogether();
+  const vtkSmartPointer<vtkPointSet> all = together ? this->TakeParticles(data) : nullptr;
+  for (vtkPointSet* particles :
+    vtkSPHListPointSets(together ? static_cast<vtkDataObject*>(all) : data))
   {
     this->LookAhead(particles, options);
   }
@@ -316,28 +377,33 @@ void vtkMarchingCorrectors::LookAhead()
 }
 
 //------------------------------------------------------------------------------
-// Without a scalar the number of cells is known all the same.
+// What is known does not wait for the rest: the range needs no smoothing length, the number of cells
+// no scalar. Of several blocks the first one's iso value.
 void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
 {
   vtkMarchingCorrectorsChoice choice;
   this->FillChoice(choice, particles);
+  this->FindFluid(choice, particles);
   choice.InterpolateAttributes = false;
-  for (const bool freeSurface : { choice.FreeSurface, true })
+  this->NextArray =
+    this->NextArray.empty() ? vtkSPHChooseArray(particles->GetPointData()) : this->NextArray;
+  vtkMarchingCorrectorsInput contoured(choice, particles);
+  double range[2], value;
+  if (!choice.FreeSurface && contoured.CollectContoured() &&
+    mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
   {
-    choice.FreeSurface = freeSurface;
-    vtkMarchingCorrectorsInput input(choice, particles);
-    if (input.Collect())
-    {
-      double range[2];
-      if (!freeSurface && vtkMarchingCorrectorsScalarRange(input.Core, range))
-      {
-        this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
-        this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
-      }
-      this->NextCells += vtkMarchingCorrectorsEstimateCells(
-        input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
-      return;
-    }
+    this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
+    this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
+    this->NextIsoValue = std::isnan(this->NextIsoValue) ? value : this->NextIsoValue;
+    this->NextComponents = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
+  }
+  choice.FreeSurface = true;
+  vtkMarchingCorrectorsInput input(choice, particles);
+  if (input.Collect())
+  {
+    this->NextFluid = input.DescribeFluid();
+    this->NextCells += vtkMarchingCorrectorsEstimateCells(
+      input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
   }
 }
 

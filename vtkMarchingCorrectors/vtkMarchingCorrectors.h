@@ -39,18 +39,21 @@
  * See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH Data" by
  * Schindler, Fuchs, Waser, Peikert. 6th International SPHERIC Workshop, Hamburg, 2011.
  *
- * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name); the
- * active scalars are the default. A vector is contoured by its magnitude or by one component (see
+ * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name). The default
+ * are the active scalars, unless these do not vary, or number particles or their types; then velocities,
+ * the first vector, or the first scalar that varies. A vector is contoured by its magnitude or by one component (see
  * ScalarComponent). If a second vector is chosen with SetInputArrayToProcess(1, ...), the dot
  * product of the two is contoured. In free-surface mode no scalar is needed.
  *
  * How the particles are described, and which of their arrays are found by their names, is told by
- * vtkSPHAlgorithm. What was chosen stands in the output field data.
+ * vtkSPHAlgorithm. GetRunStatistics() says what was chosen.
  *
  * The output point data holds "Normals", the arrays asked for ("Gradients", "WeightSum",
  * "BoundaryEigenvalue", "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see
- * ComputeScalars) and all other point arrays (see InterpolateAttributes). The output field data
- * holds the statistics of the run, one array each: "Device", "Platform", "FluidParticles",
+ * ComputeScalars) and all other point arrays (see InterpolateAttributes). Active scalars are velocities, the
+ * first vector or the first scalar of the particles that varies, or the iso value where there are several. The
+ * output field data has "IsoValues", and what the input's has. GetRunStatistics() holds the statistics of the
+ * run, one array each: "Device", "Platform", "FluidParticles",
  * "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected", "LatticeOrigin",
  * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
  * "Points", "Triangles", "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
@@ -62,9 +65,9 @@
  * "Topology", "Precision", "CubeSize", "Box", "PeriodicBounds" and "Capping" (where they are used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
  * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
  * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar;
- * mcor_statistics in mcor.h says more of each. All of the output is a function of the input and the
- * properties, but for the two numbers of complete seeds, which count the cells examined: also those
- * that KeepDeviceData kept. What a run cost is told by GetRunStatistics().
+ * mcor_statistics in mcor.h says more of each. All of it, and the output, is a function of the input and the
+ * properties, but for what the run cost, and the two numbers of complete seeds, which count the cells
+ * examined: also those that KeepDeviceData kept.
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
@@ -73,14 +76,13 @@
  * among them, particles travel to where they are needed, and each process gets the part of the surface
  * in its share of space, to the last bit as one process would make it. "GlobalPointIds" and
  * "GlobalCellIds" are the numbers that points and triangles have there: put where these say, the parts are
- * that surface. Field data are of the whole;
- * GetRunStatistics() has "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
+ * that surface. GetRunStatistics() is of the whole, and has "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
  * "RankNodesEvaluated",
  * "RankTriangles" and "RankSeconds", one component for each process. An error of one is an error of all.
- * Composite data have the same number of blocks on all.
+ * Blocks that are taken apart are as many on all.
  *
  * @warning
- * Every piece or block is contoured by itself, unless processes share the surface. Particles of a neighbouring piece, also those marked
+ * Every piece is contoured by itself, unless processes share the surface. Particles of a neighbouring piece, also those marked
  * as ghosts, are particles like all others: without them the surface is trimmed at the cut, and with
  * them both pieces have the surface there.
  *
@@ -176,7 +178,8 @@ public:
   {
     SOLIDS_WEIGHT = 0, ///< count in the weight sum used for trimming
     SOLIDS_IGNORE = 1, ///< play no part
-    SOLIDS_WALL = 2    ///< count there, and the surface ends at them
+    SOLIDS_WALL = 2,   ///< count there, and the surface ends at them
+    SOLIDS_AUTO = 3    ///< as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface
   };
 
   /**
@@ -190,9 +193,9 @@ public:
   ///@{
   /**
    * Methods to set/get contour values, in the unit of the scalar. Several values give several
-   * surfaces in one output. By default there is none, and one surface is drawn in the middle of the
-   * fluid's scalar range, the 2 % lowest and highest values left out; where that was is told by
-   * "IsoValues" in the output field data.
+   * surfaces in one output. By default there is none, and one surface is drawn at the median of the
+   * scalar in the fluid; where all values are positive and range over three decades, at the middle of the
+   * range in logarithms. "IsoValues" in the output field data tells it. NaN counts as none.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
   double GetValue(int i)
@@ -298,7 +301,7 @@ public:
    * cubes are as many times larger; bricks that touch differ by a factor of 2 at most. The surface is
    * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
    * for all, the same as UNIFORM. TOPOLOGY_FIELD decides between cubes that no finer one touches.
-   * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The field data have
+   * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The statistics have
    * CellsOfLevel, TrianglesOfLevel, FlatCaps, and HighestLevel, to which periods may limit it.
    */
   vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
@@ -440,11 +443,12 @@ public:
 
   ///@{
   /**
-   * What solid particles (see SetFluidArrayName) do to the surface's end. SOLIDS_WEIGHT, the
-   * default: the surface runs on behind the wall, as the weight sum does. SOLIDS_IGNORE, as
-   * IgnoreSolids: it ends before the wall, where the fluid's weight is VertexThreshold. SOLIDS_WALL:
-   * it ends where the solids' share of the weight sum becomes greater than WallShare; so does the free
-   * surface, which then is open along walls.
+   * What solid particles (see SetFluidArrayName) do to the surface's end. SOLIDS_AUTO, the default: the
+   * surface of a scalar ends at the wall, as with SOLIDS_WALL; the free surface runs on, as with
+   * SOLIDS_WEIGHT. SOLIDS_WEIGHT: it runs on behind the wall, as the weight sum does. SOLIDS_IGNORE, as
+   * IgnoreSolids: it ends before the wall, where the fluid's weight is VertexThreshold. SOLIDS_WALL: it ends
+   * where the solids' share of the weight sum becomes greater than WallShare; so does the free surface,
+   * which then is open along walls.
    */
   void SetSolids(int solids);
   int GetSolids() const;
@@ -452,11 +456,11 @@ public:
 
   ///@{
   /**
-   * For SOLIDS_WALL, below 1. 0, the default: measured, as the solids' share at those solids that face the
+   * Where the surface ends at solids, below 1. 0, the default: measured, as the solids' share at those solids that face the
    * fluid, in the median, so that the surface of a scalar ends there; the free surface, which keeps in
    * front of them, takes 0.5. With 0.5 it ends where solids weigh more than the fluid, about half way
-   * between the wall's and the fluid's particles. More is farther into the wall. The output field data
-   * has the one in use.
+   * between the wall's and the fluid's particles. More is farther into the wall. GetRunStatistics() has the
+   * one in use.
    */
   vtkSetMacro(WallShare, double);
   vtkGetMacro(WallShare, double);
@@ -484,9 +488,9 @@ public:
   ///@{
   /**
    * Add the iso value as a point array. For a scalar array it takes the name of this array; else
-   * the name is that of the vector and the component or "Magnitude" ("Velocity_Magnitude"), of both
+   * the name is that of the vector and the component or "Magnitude" ("Velocity_X"), of both
    * vectors for a dot product ("A_Dot_B"), or "IsoValue" in free-surface mode and where a computed
-   * array ("Normals", ...) has that name. It becomes the active scalars. On by default.
+   * array ("Normals", ...) has that name. On by default.
    */
   vtkSetMacro(ComputeScalars, vtkTypeBool);
   vtkGetMacro(ComputeScalars, vtkTypeBool);
@@ -604,13 +608,18 @@ public:
   ///@{
   /**
    * What an update with the properties and the input as they are now would find: the range that
-   * FluidScalarRange would have, and the cells of EstimatedCells (of all blocks). The input is read as
-   * it is, and not updated. 0 to 0, or 0, where it is not known: without particles, or without a
-   * scalar. Where processes share a run these are the last update's: one process alone has but some of
+   * FluidScalarRange would have, the iso value that would be taken if none were given (NaN: not known), the
+   * cells of EstimatedCells (of all blocks), what UsedFluid would be, how many components the chosen array has (1 for a dot product), and the array that is taken where
+   * nobody has chosen one. The input is read as it is, and not updated. 0 to 0, 0, or empty, where it is not
+   * known: without particles, or without a scalar. Where processes share a run these are the last update's: one process alone has but some of
    * the particles, and to ask the others could be to wait for ever.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2);
+  double GetNextIsoValue();
+  int GetNextComponents();
   double GetNextCells();
+  const char* GetNextFluid();
+  const char* GetNextArray();
   ///@}
 
 protected:
@@ -641,7 +650,7 @@ protected:
   double NodeThreshold = 0.1;
   int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;
-  bool EndAtSolids = false;
+  int UsedSolids = SOLIDS_AUTO; ///< unless they are ignored
   double WallShare = 0.0;
 
   vtkTypeBool ComputeNormals = 1;
@@ -664,7 +673,10 @@ protected:
   double UsedCubeSize = 0.0;
   double EstimatedCells = 0.0;
   double NextScalarRange[2] = { 0.0, 0.0 };
+  double NextIsoValue = 0.0;
+  int NextComponents = 0;
   double NextCells = 0.0;
+  std::string NextFluid, NextArray;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
@@ -674,12 +686,12 @@ private:
   std::vector<double> ListIsoValuesTogether(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
   void EstimateTogether(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
-  void FinishTogether(
-    vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
+  void FinishTogether(vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options);
   void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
+  void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);
   void ClearSummary();
   void LookAhead();

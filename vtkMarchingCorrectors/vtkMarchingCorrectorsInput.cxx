@@ -11,6 +11,12 @@ vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
 }
 
 //------------------------------------------------------------------------------
+bool vtkMarchingCorrectorsInput::CollectContoured()
+{
+  return this->CollectScalar() && this->CollectSolids();
+}
+
+//------------------------------------------------------------------------------
 bool vtkMarchingCorrectorsInput::Collect()
 {
   if ((!this->Choice.FreeSurface && !this->CollectScalar()) || !this->CollectParticles())
@@ -107,7 +113,11 @@ void vtkMarchingCorrectorsInput::NameScalar()
   else if (this->Scalar->GetNumberOfComponents() > 1)
   {
     const char* label = component >= 0 ? this->Scalar->GetComponentName(component) : "Magnitude";
-    this->ScalarName += "_" + (label ? std::string(label) : std::to_string(component));
+    const bool isVector = this->Scalar->GetNumberOfComponents() <= 3;
+    this->ScalarName += "_" +
+      (label         ? std::string(label)
+          : isVector ? std::string(1, "XYZ"[component])
+                     : std::to_string(component));
   }
   if (!this->ScalarName.empty() && !Contains(this->Choice.ComputedArrays, this->ScalarName))
   {

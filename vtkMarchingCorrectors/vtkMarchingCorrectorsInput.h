@@ -30,6 +30,9 @@ public:
    */
   bool Collect();
 
+  /** The scalar and which particles are fluid alone: what the range of values depends on. */
+  bool CollectContoured();
+
   const vtkMarchingCorrectorsChoice Choice;
   vtkSmartPointer<vtkDataArray> Scalar;
   vtkSmartPointer<vtkDataArray> ScalarDot;

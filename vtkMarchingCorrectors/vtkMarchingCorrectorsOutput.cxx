@@ -72,7 +72,8 @@ std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output, int precision)
+void vtkMarchingCorrectorsOutput::BuildMesh(
+  vtkPolyData* output, int precision, const std::function<void(std::vector<double>&)>& merge)
 {
   const bool asFloat = precision == vtkAlgorithm::SINGLE_PRECISION ||
     (precision == vtkAlgorithm::DEFAULT_PRECISION &&
@@ -84,6 +85,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output, int precision)
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
+  this->ChooseActive(output, merge);
 }
 
 //------------------------------------------------------------------------------
@@ -203,16 +205,74 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
   const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
   vtkSPHAddArray(output->GetPointData(), name,
     vtkSPHAdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
-  output->GetPointData()->SetActiveScalars(name);
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectorsOutput::BuildFieldData(vtkFieldData* fieldData) const
+// Of what the particles carry, or the iso value where there are several; which is on all surfaces, too.
+void vtkMarchingCorrectorsOutput::ChooseActive(
+  vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const
 {
-  vtkSPHAddText(fieldData, "Device", this->Surface.statistics.device);
-  vtkSPHAddText(fieldData, "Platform", this->Surface.statistics.platform);
-  this->AddStatistics(fieldData);
-  this->AddParameters(fieldData);
+  vtkPointData* data = output->GetPointData();
+  std::vector<double> ends; // least value, and minus the greatest, of each component
+  const auto look = [&](const std::string& name, int components)
+  {
+    vtkDataArray* array = data->GetArray(name.c_str());
+    for (int c = 0; c < components; ++c)
+    {
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (array && array->GetNumberOfTuples() > 0)
+      {
+        array->GetRange(range, c);
+      }
+      ends.insert(ends.end(), { range[0], -range[1] });
+    }
+  };
+  for (const vtkSPHAttribute& attribute : this->Input.Interpolated)
+  {
+    look(attribute.Name, attribute.Components);
+  }
+  if (merge)
+  {
+    merge(ends);
+  }
+  vtkSPHArrayChoice choice;
+  const double* end = ends.data();
+  for (const vtkSPHAttribute& attribute : this->Input.Interpolated)
+  {
+    bool varies = false;
+    for (int c = 0; c < attribute.Components; ++c, end += 2)
+    {
+      varies = varies || end[0] < -end[1];
+    }
+    choice.Consider(attribute.Name, attribute.Components, true, varies);
+  }
+  choice.Consider(this->Input.IsoValueName, 1, true, this->Options.iso_count > 1);
+  if (data->HasArray(choice.Best.c_str()))
+  {
+    data->SetActiveScalars(choice.Best.c_str());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
+{
+  vtkSPHAddText(run, "Device", this->Surface.statistics.device);
+  vtkSPHAddText(run, "Platform", this->Surface.statistics.platform);
+  this->AddStatistics(run);
+  this->AddIsoValues(run);
+  this->AddParameters(run);
+  vtkSPHAddRunStatistics(run, this->Surface.statistics);
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
+{
+  auto isoValues = vtkSmartPointer<vtkDoubleArray>::New();
+  for (int i = 0; i < this->Options.iso_count; ++i)
+  {
+    isoValues->InsertNextValue(this->Options.iso_values[i]);
+  }
+  vtkSPHAddArray(fieldData, "IsoValues", isoValues);
 }
 
 //------------------------------------------------------------------------------
@@ -291,12 +351,6 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
 {
   const mcor_options& o = this->Options;
-  auto isoValues = vtkSmartPointer<vtkDoubleArray>::New();
-  for (int i = 0; i < o.iso_count; ++i)
-  {
-    isoValues->InsertNextValue(o.iso_values[i]);
-  }
-  vtkSPHAddArray(fieldData, "IsoValues", isoValues);
   const char* const fields[] = { "shepard", "sum", "weight sum" };
   vtkSPHAddText(fieldData, "Field", fields[o.field]);
   vtkSPHAddText(fieldData, "Scalar", this->Input.ScalarName);

@@ -8,6 +8,7 @@
 
 #include "mcor.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,16 +29,21 @@ public:
    */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
-  /** precision: of the points, as vtkAlgorithm has it. */
-  void BuildMesh(vtkPolyData* output, int precision);
-  /** Statistics and parameters: a function of the input and the options alone. */
-  void BuildFieldData(vtkFieldData* fieldData) const;
+  /** precision: of the points, as vtkAlgorithm has it. merge: makes each number the least over ranks. */
+  void BuildMesh(vtkPolyData* output, int precision,
+    const std::function<void(std::vector<double>&)>& merge = nullptr);
+  /** The iso values, to the output's field data. */
+  void AddIsoValues(vtkFieldData* fieldData) const;
+  /** Statistics and parameters: but for what it cost a function of the input and the options alone. */
+  void AddRun(vtkFieldData* run) const;
 
 private:
   void BuildTriangles(vtkPolyData* output);
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);
+  void ChooseActive(
+    vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const;
   void AddStatistics(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 

@@ -10,9 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
-#include <mutex>
-#include <vector>
 
 namespace
 {
@@ -124,74 +121,4 @@ std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array
     counts[last] += run;
   }
   return counts.size() <= most ? counts : std::map<double, vtkIdType>();
-}
-
-//------------------------------------------------------------------------------
-bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2])
-{
-  const double none = std::numeric_limits<double>::infinity();
-  double all[2] = { none, -none };
-  std::mutex guard;
-  vtkSMPTools::For(0, core.count,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      double low = none, high = -none;
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        const double value =
-          core.solid && core.solid[i] ? none : vtkMarchingCorrectorsScalarOf(core, i);
-        if (std::isfinite(value))
-        {
-          low = std::min(low, value);
-          high = std::max(high, value);
-        }
-      }
-      const std::lock_guard<std::mutex> lock(guard);
-      all[0] = std::min(all[0], low);
-      all[1] = std::max(all[1], high);
-    });
-  if (all[0] <= all[1])
-  {
-    std::copy_n(all, 2, range);
-  }
-  return all[0] <= all[1];
-}
-
-//------------------------------------------------------------------------------
-std::vector<double> vtkMarchingCorrectorsFluidValues(const mcor_input& core)
-{
-  std::vector<double> values(static_cast<size_t>(core.count));
-  vtkSMPTools::For(0, core.count,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        values[static_cast<size_t>(i)] = vtkMarchingCorrectorsScalarOf(core, i);
-      }
-    });
-  size_t count = 0;
-  for (size_t i = 0; i < values.size(); ++i)
-  {
-    if (std::isfinite(values[i]) && (!core.solid || !core.solid[i]))
-    {
-      values[count++] = values[i];
-    }
-  }
-  values.resize(count);
-  return values;
-}
-
-//------------------------------------------------------------------------------
-double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core)
-{
-  std::vector<double> values = vtkMarchingCorrectorsFluidValues(core);
-  if (values.empty())
-  {
-    return 0.0;
-  }
-  const auto margin = static_cast<std::ptrdiff_t>(values.size() / 50);
-  std::nth_element(values.begin(), values.begin() + margin, values.end());
-  const double low = values[static_cast<size_t>(margin)];
-  std::nth_element(values.begin(), values.end() - 1 - margin, values.end());
-  return 0.5 * low + 0.5 * *(values.end() - 1 - margin);
 }

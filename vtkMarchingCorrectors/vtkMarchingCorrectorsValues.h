@@ -13,7 +13,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <vector>
 
 class vtkDataArray;
 
@@ -29,20 +28,5 @@ std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array
 /** What is contoured at a particle; and where that is along an axis. */
 double vtkMarchingCorrectorsScalarOf(const mcor_input& core, vtkIdType particle);
 double vtkMarchingCorrectorsPositionOf(const mcor_input& core, vtkIdType particle, int axis);
-
-/** The finite values of what is contoured at fluid particles, in no order. */
-std::vector<double> vtkMarchingCorrectorsFluidValues(const mcor_input& core);
-
-/**
- * Lowest and highest value of the scalar (the component, magnitude or dot product) at fluid particles
- * where it is finite; false, and the range as it was, where there is none.
- */
-bool vtkMarchingCorrectorsScalarRange(const mcor_input& core, double range[2]);
-
-/**
- * An iso value for users who gave none: the middle of the fluid's scalar range. The 2 % lowest and
- * highest values are left out, because single particles of a spray have extreme ones.
- */
-double vtkMarchingCorrectorsMiddleOfRange(const mcor_input& core);
 
 #endif

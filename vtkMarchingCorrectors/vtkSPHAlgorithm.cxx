@@ -4,16 +4,16 @@
 
 #include "mcor.h"
 #include "vtkDataObjectTree.h"
-#include "vtkDataObjectTreeIterator.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHAlgorithmInternals.h"
-#include "vtkSPHBlocks.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkVersionMacros.h"
 #if MCOR_HAS_RANKS
@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 // These are handed to the core as they are.
 static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
@@ -112,6 +113,13 @@ vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
 }
 
 //------------------------------------------------------------------------------
+const char* vtkSPHAlgorithm::GetStatistics()
+{
+  this->Statistics = vtkSPHDescribe(this->RunStatistics);
+  return this->Statistics.c_str();
+}
+
+//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::ReleaseDeviceMemory()
 {
   this->Internals->Release();
@@ -154,9 +162,11 @@ int vtkSPHAlgorithm::RequestDataObject(
   {
     return 0;
   }
-  const bool blocks = vtkDataObjectTree::SafeDownCast(input) != nullptr;
-  const std::string name =
-    blocks ? input->GetClassName() : this->GetOutputClassName(input->GetClassName());
+  const bool isTree = vtkDataObjectTree::SafeDownCast(input) != nullptr;
+  const bool blocks = isTree && (!this->TakesTogether() || this->KeepsBlocks());
+  const std::string name = blocks
+    ? input->GetClassName()
+    : this->GetOutputClassName(isTree ? "vtkPolyData" : input->GetClassName());
   if (!output || name != output->GetClassName())
   {
     auto made = vtkSmartPointer<vtkDataObject>::Take(
@@ -188,12 +198,30 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   }
   vtkInformation* info = all->GetInformationObject(index);
   const char* name = info->Get(vtkDataObject::FIELD_NAME());
-  request.Name = name ? name : "";
-  if (!request.Name.empty() || info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+  request.Name = name && std::strcmp(name, "(automatic)") != 0 ? name : "";
+  if (!request.Name.empty() || (!name && info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE())))
   {
     int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
     request.Array = this->GetInputAbstractArrayToProcess(index, particles, association);
     request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  }
+  return request;
+}
+
+//------------------------------------------------------------------------------
+// Nobody has chosen the active scalars of a file.
+vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(vtkPointSet* particles)
+{
+  vtkSPHRequest request = this->FindRequest(0, particles);
+  vtkPointData* data = particles->GetPointData();
+  auto* active = vtkArrayDownCast<vtkDataArray>(request.Array);
+  if (request.Name.empty() && (!active || !vtkSPHIsFit(active)))
+  {
+    const std::string best = vtkSPHChooseArray(data);
+    if (!best.empty())
+    {
+      request.Array = data->GetAbstractArray(best.c_str());
+    }
   }
   return request;
 }
@@ -270,74 +298,28 @@ int vtkSPHAlgorithm::RequestData(
   this->Warned.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->Internals->BeginRun();
-  auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
+  auto* tree = vtkDataObjectTree::GetData(inputVector[0]);
+  vtkDataObjectTree* apart = this->TakesTogether() ? nullptr : tree;
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (this->IsShared() && !this->AgreeOnBlocks(blocks))
+  if (this->IsShared() && !this->AgreeOnBlocks(apart))
   {
     this->Internals->EndRun();
     return 0;
   }
-  if (blocks)
+  if (apart)
   {
-    this->ProcessBlocks(blocks, vtkDataObjectTree::SafeDownCast(output));
+    this->ProcessBlocks(apart, vtkDataObjectTree::SafeDownCast(output));
+  }
+  else if (tree)
+  {
+    this->ProcessJoined(tree, output);
   }
   else
   {
     this->Process(vtkDataObject::GetData(inputVector[0]), output);
   }
   this->Internals->EndRun();
-  return blocks || this->ErrorMessage.empty() ? 1 : 0;
-}
-
-//------------------------------------------------------------------------------
-// Each block is a run that all processes take part in.
-bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
-{
-  bool good = true;
-#if !MCOR_HAS_RANKS
-  static_cast<void>(blocks);
-#else
-  vtkSPHRanks ranks(this->Controller);
-  const std::int64_t count =
-    blocks ? static_cast<std::int64_t>(vtkSPHNameBlocks(blocks).size()) : -1;
-  std::int64_t ends[2] = { count, -count };
-  ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
-  good = ends[0] == -ends[1];
-#endif
-  if (!good)
-  {
-    this->Fail("The processes have different numbers of blocks. Merge the blocks of each.");
-  }
-  return good;
-}
-
-//------------------------------------------------------------------------------
-// A block that fails leaves its place empty, and the others as they are.
-void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
-{
-  output->CopyStructure(input);
-  const std::vector<std::string> names = vtkSPHNameBlocks(input);
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(input->NewTreeIterator());
-  iterator->InitTraversal();
-  this->WarnOnce(WARN_WALL_BLOCK, vtkSPHFindWalls(names));
-  const double share = 1.0 / static_cast<double>(names.size());
-  for (size_t i = 0; i < names.size(); ++i, iterator->GoToNextItem())
-  {
-    this->SetProgressShiftScale(static_cast<double>(i) * share, share);
-    this->BlockName = names[i] + ": ";
-    vtkDataObject* block = iterator->GetCurrentDataObject();
-    auto made = vtkSmartPointer<vtkDataObject>::Take(
-      vtkDataObjectTypes::NewDataObject(this->GetOutputClassName(block->GetClassName())));
-    made->GetFieldData()->PassData(block->GetFieldData());
-    this->Process(block, made);
-    output->SetDataSetFrom(iterator, made);
-  }
-  this->SetProgressShiftScale(0.0, 1.0);
-  if (this->IsAborted())
-  {
-    output->CopyStructure(input); // not some blocks of a result
-  }
+  return apart || this->ErrorMessage.empty() ? 1 : 0;
 }
 
 //------------------------------------------------------------------------------
@@ -437,6 +419,7 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
   this->UsedVolumeArrayName = nameOf(particles ? particles->Volume : nullptr);
   this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
   this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
+  this->UsedFluid = particles ? particles->DescribeFluid() : "";
 }
 
 //------------------------------------------------------------------------------
@@ -470,6 +453,9 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "H Scale Factor: " << this->HScaleFactor << "\n";
   printName("Fluid Array Name", this->FluidArrayName);
   os << indent << "Fluid Value: " << this->FluidValue << "\n";
+  os << indent << "Detect Fluid: " << this->DetectFluid << "\n";
+  printName("Used Fluid", this->UsedFluid);
+  os << indent << "Blocks: " << (this->Blocks == APART ? "apart" : "together") << "\n";
   os << indent << "Ignore Solids: " << this->IgnoreSolids << "\n";
   for (const std::string& name : this->ExcludedArrays)
   {

@@ -24,7 +24,8 @@
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
- * Composite data give composite data: each block is worked on by itself, in its place. A block that
+ * The blocks of composite data are one set of particles, with the arrays that all of them have, and
+ * give one surface; or each is worked on by itself, in its place, see SetBlocks(). A block by itself that
  * fails leaves its place empty; the error names it.
  *
  * @sa
@@ -62,6 +63,12 @@ class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm : public vtkPolyDataAlgorithm
 public:
   vtkAbstractTypeMacro(vtkSPHAlgorithm, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum BlocksType
+  {
+    TOGETHER = 0, ///< one set of particles
+    APART = 1     ///< each by itself
+  };
 
   enum KernelType
   {
@@ -224,6 +231,35 @@ public:
 
   ///@{
   /**
+   * Where no fluid array is named, find the fluid by what clearly tells of it: an array with a usual name
+   * (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics; or names of some of the
+   * blocks that are taken together ("walls", "boundary"), whose particles then are solid. Off by default:
+   * then a warning tells of it. GetUsedFluid() says what was found.
+   */
+  vtkSetMacro(DetectFluid, vtkTypeBool);
+  vtkGetMacro(DetectFluid, vtkTypeBool);
+  vtkBooleanMacro(DetectFluid, vtkTypeBool);
+  ///@}
+
+  /**
+   * The array and the value that marked fluid in the last run, as "ParticleType = 0"; empty: all particles
+   * were fluid.
+   */
+  vtkGetCharFromStdStringMacro(UsedFluid);
+
+  ///@{
+  /**
+   * Whether the blocks of composite data are one set of particles (TOGETHER, the default), which see
+   * each other; or each is taken by itself (APART). Those of a probe's points always are.
+   */
+  vtkSetClampMacro(Blocks, int, TOGETHER, APART);
+  vtkGetMacro(Blocks, int);
+  void SetBlocksToTogether() { this->SetBlocks(TOGETHER); }
+  void SetBlocksToApart() { this->SetBlocks(APART); }
+  ///@}
+
+  ///@{
+  /**
    * Leave solid particles out of the weight sum used for trimming too. Off by default: they count
    * there, so that the surface reaches the wall.
    */
@@ -278,14 +314,20 @@ public:
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
   /**
-   * What the last update cost, one array each: "Seconds" (one component per phase, one for building
+   * What the last update found, used (a surface's statistics: see vtkMarchingCorrectors) and cost, one array
+   * each: "Seconds" (one component per phase, one for building
    * the OpenCL program, and the total, by name), "DeviceBytesPeak", "ParticlesInReach" (of the box),
    * "Bricks", "NodesEvaluated" (those kept from earlier updates counted), "MarchRounds"; and what
    * warnings go by: "MedianNeighbors" and "MedianSpacing" (distance of the nearest particle), both of
-   * fluid particles, of the last block. Empty where nothing ran. The next update makes another field
-   * data and leaves this one as it is.
+   * fluid particles. Of blocks by themselves costs are sums, the rest is of the last one. Empty where nothing
+   * ran. The next update makes another field data and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
+
+  /**
+   * The same as text, a line "Name: values" for each.
+   */
+  const char* GetStatistics();
 
   /**
    * The OpenCL devices at hand, one line each: "number: device (platform)". Empty if there is none.
@@ -341,6 +383,18 @@ protected:
   virtual void Process(vtkDataObject* input, vtkDataObject* output) = 0;
 
   /**
+   * Whether blocks at port 0 are taken together; and whether the output then has these blocks, too.
+   */
+  virtual bool TakesTogether() const { return this->Blocks == TOGETHER; }
+  virtual bool KeepsBlocks() const { return false; }
+
+  /**
+   * Particles that are one set: a point set itself, or all blocks of composite data, put together once
+   * and kept as long as they are the same. Null for others.
+   */
+  vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
+
+  /**
    * Reports an error, naming the block, and keeps its sentence.
    */
   void Fail(const std::string& message);
@@ -363,13 +417,19 @@ protected:
   enum
   {
     WARN_TYPE_ARRAY = 100, ///< an array that tells fluid from solids is not used
-    WARN_WALL_BLOCK        ///< walls in a block of their own
+    WARN_WALL_BLOCK        ///< walls in a block of their own, which is taken by itself
   };
 
   /**
    * The array chosen by SetInputArrayToProcess(index, ...).
    */
   vtkSPHRequest FindRequest(int index, vtkPointSet* particles);
+
+  /**
+   * The first one. Where none was named, the active scalars if they are fit to be looked at, see
+   * mcor_view_rank(), else the array that is fittest.
+   */
+  vtkSPHRequest FindFirstRequest(vtkPointSet* particles);
 
   /**
    * Calls the core: `call` gets a context for the device and returns the core's status. False if
@@ -393,6 +453,10 @@ protected:
       nullptr);
 
   void FillChoice(vtkSPHParticlesChoice& choice) const;
+  /** Names the fluid in the choice, where it is to be found, and is. */
+  void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
+  /** The same on all ranks together; these are one's own. */
+  void FindFluidTogether(vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
   /**
@@ -427,6 +491,9 @@ protected:
   double HScaleFactor = 1.0;
   std::string FluidArrayName;
   double FluidValue = 0.0;
+  vtkTypeBool DetectFluid = 0;
+  std::string UsedFluid;
+  int Blocks = TOGETHER;
   vtkTypeBool IgnoreSolids = 0;
   std::vector<std::string> ExcludedArrays;
   int Precision = SINGLE_PRECISION;
@@ -440,6 +507,7 @@ protected:
   std::set<int> Warned;  // kinds of warnings that this run has given
   std::string BlockName; // begins the messages about a block of composite data
   vtkSmartPointer<vtkFieldData> RunStatistics;
+  std::string Statistics;
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
 
@@ -450,6 +518,7 @@ private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);
+  void ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output);
   int RunCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
 };

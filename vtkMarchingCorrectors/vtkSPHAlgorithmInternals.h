@@ -8,7 +8,12 @@
 #define vtkSPHAlgorithmInternals_h
 
 #include "mcor.h"
+#include "vtkDataObject.h"
+#include "vtkPointSet.h"
 #include "vtkSPHAlgorithm.h"
+#include "vtkSmartPointer.h"
+#include "vtkTimeStamp.h"
+#include "vtkWeakPointer.h"
 
 #include <cstdint>
 #include <string>
@@ -39,6 +44,9 @@ public:
   void EndRun();
 
   mcor_context* Context = nullptr;
+  vtkSmartPointer<vtkPointSet> Joined; // blocks that are one set of particles
+  vtkWeakPointer<vtkDataObject> JoinedFrom;
+  vtkTimeStamp JoinedTime;
 
 private:
   std::string Device; // what the context was created for

@@ -29,7 +29,7 @@ bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
   flow.*this->Values = made;
   mcor_decompose_gradients(derivatives.gradients[0], derivatives.count, &flow);
   vtkSPHAddArray(
-    data, this->Name, vtkSPHAdoptReal(made, this->Components, derivatives.count, asFloat));
+    data, this->Name.c_str(), vtkSPHAdoptReal(made, this->Components, derivatives.count, asFloat));
   std::free(made); // where there are no particles
   return true;
 }
@@ -83,14 +83,27 @@ const char* vtkSPHDerivatives::GetOutputClassName(const char* inputClassName)
 }
 
 //------------------------------------------------------------------------------
-vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted() const
+// An array of a file may be another one of that name: made of another kernel, or by the solver.
+std::string vtkSPHDerivatives::NameResult(const std::string& name, vtkPointSet* particles) const
 {
-  return { { { "Divergence", 1, &mcor_flow::divergence, this->ComputeDivergence != 0 },
-             { "Vorticity", 3, &mcor_flow::vorticity, this->ComputeVorticity != 0 },
-             { "Q-criterion", 1, &mcor_flow::q_criterion, this->ComputeQCriterion != 0 },
-             { "Lambda2", 1, &mcor_flow::lambda2, this->ComputeLambda2 != 0 },
-             { "StrainRate", 9, &mcor_flow::strain_rate, this->ComputeStrainRate != 0 } },
-    this->ComputeGradient != 0, this->ResultArrayName };
+  std::string free = name;
+  while (!this->ReplaceArrays && particles->GetPointData()->HasArray(free.c_str()))
+  {
+    free += "_SPH";
+  }
+  return free;
+}
+
+//------------------------------------------------------------------------------
+vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particles) const
+{
+  const auto name = [&](const char* usual) { return this->NameResult(usual, particles); };
+  return { { { name("Divergence"), 1, &mcor_flow::divergence, this->ComputeDivergence != 0 },
+             { name("Vorticity"), 3, &mcor_flow::vorticity, this->ComputeVorticity != 0 },
+             { name("Q-criterion"), 1, &mcor_flow::q_criterion, this->ComputeQCriterion != 0 },
+             { name("Lambda2"), 1, &mcor_flow::lambda2, this->ComputeLambda2 != 0 },
+             { name("StrainRate"), 9, &mcor_flow::strain_rate, this->ComputeStrainRate != 0 } },
+    this->ComputeGradient != 0, name(this->ResultArrayName.c_str()) };
 }
 
 //------------------------------------------------------------------------------
@@ -122,9 +135,10 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   }
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
+  this->FindFluid(choice, particles);
   vtkSPHParticles input(choice, particles);
   const bool usable =
-    input.CollectArray(this->FindRequest(0, particles)) && input.CollectParticles();
+    input.CollectArray(this->FindFirstRequest(particles)) && input.CollectParticles();
   this->SetUsedNames(&input);
   if (!usable)
   {
@@ -137,6 +151,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   }
   else
   {
+    this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
     this->Derive(input, particles, vtkPointSet::SafeDownCast(output));
   }
 }
@@ -145,7 +160,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 // What an observer of the progress may change is read before the run.
 void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output)
 {
-  const vtkWanted wanted = this->ListWanted();
+  const vtkWanted wanted = this->ListWanted(particles);
   const mcor_gradient form =
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
   mcor_options options;
@@ -194,6 +209,7 @@ void vtkSPHDerivatives::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Correct Gradients: " << this->CorrectGradients << "\n";
   os << indent << "Compute Gradient: " << this->ComputeGradient << "\n";
   os << indent << "Result Array Name: " << this->ResultArrayName << "\n";
+  os << indent << "Replace Arrays: " << this->ReplaceArrays << "\n";
   os << indent << "Compute Divergence: " << this->ComputeDivergence << "\n";
   os << indent << "Compute Vorticity: " << this->ComputeVorticity << "\n";
   os << indent << "Compute Q Criterion: " << this->ComputeQCriterion << "\n";

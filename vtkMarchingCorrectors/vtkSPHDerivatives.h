@@ -6,8 +6,8 @@
  *
  * vtkSPHDerivatives adds to SPH particles, at each particle, the SPH gradient of one of their point
  * arrays, and of a vector with three components what is made of its gradient. The array is chosen
- * with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name); the active scalars are the
- * default. The particles are described as for vtkMarchingCorrectors, see vtkSPHAlgorithm.
+ * with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name); the default is that of
+ * vtkMarchingCorrectors. The particles are described as for vtkMarchingCorrectors, see vtkSPHAlgorithm.
  *
  *     standard            G_i = sum_j V_j (A_j - A_i) grad W(x_i - x_j, s h_j)
  *     corrected (default) M_i^-1 G_i,  M_i = sum_j V_j grad W(x_i - x_j, s h_j) (x_j - x_i)^T
@@ -28,13 +28,14 @@
  *     StrainRate           S, nine values
  *
  * They are float where the input array is, else double. Sums are over fluid particles; solid
- * particles have zeros. Arrays of the input with these names are replaced.
+ * particles have zeros. Where the input has an array of such a name, the new one is called NAME_SPH, see
+ * SetReplaceArrays().
  *
- * Composite data give composite data: each block that is a point set is worked on by itself.
+ * Composite data give composite data.
  *
  * @warning
- * Every block is worked on by itself, so that gradients at a cut are those at an end of the fluid. So
- * is every piece, but where the controller has many processes: these share the work, each gets the
+ * A block that is taken by itself, see SetBlocks(), has at a cut the gradients of an end of the fluid. So
+ * has a piece, but where the controller has many processes: these share the work, each gets the
  * derivatives of its particles, the same to the last bit as where one process has them all. Particles
  * that vtkGhostType marks as duplicates get zeros.
  *
@@ -93,6 +94,16 @@ public:
 
   ///@{
   /**
+   * Put the new arrays in the place of those that have their names. Off by default: then they are called
+   * NAME_SPH.
+   */
+  vtkSetMacro(ReplaceArrays, vtkTypeBool);
+  vtkGetMacro(ReplaceArrays, vtkTypeBool);
+  vtkBooleanMacro(ReplaceArrays, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Add what is made of the gradient of a vector; for other arrays these do nothing. All are on by
    * default, but the strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
    */
@@ -119,10 +130,12 @@ protected:
 
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
+  bool KeepsBlocks() const override { return true; }
 
   vtkTypeBool CorrectGradients = 1;
   vtkTypeBool ComputeGradient = 1;
   std::string ResultArrayName = "Gradients";
+  vtkTypeBool ReplaceArrays = 0;
   vtkTypeBool ComputeDivergence = 1;
   vtkTypeBool ComputeVorticity = 1;
   vtkTypeBool ComputeQCriterion = 1;
@@ -134,7 +147,8 @@ private:
   void operator=(const vtkSPHDerivatives&) = delete;
 
   struct vtkWanted;
-  vtkWanted ListWanted() const;
+  std::string NameResult(const std::string& name, vtkPointSet* particles) const;
+  vtkWanted ListWanted(vtkPointSet* particles) const;
   void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
   void FailNotFinite(const std::string& array, vtkIdType particle);
   void ProcessTogether(vtkPointSet* particles, vtkPointSet* output);

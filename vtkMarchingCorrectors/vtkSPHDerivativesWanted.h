@@ -21,7 +21,7 @@ struct vtkSPHDerivatives::vtkWanted
   /** One of the arrays made of the gradient of a vector. */
   struct Quantity
   {
-    const char* Name;
+    std::string Name;
     int Components;
     double* mcor_flow::*Values;
     bool IsWanted;

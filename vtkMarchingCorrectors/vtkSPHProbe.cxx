@@ -4,24 +4,24 @@
 
 #include "mcor.h"
 #include "vtkAOSDataArrayTemplate.h"
-#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHSamples.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 namespace
@@ -203,12 +203,9 @@ const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
 }
 
 //------------------------------------------------------------------------------
-// Each piece of the points needs all particles; ranks find them by themselves.
-int vtkSPHProbe::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+void vtkSPHProbe::AskForAll(vtkInformation* particles)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* particles = inputVector[1]->GetInformationObject(0);
   if (particles && !this->IsShared())
   {
     particles->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
@@ -221,6 +218,14 @@ int vtkSPHProbe::RequestUpdateExtent(
       particles->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+// Each piece of the points needs all particles; ranks find them by themselves.
+int vtkSPHProbe::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  this->AskForAll(inputVector[1]->GetInformationObject(0));
   return 1;
 }
 
@@ -228,9 +233,7 @@ int vtkSPHProbe::RequestUpdateExtent(
 int vtkSPHProbe::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  auto* blocks = vtkDataObjectTree::GetData(inputVector[1]);
-  this->Particles = blocks ? vtkSPHJoinBlocks(blocks)
-                           : vtkSmartPointer<vtkPointSet>(vtkPointSet::GetData(inputVector[1]));
+  this->Particles = this->TakeParticles(vtkDataObject::GetData(inputVector[1]));
   const int done = this->Superclass::RequestData(request, inputVector, outputVector);
   this->Particles = nullptr;
   return done;
@@ -259,6 +262,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   }
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
+  this->FindFluid(choice, this->Particles);
   vtkSPHParticles input(choice, this->Particles);
   if (this->Particles->GetNumberOfPoints() > 0)
   {
@@ -269,10 +273,8 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
       this->Fail(input.Error);
       return;
     }
-    if (input.FluidCount == 0)
-    {
-      this->WarnOfNoFluid(choice, "no point is valid");
-    }
+    input.FluidCount == 0 ? this->WarnOfNoFluid(choice, "no point is valid")
+                          : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
     if (this->InterpolateAttributes)
     {
       input.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
@@ -300,7 +302,8 @@ void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* 
   {
     return;
   }
-  vtkSPHSamples samples(input, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints());
+  vtkSPHSamples samples(
+    input, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints(), this->GetNull());
   vtkFieldData* statistics = this->RunStatistics;
   if (input.FluidCount > 0 && points->GetNumberOfPoints() > 0 &&
     !this->CallCore(input, options,
@@ -315,6 +318,33 @@ void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* 
   }
   output->ShallowCopy(points);
   samples.AddTo(output->GetPointData());
+  this->FinishOutput(output);
+}
+
+//------------------------------------------------------------------------------
+double vtkSPHProbe::GetNull() const
+{
+  return this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue;
+}
+
+//------------------------------------------------------------------------------
+// What varies among the particles, as points that are not valid have a value of their own.
+void vtkSPHProbe::FinishOutput(vtkDataSet* output) const
+{
+  vtkNew<vtkPointData> found;
+  vtkPointData* from = this->Particles ? this->Particles->GetPointData() : nullptr;
+  for (int i = 0; from && i < from->GetNumberOfArrays(); ++i)
+  {
+    if (from->GetArray(i) && output->GetPointData()->HasArray(from->GetArrayName(i)))
+    {
+      found->AddArray(from->GetArray(i));
+    }
+  }
+  const std::string best = vtkSPHChooseArray(found);
+  if (!best.empty())
+  {
+    output->GetPointData()->SetActiveScalars(best.c_str());
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -325,5 +355,7 @@ void vtkSPHProbe::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Weight Threshold: " << this->WeightThreshold << "\n";
   os << indent << "Interpolate Attributes: " << this->InterpolateAttributes << "\n";
   os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
+  os << indent << "NaN Outside: " << this->NaNOutside << "\n";
+  os << indent << "Null Value: " << this->NullValue << "\n";
   os << indent << "Valid Point Mask Array Name: " << this->ValidPointMaskArrayName << "\n";
 }

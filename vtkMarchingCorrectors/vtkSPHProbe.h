@@ -20,7 +20,8 @@
  *     NAME_Gradient         of each of these arrays and of Weight, if ComputeGradients is on: 3
  *                           values per component: d/dx, d/dy, d/dz of the first, then the next
  *
- * Where a point is not valid, the arrays, but Weight, are 0. Arrays that were there under these
+ * Where a point is not valid, the arrays, but Weight, are 0, or what was chosen, see SetNullValue(). Active
+ * scalars become the particles' velocities, else their first vector or scalar that varies. Arrays that were there under these
  * names are replaced. Arrays of other types, such as identifiers, are left out, as are those named
  * by AddExcludedArray(); one that is NaN or infinite at a fluid particle is left out with a warning.
  * Only fluid particles count.
@@ -108,6 +109,18 @@ public:
 
   ///@{
   /**
+   * What arrays, but Weight and the mask, are where a point is not valid: NaN, or NullValue, 0 by default.
+   * NaNOutside is off by default.
+   */
+  vtkSetMacro(NaNOutside, vtkTypeBool);
+  vtkGetMacro(NaNOutside, vtkTypeBool);
+  vtkBooleanMacro(NaNOutside, vtkTypeBool);
+  vtkSetMacro(NullValue, double);
+  vtkGetMacro(NullValue, double);
+  ///@}
+
+  ///@{
+  /**
    * The name of the mask of valid points, "vtkValidPointMask" by default.
    */
   vtkSetStdStringFromCharMacro(ValidPointMaskArrayName);
@@ -125,12 +138,20 @@ protected:
     vtkInformationVector* outputVector) override;
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
+  bool TakesTogether() const override { return false; } // points do not see each other
 
   vtkTypeBool ShepardNormalization = 1;
   double WeightThreshold = 0.1;
   vtkTypeBool InterpolateAttributes = 1;
   vtkTypeBool ComputeGradients = 0;
+  vtkTypeBool NaNOutside = 0;
+  double NullValue = 0.0;
   std::string ValidPointMaskArrayName = "vtkValidPointMask";
+
+  /** Asks for all particles, whatever part of the points is wanted. */
+  void AskForAll(vtkInformation* particles);
+
+  vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
 
 private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;
@@ -145,7 +166,8 @@ private:
   static int EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
     mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics);
 
-  vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
+  double GetNull() const;
+  void FinishOutput(vtkDataSet* output) const;
 };
 
 #endif

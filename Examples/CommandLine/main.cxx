@@ -104,7 +104,7 @@ void MakeSurface(const CommandLineOptions& options, MessageCapture* messages)
                 << std::flush;
     }
   }
-  std::vector<std::string> warnings = Warnings(surface, messages);
+  std::vector<std::string> warnings = Warnings(surface, runs.back(), messages);
   AddHintOfPeriod(options, particles, warnings);
   for (const std::string& warning : warnings)
   {

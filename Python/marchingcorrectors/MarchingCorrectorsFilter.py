@@ -21,7 +21,7 @@ if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkObject, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import (vtkDataObject, vtkDataObjectTree, vtkDataSetAttributes, vtkFieldData,
-                                           vtkPartitionedDataSet, vtkPointSet, vtkPolyData)
+                                           vtkPointSet, vtkPolyData)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkCommonMisc import vtkContourValues
 
@@ -30,11 +30,12 @@ from marchingcorrectors import _structs as c
 from marchingcorrectors._library import lib
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._vtk_ahead import Ahead
-from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of
-from marchingcorrectors._vtk_period import find_period
+from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of, period_of
 from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
-from marchingcorrectors._vtk_surface import (add_run_statistics, build_field_data, build_mesh, computed_arrays,
+from marchingcorrectors._vtk_blocks import find_walls, join_blocks, list_all, name_blocks
+from marchingcorrectors._vtk_surface import (add_iso_values, add_run, build_mesh, computed_arrays, describe,
                                              left_out)
+from marchingcorrectors._warnings import describe_warnings
 
 BIG = 2147483647
 # name: (default, type, lowest, highest). "flag" has NameOn() and NameOff().
@@ -49,6 +50,7 @@ PROPERTIES = {
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
+    "DetectFluid": (0, "flag"), "Blocks": (0, "int", 0, 1),
     "WallShare": (0.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
     "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
     "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
@@ -87,6 +89,7 @@ def with_properties(kind):
                                   "CubeSizeModeToAdaptive": ("CubeSizeMode", 1),
                                   "BoundaryDetectionToWeightSum": ("BoundaryDetection", 0),
                                   "BoundaryDetectionToEigenvalue": ("BoundaryDetection", 1),
+                                  "BlocksToTogether": ("Blocks", 0), "BlocksToApart": ("Blocks", 1),
                                   "ScalarComponentToMagnitude": ("ScalarComponent", -1)}.items():
         setattr(kind, "Set" + method, lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
     return kind
@@ -101,7 +104,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     UNIFORM, ADAPTIVE = range(2)
     TOPOLOGY_TABLE, TOPOLOGY_FIELD = range(2)
     WEIGHT_SUM, EIGENVALUE = range(2)
-    SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL = range(3)
+    SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL, SOLIDS_AUTO = range(4)
+    TOGETHER, APART = range(2)
     MAGNITUDE = -1
 
     def __init__(self):
@@ -111,9 +115,10 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
-        self.EndAtSolids = 0
+        self.UsedSolids = self.SOLIDS_AUTO  # unless they are ignored
+        self._joined = None, None, 0
         self.clear_summary()
-        self.ExcludedArrays, self.UsedNames = [], {}
+        self.ExcludedArrays, self.UsedNames, self.UsedFluid = [], {}, ""
         self.ErrorMessage, self.BlockName = "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
@@ -141,7 +146,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def RequestDataObject(self, request, inInfo, outInfo):
         """A poly data, or blocks of them as the input has."""
         data = self.GetInputData(inInfo, 0, 0)
-        info, blocks = outInfo.GetInformationObject(0), isinstance(data, vtkDataObjectTree)
+        info = outInfo.GetInformationObject(0)
+        blocks = isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART
         output = info.Get(vtkDataObject.DATA_OBJECT())
         if output is None or not output.IsA(data.GetClassName() if blocks else "vtkPolyData"):
             info.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance() if blocks else vtkPolyData())
@@ -197,14 +203,14 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self.SetScalarComponent(-1 if component >= 3 else component)
 
     def SetSolids(self, solids):
-        legal = min(max(int(solids), self.SOLIDS_WEIGHT), self.SOLIDS_WALL)
+        legal = min(max(int(solids), self.SOLIDS_WEIGHT), self.SOLIDS_AUTO)
         if legal != self.GetSolids():
-            self.IgnoreSolids, self.EndAtSolids = int(legal == self.SOLIDS_IGNORE), int(legal == self.SOLIDS_WALL)
+            self.IgnoreSolids = int(legal == self.SOLIDS_IGNORE)
+            self.UsedSolids = self.UsedSolids if self.IgnoreSolids else legal
             self.Modified()
 
     def GetSolids(self):
-        return self.SOLIDS_IGNORE if self.IgnoreSolids else self.SOLIDS_WALL if self.EndAtSolids else \
-            self.SOLIDS_WEIGHT
+        return self.SOLIDS_IGNORE if self.IgnoreSolids else self.UsedSolids
 
     def SetKernelByName(self, name):
         kernel = lib.mcor_find_sph_kernel((name or "").encode())
@@ -235,6 +241,12 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def GetRunStatistics(self):
         return self.RunStatistics
 
+    def GetStatistics(self):
+        return describe(self.RunStatistics)
+
+    def GetUsedFluid(self):
+        return self.UsedFluid
+
     @staticmethod
     def ListDevices():
         return "".join(f"{i}: {device}\n" for i, device in enumerate(list_devices()))
@@ -255,19 +267,32 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
 
     def RequestData(self, request, inInfo, outInfo):
         data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)
-        self.ErrorMessage, self.BlockName = "", ""
+        self.ErrorMessage, self.BlockName, self._warned = "", "", set()
         self.RunStatistics = vtkFieldData()
-        if isinstance(data, vtkDataObjectTree):
+        if isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART:
             self._process_blocks(data, output)
             return 1
-        self._process(data, output)
+        particles = self._take_particles(data)
+        if particles is not data:
+            output.GetFieldData().PassData(particles.GetFieldData())
+        self._process(particles, output)
         return 0 if self.ErrorMessage else 1
+
+    def _take_particles(self, data):
+        """The data, or all blocks together, which are kept as long as they are the same."""
+        if not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART:
+            return data
+        times = [each.GetMTime() for each in list_all(data)]
+        if self._joined[:2] != (data, times):
+            self._joined = data, times, join_blocks(data)
+        return self._joined[2]
 
     def _process_blocks(self, data, output):
         """A block that fails leaves its place empty, and the others as they are."""
         output.CopyStructure(data)
         names, iterator = list(name_blocks(data)), data.NewTreeIterator()
         iterator.InitTraversal()
+        self._warn_once("walls", find_walls(names))
         for i, name in enumerate(names):
             self.SetProgressShiftScale(i / len(names), 1 / len(names))
             self.BlockName = name + ": "
@@ -284,7 +309,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         if data is not None and not isinstance(data, vtkPointSet):
             self._say(f"A {data.GetClassName()} has no points of its own, and so no surface.", "Warning")
             return
-        self.UsedNames = {}
+        self.UsedNames, self.UsedFluid = {}, ""
         self.clear_summary()
         if data is None or data.GetNumberOfPoints() == 0 or self._is_aborted():
             return
@@ -293,7 +318,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         particles = Particles(choice, data)
         try:
             if choice.DetectPeriod:
-                options.periodic[:] = self._period_of(data)
+                options.periodic[:] = period_of(data)
             particles.collect((Request(self, 0, data), Request(self, 1, data)), computed_arrays(options))
         except Unusable as sentence:
             self._fail(str(sentence))
@@ -301,22 +326,16 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         finally:
             self.UsedNames = {"".join(part.capitalize() for part in quantity.split("_")): name_of(array)
                               for quantity, array in particles.used.items()}
+            self.UsedFluid = particles.describe_fluid()
+        self._warn_once("type", particles.describe_unused_type())
         if particles.solid is not None and particles.solid.all():
             self._say(f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}, so there is no fluid and "
                       "no surface.", "Warning")
             return
         self._extract(particles, options, output)
 
-    @staticmethod
-    def _period_of(data):
-        period = find_period(data)
-        if not period:
-            raise Unusable("The particles' field data tell of no period: there is no array PeriodicBounds, BoxSize, or box "
-                           "with boundaryType. Set the periodic bounds, and turn their detection off.")
-        return period
-
     def _choice(self):
-        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), EndAtSolids=self.EndAtSolids, Box=self.Box,
+        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), UsedSolids=self.UsedSolids, Box=self.Box,
                                PeriodicBounds=self.PeriodicBounds,
                                **{name: getattr(self, name) for name in PROPERTIES})
 
@@ -336,7 +355,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options.periodic[:], options.capping = choice.PeriodicBounds, choice.Capping
         options.node_threshold = choice.NodeThreshold
         options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
-        ends = choice.EndAtSolids and (choice.Trim or choice.FreeSurface)
+        ends = (choice.Trim or choice.FreeSurface) and (choice.UsedSolids == 2 or (
+            choice.UsedSolids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
         options.wall_share = 0.0 if not ends else choice.WallShare or -1.0  # measured
         options.preview, options.tolerance = choice.Preview, choice.Tolerance
         options.iteration_limit = choice.IterationLimit
@@ -355,7 +375,11 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         arguments.options = options
         values = self.FreeSurfaceValues if choice.FreeSurface else self.ContourValues
         iso = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
-        arguments.set_iso_values(iso or [0.5 if choice.FreeSurface else particles.middle_of_range()])
+        iso = [value for value in iso if value == value]  # an empty row of a panel's list is none
+        if not iso:
+            found = None if choice.FreeSurface else particles.find_iso_value()
+            iso = [0.5 if choice.FreeSurface else found[1] if found else 0.0]
+        arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
         self.EstimatedCells = estimate_cells(particles, options)
         if self.EstimatedCells >= HUGE_CELLS:
@@ -366,8 +390,10 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             self.summarize(arguments, surface)
             for sentence in left_out(surface, particles):
                 self._say(sentence, "Warning")
-            build_field_data(output.GetFieldData(), surface, particles, arguments)
-            add_run_statistics(self.RunStatistics, surface)
+            for kind, sentence in describe_warnings(arguments, surface).items():
+                self._warn_once(kind, sentence)
+            add_iso_values(output.GetFieldData(), arguments.options)
+            add_run(self.RunStatistics, surface, particles, arguments)
             single = particles.positions.GetDataTypeAsString() == "float"
             precision = choice.OutputPointsPrecision
             build_mesh(surface, particles, output, as_float=precision == vtkAlgorithm.SINGLE_PRECISION
@@ -410,10 +436,16 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def _report(self, fraction, phase):
         self.SetProgressText(phase)
         self.UpdateProgress(fraction)
-        return self._is_aborted()
+        return not self._is_aborted()
 
     def _is_aborted(self):
         return bool(self.CheckAbort() if hasattr(self, "CheckAbort") else self.GetAbortExecute())
+
+    def _warn_once(self, kind, sentence):
+        """Of several blocks the first one tells, as the others will have the same."""
+        if sentence and kind not in self._warned:
+            self._warned.add(kind)
+            self._say(sentence, "Warning")
 
     def _fail(self, sentence):
         """The sentences of all blocks are kept, one a line."""
@@ -424,28 +456,10 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         if not vtkObject.GetGlobalWarningDisplay():
             return
         if self.HasObserver(kind + "Event"):
-            self.InvokeEvent(kind + "Event")
+            self.InvokeEvent(kind + "Event", self.BlockName + sentence)
         else:
             show = getattr(vtkOutputWindow.GetInstance(), f"Display{kind}Text")
             show(f"{kind.upper()}: vtkMarchingCorrectors: {self.BlockName}{sentence}\n\n")
-
-
-def name_blocks(tree):
-    """"Block 'name', index 2" of the leaves."""
-    iterator = tree.NewTreeIterator()
-    iterator.VisitOnlyLeavesOff()
-    whole, last = "", 0
-    iterator.InitTraversal()
-    while not iterator.IsDoneWithTraversal():
-        index, data = iterator.GetCurrentFlatIndex(), iterator.GetCurrentDataObject()
-        about = iterator.GetCurrentMetaData() if iterator.HasCurrentMetaData() else None
-        own = about.Get(vtkDataObjectTree.NAME()) if about else None
-        if isinstance(data, vtkPartitionedDataSet):  # its name is that of its partitions
-            whole, last = own or "", index + data.GetNumberOfPartitions()
-        elif not data.IsA("vtkCompositeDataSet"):
-            name = own or (whole if index <= last else "")
-            yield "Block " + (f"'{name}', " if name else "") + f"index {index}"
-        iterator.GoToNextItem()
 
 
 def paraview_plugin(kind):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Isosurfaces of SPH particles, exact with respect to the SPH field.
 
-    surface = marchingcorrectors.isosurface(positions, speed, iso=1.0, smoothing_length=h, volume=V)
+    surface = marchingcorrectors.isosurface(positions, speed, 1.0, smoothing_length=h, volume=V)
     surface.points, surface.triangles, surface.normals
 
 With PyVista: particles.sph.isosurface("Velocity", 1.0). With VTK: vtkMarchingCorrectors.
@@ -10,15 +10,16 @@ With PyVista: particles.sph.isosurface("Velocity", 1.0). With VTK: vtkMarchingCo
 from pkgutil import extend_path as _extend_path
 
 from ._context import Context
-from ._functions import (Derivatives, Samples, Surface, derivatives, flow, free_surface, isosurface,
-                         probe)
+from ._functions import derivatives, flow, free_surface, isosurface, probe
 from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
                        devices)
 from ._structs import VERSION as __version__
+from ._surface import Derivatives, Samples, Surface
+from ._warnings import InputWarning
 
-__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "InvalidArgument", "InvalidData",
-           "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow", "free_surface",
-           "isosurface", "probe"]
+__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "InputWarning", "InvalidArgument",
+           "InvalidData", "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow",
+           "free_surface", "isosurface", "probe"]
 
 # The C++ filter lies in a folder of the same name, where CMake installed it.
 __path__ = _extend_path(__path__, __name__)

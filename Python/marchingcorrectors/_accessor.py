@@ -3,51 +3,118 @@
 """PyVista's particles.sph, which PyVista finds by the package's entry point."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Optional, Sequence, Tuple, Union
+import inspect
+from typing import TYPE_CHECKING, Callable, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import pyvista
 
 from . import _functions
+from ._context import Context
 from ._library import InvalidArgument
-from ._vtk_particles import GHOSTS, QUANTITIES, detect, name_of
+from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, Options, check_names,
+                       did_you_mean, with_options)
+from ._vtk_particles import (GHOSTS, QUANTITIES, describe_missing_length, describe_unused_types, detect, join_velocity,
+                             name_of)
+from ._vtk_period import NO_PERIOD, find_period
+from ._warnings import warn
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._functions import Progress
 
 Quantity = Union[None, str, float, np.ndarray]
+ABOUT_PARTICLES = '''
+        smoothing_length, volume, mass, density: the name of a point array, an array, or one value
+            for all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass;
+            rho, ...).
+        fluid: ("ParticleType", 0): where this point array has another value, there are solids.
+        attributes: names of the point arrays to be carried along; by default all, and vx, vy, vz as
+            one vector "Velocity".
+        context, device, progress: as in marchingcorrectors.isosurface().
+        periodic="auto" takes the period that the field data tell of.
+
+        {options}
+'''
+
+
+class Particles(Options, total=False):
+    """Keywords of all methods, beside those of the functions for NumPy."""
+
+    smoothing_length: Quantity
+    volume: Quantity
+    mass: Quantity
+    density: Quantity
+    fluid: Optional[Tuple[str, float]]
+    attributes: Optional[Iterable[str]]
+    context: Optional[Context]
+    device: Union[None, str, int]
+    progress: Optional[Progress]
+
+
+OWN = tuple(name for name in Particles.__annotations__ if name not in Options.__annotations__)
+
+
+def _method(names: Sequence[str]) -> Callable[[Function], Function]:
+    """Decorator: the keywords of all methods, and these options, in signature and text."""
+    def decorate(function: Function) -> Function:
+        function.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
+        signature = inspect.signature(function)
+        own = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
+        own += [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None,
+                                  annotation=Particles.__annotations__[name])
+                for name in OWN if name not in signature.parameters]
+        function.__signature__ = signature.replace(parameters=own)  # type: ignore[attr-defined]
+        return with_options(names)(function)
+
+    return decorate
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
 class SphAccessor:
-    """Surfaces of the points of a data set, taken as SPH particles.
-
-    All methods take these keywords, and all options of marchingcorrectors.isosurface():
-
-    smoothing_length, volume, mass, density: the name of a point array, an array, or one value for
-        all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass; rho, ...).
-    fluid: ("ParticleType", 0): where this point array has another value, there are solids.
-    attributes: names of the point arrays to be carried along; by default all.
-    """
+    """Surfaces of the points of a data set, taken as SPH particles."""
 
     def __init__(self, particles: pyvista.DataSet):
         self._particles = particles
 
+    def __repr__(self):
+        return f"<SPH particles: {self._particles.n_points}>"
+
+    @_method(ISOSURFACE)
     def isosurface(self, scalar: Union[str, np.ndarray], iso: Union[float, Sequence[float]], *,
-                   scalar_dot: Union[None, str, np.ndarray] = None, **options: Any) -> pyvista.PolyData:
+                   scalar_dot: Union[None, str, np.ndarray] = None,
+                   **options: Unpack[Particles]) -> pyvista.PolyData:
         """Where a point array (its magnitude, or scalar_component=0, 1, ...) has the value `iso`.
 
         Example: particles.sph.isosurface("Velocity", 1.0).plot()
+
+        scalar: the name of a point array, or an array.
+        iso: the value of the scalar on the surface, or a list of values.
+        scalar_dot: a second vector; the scalar is then the dot product.
         """
+        check_names(SphAccessor.isosurface, options, ISOSURFACE + OWN)
         words = self._words(options)
         dot = None if scalar_dot is None else self._array(scalar_dot)
-        return _functions.isosurface(self._particles.points, self._array(scalar), iso=iso, scalar_dot=dot,
+        return _functions.isosurface(self._particles.points, self._array(scalar), iso, scalar_dot=dot,
                                      **words).to_pyvista()
 
-    def free_surface(self, iso: Union[float, Sequence[float]] = 0.5, **options: Any) -> pyvista.PolyData:
+    @_method(FREE_SURFACE)
+    def free_surface(self, iso: Union[float, Sequence[float]] = 0.5,
+                     **options: Unpack[Particles]) -> pyvista.PolyData:
         """The surface of the fluid: where the sum of the particles' weights (no unit) is `iso`."""
-        return _functions.free_surface(self._particles.points, iso=iso, **self._words(options)).to_pyvista()
+        check_names(SphAccessor.free_surface, options, FREE_SURFACE + OWN)
+        return _functions.free_surface(self._particles.points, iso, **self._words(options)).to_pyvista()
 
-    def probe(self, points: Union[pyvista.DataSet, np.ndarray], **options: Any) -> pyvista.DataSet:
+    @_method(PROBE)
+    def probe(self, points: Union[pyvista.DataSet, np.ndarray],
+              **options: Unpack[Particles]) -> pyvista.DataSet:
         """A copy of the points (a data set, or (points, 3)) with the field of the point arrays at
-        them, "WeightSum", and "Valid": 1 where there is fluid."""
+        them, "WeightSum", and "Valid": 1 where there is fluid.
+
+        points: a data set, or an array (points, 3).
+        """
+        check_names(SphAccessor.probe, options, PROBE + OWN)
         words = self._words(options)
         words["attributes"] = {k: v for k, v in words["attributes"].items() if v.dtype.kind in "fiub"}
         result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(np.asarray(points))
@@ -60,12 +127,18 @@ class SphAccessor:
         result.point_data["Valid"] = found.valid.astype(np.uint8)
         return result
 
-    def derivatives(self, array: str, **options: Any) -> pyvista.DataSet:
+    @_method(DERIVATIVES)
+    def derivatives(self, array: str, *, form: str = "corrected", **options: Unpack[Particles]) -> pyvista.DataSet:
         """A copy of the particles with "Gradients" of a point array; of one with three components
-        also "Divergence", "Vorticity", "Q-criterion", "Lambda2" and "StrainRate"."""
+        also "Divergence", "Vorticity", "Q-criterion", "Lambda2" and "StrainRate".
+
+        array: the name of the point array.
+        form: "corrected" (exact for linear arrays) or "standard".
+        """
+        check_names(SphAccessor.derivatives, options, DERIVATIVES + OWN)
         words = self._words({**options, "attributes": []})
         words["attributes"] = {"array": self._array(array)}
-        gradients = _functions.derivatives(self._particles.points, **words).gradients.get("array")
+        gradients = _functions.derivatives(self._particles.points, form=form, **words).gradients.get("array")
         if gradients is None:
             raise InvalidArgument(f"The point array '{array}' is NaN or infinite at a particle.")
         result = self._particles.copy()
@@ -79,11 +152,16 @@ class SphAccessor:
 
     def _array(self, thing):
         if not isinstance(thing, str):
-            return np.asarray(thing)
-        if thing not in self._particles.point_data:
-            raise InvalidArgument(f"There is no point array '{thing}'. Point arrays: "
-                                  f"{', '.join(self._particles.point_data.keys()) or 'none'}.")
-        return np.asarray(self._particles.point_data[thing])
+            return thing
+        data = self._particles.point_data
+        joined = join_velocity(self._particles.GetPointData(), self._particles.n_points) \
+            if thing == "Velocity" and thing not in data else None
+        if joined is not None:
+            return pyvista.convert_array(joined)
+        if thing not in data:
+            raise InvalidArgument(f"There is no point array '{thing}'.{did_you_mean(thing, data.keys())} Point arrays: "
+                                  f"{', '.join(data.keys()) or 'none'}.")
+        return np.asarray(data[thing])
 
     def _words(self, options):
         """Keywords for the functions of NumPy."""
@@ -91,12 +169,32 @@ class SphAccessor:
         self._set_quantities(words)
         fluid: Optional[Tuple[str, float]] = words.pop("fluid", None)
         if fluid is not None:
-            words["solid"] = self._array(fluid[0]) != fluid[1]
+            words["solid"] = np.asarray(self._array(fluid[0])) != fluid[1]
+        else:
+            self._warn_of_unused_type()
+        if isinstance(words.get("periodic"), str):
+            words["periodic"] = self._period(words["periodic"])
         names: Optional[Iterable[str]] = words.pop("attributes", None)
         if names is None:
+            data = self._particles.GetPointData()
             names = [name for name in self._particles.point_data.keys() if name != GHOSTS]
+            names += ["Velocity"] if join_velocity(data, self._particles.n_points) is not None else []
         words["attributes"] = {name: self._array(name) for name in names}
         return words
+
+    def _warn_of_unused_type(self):
+        found = describe_unused_types(self._particles.GetPointData())
+        if found:
+            sentence, name = found
+            warn(sentence.replace("name it and the fluid's value", f"say fluid=('{name}', VALUE)"))
+
+    def _period(self, word):
+        found = find_period(self._particles) if word == "auto" else None
+        if word != "auto":
+            raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", three lengths, or six bounds.")
+        if found is None:
+            raise InvalidArgument(NO_PERIOD + " Give periodic=(LX, LY, LZ).")
+        return found
 
     def _set_quantities(self, words):
         """As vtkMarchingCorrectors does: with a mass set, a volume array that is there is not used."""
@@ -106,6 +204,12 @@ class SphAccessor:
                 words[quantity] = self._array(words[quantity])
         if not words.get("estimate_smoothing_length"):
             self._detect(words, "smoothing_length")
+            if words.get("smoothing_length") is None:
+                raise InvalidArgument(
+                    "The particles have no smoothing length: no point array has one of its usual names "
+                    "(SmoothingLength, hsml, h, ...). Give smoothing_length=, a name or a value, or "
+                    "estimate_smoothing_length=True. " + describe_missing_length(self._particles.GetPointData())
+                    + f"Point arrays: {', '.join(self._particles.point_data.keys()) or 'none'}.")
         if not given & {"mass", "density"}:
             self._detect(words, "volume")
         if words.get("volume") is None:

@@ -8,11 +8,20 @@ import numpy as np
 
 from . import _structs as c
 from ._library import InvalidArgument, lib
+from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
+from ._units import plain, unit_of
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
 WORDS = {int: "whole number", float: "number"}
-OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"}}
+# As the header spells them.
+OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"},
+               "mcor_sph_kernel": {"cubic_spline": "cubic", "m_prime_4": "mprime4", "quintic_spline": "quintic",
+                                   "wendland_c2": "wendland"}}
+# Numbers with a word, as mcor.h defines them.
+SPECIAL = {("scalar_component", "magnitude"): -1, ("wall_share", "measured"): -1, ("wall_share", "auto"): -2}
+_double = ctypes.POINTER(ctypes.c_double)
+lib.mcor_place_period.restype, lib.mcor_place_period.argtypes = None, [_double, _double, _double]
 
 
 def is_real(array):
@@ -23,10 +32,17 @@ def as_array(values, role):
     """np.asarray, with one sentence where that fails or would lose something."""
     if np.ma.is_masked(values):
         raise InvalidArgument(f"The {role} has masked elements. Remove such particles, or fill them.")
+    parts = values if isinstance(values, (list, tuple)) else [values]
+    unit = next((unit_of(part) for part in parts if unit_of(part) is not None), None)
+    if unit is not None:
+        raise InvalidArgument(f"The {role} has the unit {unit}; it must be plain numbers here.")
     try:
+        if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
+            return np.from_dlpack(values)
         return np.asarray(values)
-    except (TypeError, ValueError) as error:
-        raise InvalidArgument(f"The {role} is no array: {error}") from None
+    except (TypeError, ValueError, RuntimeError, BufferError) as error:
+        raise InvalidArgument(
+            f"The {role} is no array in this computer's memory that NumPy can take: {error}") from None
 
 
 def contiguous(values, role):
@@ -51,12 +67,15 @@ def as_points(values, role, shape):
 
 
 def as_named(attributes):
-    """{name: array} with text as names."""
+    """{name: array} with text as names; of a data frame its columns. Of an array with a unit its numbers."""
     if attributes is None:
         return {}
+    if not isinstance(attributes, Mapping) and hasattr(attributes, "columns"):
+        attributes = {name: attributes[name] for name in attributes.columns}
     if not isinstance(attributes, Mapping):
-        raise InvalidArgument(f"attributes are {{name: array}}, not a {type(attributes).__name__}.")
-    return {str(name): as_array(array, f"attribute '{name}'") for name, array in attributes.items()}
+        raise InvalidArgument(f"attributes are {{name: array}} or a data frame, not a {type(attributes).__name__}.")
+    return {str(name): as_array(array if unit_of(array) is None else plain(array), f"attribute '{name}'")
+            for name, array in attributes.items()}
 
 
 def as_bytes(text):
@@ -73,7 +92,8 @@ class Arguments:
         lib.mcor_set_default_options(ctypes.byref(self.options))
         self.input.scalar_component = -1  # the magnitude
         array = as_points(positions, "positions", "(particles, 3)")
-        self.count = self.input.count = len(array)
+        self.positions, self.count = array, len(array)
+        self.input.count = self.count
         self.input.positions = self.view(array, None)
 
     def view(self, array, name):
@@ -95,6 +115,8 @@ class Arguments:
         if constant and values.ndim == 0:
             view = c.mcor_array()
             view.constant, view.name = convert(float, role, values.item()), as_bytes(name or role)
+            if not view.constant > 0:
+                raise InvalidArgument(f"The {role} is {view.constant:g}; it must be greater than 0.")
             return view
         array = contiguous(values, role)
         if array.ndim not in (1, 2) or len(array) != self.count or 0 in array.shape[1:]:
@@ -145,14 +167,29 @@ class Arguments:
         self.options.iso_count = len(values)
 
     def set_options(self, words):
-        """Options by their names in mcor.h."""
-        for name, value in words.items():
-            for struct, target in (("mcor_options", self.options), ("mcor_input", self.input)):
-                if name in c.KINDS[struct] and name in c.Options.__annotations__:
-                    set_option(target, name, c.KINDS[struct][name], value)
-                    break
-            else:
-                raise TypeError(f"There is no option '{name}'; there are {', '.join(c.Options.__annotations__)}.")
+        """Options by their names in mcor.h, which were checked."""
+        for name in ISOSURFACE:
+            if name in words:
+                target = self.options if name in c.KINDS["mcor_options"] else self.input
+                value = self.bounds_of_period(words[name]) if name == "periodic" else words[name]
+                set_option(target, name, kind_of(name), value)
+
+    def bounds_of_period(self, period):
+        """Six bounds, also of three lengths: where the particles lie in them."""
+        if period is None or np.size(period) != 3:
+            return period
+        lengths = np.ravel(contiguous(period, "list of numbers of periodic")).astype(np.float64)
+        extent = [0.0] * 6
+        if self.count:
+            positions = self.positions
+            extent = np.stack([positions.min(axis=0), positions.max(axis=0)], axis=1).ravel().tolist()
+        return place_period(lengths, extent)
+
+
+def place_period(lengths, extent):
+    bounds = (ctypes.c_double * 6)()
+    lib.mcor_place_period((ctypes.c_double * 3)(*lengths), (ctypes.c_double * 6)(*extent), bounds)
+    return list(bounds)
 
 
 def set_option(target, name, kind, value):
@@ -173,6 +210,8 @@ def set_option(target, name, kind, value):
 
 
 def convert(to, name, value):
+    if unit_of(value) is not None:
+        raise InvalidArgument(f"The {name} has the unit {unit_of(value)}; it must be a plain number.")
     try:
         result = to(value)
     except (TypeError, ValueError, OverflowError):
@@ -183,35 +222,24 @@ def convert(to, name, value):
 
 
 def number(name, kind, value):
-    """An enumerator's word as its number: "wendland", "wendland_c2" and WENDLAND_C2 are the same."""
-    if name == "scalar_component" and value == "magnitude":
-        return -1
+    """An option's value for the core; of an enumeration, a word or its number."""
+    if isinstance(value, str) and (name, value) in SPECIAL:
+        return SPECIAL[name, value]
     if kind not in c.ENUMS:
         return convert(float if kind == "double" else int, name, value)
-    values = {k: v for k, v in c.ENUMS[kind].items() if not k.endswith("_COUNT")}
-    words = dict(zip(_words(list(values)), values.values()))
     if isinstance(value, str):
         word = value.lower().replace(" ", "_").replace("-", "_")
         word = OTHER_WORDS.get(kind, {}).get(word, word)
-        if kind == "mcor_sph_kernel" and lib.mcor_find_sph_kernel(as_bytes(word)) >= 0:
-            return lib.mcor_find_sph_kernel(as_bytes(word))
+        words = words_of(kind)
         if word not in words:
-            raise InvalidArgument(f"{name} is one of {', '.join(words)}, not '{value}'.")
-        return words[word]
+            raise InvalidArgument(f"{name} is one of {', '.join(words)}, not '{value}'.{did_you_mean(word, words)}")
+        return words.index(word)
     if kind == "mcor_type" and not isinstance(value, (int, np.integer)):
         try:
             return FLOATS.get(np.dtype(value), -1)
         except TypeError:
             pass
     return convert(int, name, value)
-
-
-def _words(names):
-    """MCOR_TOPOLOGY_TABLE, MCOR_TOPOLOGY_FIELD: table, field."""
-    parts = [name.lower().split("_")[1:] for name in names]
-    while all(len(part) > 1 for part in parts) and len({part[0] for part in parts}) == 1:
-        parts = [part[1:] for part in parts]
-    return ["_".join(part) for part in parts]
 
 
 def take(pointer, shape):

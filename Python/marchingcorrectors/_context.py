@@ -7,8 +7,11 @@ import os
 import signal
 import threading
 
+import numpy as np
+
 from . import _structs as c
 from ._library import ERRORS, NO_DEVICE, DeviceError, Error, InvalidArgument, _list, lib, start
+from ._progress import callback_of
 
 
 class Context:
@@ -75,6 +78,10 @@ class Context:
     def __exit__(self, *_):
         self.close()
 
+    def __reduce__(self):
+        """Of pickle and copy: two would give the same device back."""
+        raise TypeError("A Context cannot be copied or pickled: make another one for the same device.")
+
     def __del__(self):
         if getattr(self, "_handle", None):
             self.close()
@@ -83,7 +90,7 @@ class Context:
         """call(handle) with the context to itself; raises what went wrong, the callback's exceptions
         and KeyboardInterrupt included."""
         start()
-        with self._alone(), Watch(progress) as watch:
+        with self._alone(), callback_of(progress) as callback, Watch(callback) as watch:
             if not self._handle:
                 raise DeviceError("This context was closed; make another one.")
             options.progress = watch.callback
@@ -132,7 +139,8 @@ class Watch:
         if self.progress is None:
             return 0
         try:
-            return 1 if self.progress(fraction, phase.decode()) else 0
+            answer = self.progress(fraction, phase.decode())
+            return int(answer is False or isinstance(answer, np.bool_) and not answer)
         except BaseException as failure:  # raised again where the call returns
             self.failure = failure
             return 1

@@ -4,104 +4,43 @@
 from __future__ import annotations
 
 import ctypes
-import inspect
-import textwrap
-import warnings
-from dataclasses import dataclass, field as dataclass_field
 from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (Arguments, as_named, as_points, contiguous, is_real, left_out, statistics, take, take_all, take_each)
+from ._arrays import (Arguments, as_named, as_points, contiguous, is_real, left_out, number, statistics, take,
+                      take_all, take_each)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, lib
+from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, check_names, with_options
+from ._surface import Derivatives, Samples, Surface
+from ._units import Units, scalar_and_iso, without_unit
+from ._warnings import describe_warnings, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-    from typing_extensions import Unpack
+    from typing_extensions import Literal, Unpack
 
-    from ._structs import Options
+    from ._options import Options
 
-    Progress = Callable[[float, str], Any]
+    Progress = Union[bool, Callable[[float, str], Any]]
     Attributes = Mapping[str, ArrayLike]
 
 
-@dataclass
-class Surface:
-    """A triangle mesh. Arrays that were not asked for are None; all own their memory."""
-
-    points: np.ndarray  #: (points, 3) float64, unit of the positions (L)
-    triangles: np.ndarray  #: (triangles, 3) int32; the right-hand normal points to lower values
-    normals: Optional[np.ndarray] = None  #: (points, 3) float32, unit length
-    gradients: Optional[np.ndarray] = None  #: (points, 3) float64, scalar unit / L
-    weight_sum: Optional[np.ndarray] = None  #: (points,) float32, the trimming weight
-    boundary_eigenvalue: Optional[np.ndarray] = None  #: (points,) float32
-    correction_length: Optional[np.ndarray] = None  #: (points,) float32, L
-    residual: Optional[np.ndarray] = None  #: (points,) float32, field minus iso value, scalar unit
-    boundary_flag: Optional[np.ndarray] = None  #: (points,) uint8, see mcor.h
-    iso_value: Optional[np.ndarray] = None  #: (points,) float64, scalar unit
-    nearest_particle: Optional[np.ndarray] = None  #: (points,) int64, index of a fluid particle
-    #: {name: (points,) or (points, components)}: float64 means of real arrays, others as they are
-    attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
-    #: {name: particle} of the attributes that are left out, being NaN or infinite there
-    left_out: Dict[str, int] = dataclass_field(default_factory=dict)
-    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)  #: mcor_statistics
-
-    def to_pyvista(self):
-        """A pyvista.PolyData with all arrays of the surface."""
-        import pyvista
-
-        faces = np.insert(self.triangles.astype(np.int64), 0, 3, axis=1).ravel()
-        mesh = pyvista.PolyData(self.points, faces) if len(faces) else pyvista.PolyData(self.points)
-        for name, array in self.attributes.items():
-            mesh.point_data[name] = array
-        for name in c.SHAPES["mcor_surface"]:
-            array = getattr(self, name, None)
-            if name not in ("points", "triangles", "attributes") and isinstance(array, np.ndarray):
-                mesh.point_data["".join(part.capitalize() for part in name.split("_"))] = array
-        if self.normals is not None:
-            mesh.point_data.active_normals_name = "Normals"
-        mesh.set_active_scalars(None)  # colours are for the user to choose
-        return mesh
-
-
-@dataclass
-class Samples:
-    """The field at points. Values are 0 where the field is not valid."""
-
-    weight_sum: np.ndarray  #: (points,) float64, of fluid particles
-    valid: np.ndarray  #: (points,) bool: the weight sum is not below node_threshold
-    values: Dict[str, np.ndarray]  #: {name: (points,) or (points, components)} float64
-    gradients: Dict[str, np.ndarray]  #: {name: (points, 3) or (points, components, 3)}, per L
-    weight_gradient: Optional[np.ndarray] = None  #: (points, 3), 1 / L
-    left_out: Dict[str, int] = dataclass_field(default_factory=dict)
-    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
-
-
-@dataclass
-class Derivatives:
-    """Gradients at the particles."""
-
-    gradients: Dict[str, np.ndarray]  #: {name: (particles, 3) or (particles, components, 3)}, per L
-    corrected: np.ndarray  #: (particles,) bool: where the corrected form was taken
-    left_out: Dict[str, int] = dataclass_field(default_factory=dict)
-    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
-
-
-def _prepare(positions, attributes, solid, quantities, options):
-    arguments = Arguments(positions)
-    arguments.set_quantities(quantities)
+def _prepare(units, attributes, solid, quantities, options):
+    arguments = Arguments(units.positions)
+    arguments.set_quantities(units.quantities(quantities))
     arguments.set_solid(solid)
     names = arguments.set_attributes(attributes)
-    arguments.set_options(options)
+    arguments.set_options(units.options(options))
     return arguments, names
 
 
-def _warn(missing):
+def _warn_of(missing):
     for name, particle in missing.items():
-        warnings.warn(f"The attribute '{name}' is NaN or infinite at particle {particle} and was left out. "
-                      "Correct its values, or do not ask for it.", stacklevel=3)
+        warn(f"The attribute '{name}' is NaN or infinite at particle {particle} and was left out. "
+             "Correct its values, or do not ask for it.")
 
 
 def _run(arguments, context, device, progress, call, free):
@@ -116,8 +55,8 @@ def _run(arguments, context, device, progress, call, free):
             context.release_memory()
 
 
-def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike] = None, *,
-               iso: Union[None, float, Sequence[float]] = None,
+@with_options(ISOSURFACE)
+def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike], iso: Union[float, Sequence[float]], *,
                smoothing_length: Optional[ArrayLike] = None,
                volume: Optional[ArrayLike] = None,
                mass: Optional[ArrayLike] = None,
@@ -132,38 +71,48 @@ def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike] = None, *,
     """The isosurface of a quantity that particles carry.
 
     positions: (particles, 3), length unit L. float32 and float64 arrays in C order are used where
-        they lie; so are all arrays below.
+        they lie; so are all arrays below. Lists, data frames, and what speaks DLPack will do, too.
     scalar: (particles,), or (particles, components): then its magnitude, or one component
         (scalar_component=0, 1, ...), or its dot product with scalar_dot.
-    iso: the value of the scalar on the surface, or several. `iso_values` is another name.
-    smoothing_length: (particles,) or one value, L, > 0; with smoothing_length_is_support_radius=True
-        it is the kernel's support radius; with estimate_smoothing_length=True it is not needed.
-    volume, or mass and density, or mass alone: (particles,) or one value, > 0, of units that give
-        L^3; without them volumes follow from the particles' distances.
-    attributes: {name: array} to be carried to the surface: real ones as the mean of the particles
-        around, integers and bools from the nearest particle.
-    solid: (particles,), nonzero for walls. They take no part in the field.
+    iso: the value of the scalar on the surface, or a list of values.
+    smoothing_length: (particles,) or one value, L, greater than 0; with
+        smoothing_length_is_support_radius=True it is the radius at which the kernel ends; with
+        estimate_smoothing_length=True it is not needed.
+    volume, or mass and density, or mass alone: (particles,) or one value, greater than 0, of units
+        that give L^3; without them volumes follow from the particles' distances.
+    attributes: {name: array}, or a data frame, to be carried to the surface: real ones as the mean of
+        the particles around, integers and bools from the nearest particle.
+    scalar_dot: a second vector for each particle; the scalar is then the dot product.
+    solid: (particles,), True or not 0 for walls. They take no part in the field.
     context: a Context, to keep particles on the device between calls; else one of our own per
         device, which keeps compiled programs alone.
     device: a number or part of a name as in devices(), where no context is given.
-    progress: called with a fraction from 0 to 1 and the phase; a true result ends the run.
-
-    Further options, as mcor.h names them:
+    progress: True shows a bar; or a function, called with a fraction from 0 to 1 and the name of the
+        phase, which ends the run by returning False, or by an exception.
 
     {options}
-    Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). Other
-    threads go on meanwhile; Ctrl-C ends the run.
+
+    Arrays with units, of pint, unyt or astropy: lengths are converted to the unit of the positions,
+    mass / density with them, and iso to the scalar's unit; results are plain numbers in these units.
+    What has a unit beside what has none is refused.
+
+    Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). What is
+    legal, but hardly meant, gives an InputWarning. Other threads go on meanwhile; Ctrl-C ends the run.
     """
-    words = dict(options)
-    iso = words.pop("iso_values", iso)
-    attributes = as_named(attributes)
+    check_names(isosurface, options, ISOSURFACE)
+    return _extract(locals(), options)
+
+
+def _extract(given, options):
+    """given: the arguments of isosurface()."""
+    attributes, units = as_named(given["attributes"]), Units(given["positions"])
     real = {name: array for name, array in attributes.items() if is_real(array)}
-    arguments, names = _prepare(positions, real, solid, {
-        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, words)
+    scalar, scalar_dot, iso = scalar_and_iso(given["scalar"], given["scalar_dot"], given["iso"])
+    arguments, names = _prepare(units, real, given["solid"], given, options)
     free_surface_wanted = arguments.options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
     _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted)
     if iso is None:
-        raise InvalidArgument("Give the iso value: iso=1.0, or several of them.")
+        raise InvalidArgument("Give the iso value: a number, or a list of them.")
     arguments.set_iso_values(iso)
     wanted = bool(arguments.options.nearest_particle)
     from_nearest = _from_nearest(attributes, real, arguments)
@@ -172,12 +121,17 @@ def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike] = None, *,
     def free():
         lib.mcor_free_surface(ctypes.byref(surface))
 
-    _run(arguments, context, device, progress, lambda handle: lib.mcor_extract(
+    _run(arguments, given["context"], given["device"], given["progress"], lambda handle: lib.mcor_extract(
         handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)), free)
     try:
-        return _surface(surface, arguments, names, attributes, from_nearest, wanted)
+        found = _surface(surface, arguments, names, attributes, from_nearest, wanted)
+        sentences = describe_warnings(arguments, surface)
     finally:
         free()
+    _warn_of(found.left_out)
+    for sentence in sentences.values():
+        warn(sentence)
+    return found
 
 
 def _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted):
@@ -186,6 +140,7 @@ def _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted):
     if scalar is None:
         raise InvalidArgument('Give the scalar to contour, or call free_surface().')
     arguments.input.scalar = arguments.per_particle(scalar, "scalar")
+    arguments.input.scalar.name = None  # the core then says "the scalar"
     if arguments.input.scalar.components == 1:
         arguments.input.scalar_component = 0
     if scalar_dot is not None:
@@ -220,16 +175,12 @@ def _surface(surface, arguments, names, attributes, from_nearest, nearest_wanted
             carried[name] = attributes[name][:0]
     if not nearest_wanted:
         arrays["nearest_particle"] = None
-    known = {name: array for name, array in arrays.items() if name in Surface.__dataclass_fields__}
-    result = Surface(**known, attributes=carried, left_out=left_out(surface, names),
-                     statistics=statistics(surface.statistics))
-    for name in arrays.keys() - known.keys():  # what a newer core adds
-        setattr(result, name, arrays[name])
-    _warn(result.left_out)
-    return result
+    return Surface(**arrays, attributes=carried, left_out=left_out(surface, names),
+                   statistics=statistics(surface.statistics))
 
 
-def free_surface(positions: ArrayLike, *, iso: Union[float, Sequence[float]] = 0.5,
+@with_options(FREE_SURFACE)
+def free_surface(positions: ArrayLike, iso: Union[float, Sequence[float]] = 0.5, *,
                  smoothing_length: Optional[ArrayLike] = None,
                  volume: Optional[ArrayLike] = None,
                  mass: Optional[ArrayLike] = None,
@@ -242,14 +193,16 @@ def free_surface(positions: ArrayLike, *, iso: Union[float, Sequence[float]] = 0
                  **options: Unpack[Options]) -> Surface:
     """The surface of the fluid: where the sum of the particles' weights is `iso`.
 
-    The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. Arguments are those
-    of isosurface().
+    The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. The arguments that
+    are not listed here are those of isosurface().
+
+    {options}
     """
-    return isosurface(positions, None, iso=iso, smoothing_length=smoothing_length, volume=volume,
-                      mass=mass, density=density, attributes=attributes, solid=solid, context=context,
-                      device=device, progress=progress, **{**options, "field": "weight_sum"})
+    check_names(free_surface, options, FREE_SURFACE)
+    return _extract({**locals(), "scalar": None, "scalar_dot": None}, {**options, "field": "weight_sum"})
 
 
+@with_options(PROBE)
 def probe(positions: ArrayLike, points: ArrayLike, *,
           smoothing_length: Optional[ArrayLike] = None,
           volume: Optional[ArrayLike] = None,
@@ -263,14 +216,18 @@ def probe(positions: ArrayLike, points: ArrayLike, *,
           **options: Unpack[Options]) -> Samples:
     """The field of the attributes, and with gradients=True its gradients, at any points.
 
-    points: (points, 3), L; one that is not finite is not valid. attributes: {name: (particles,) or
-    (particles, components)}. field="sum" gives the plain sum in place of Shepard's mean. The other
-    arguments are those of isosurface().
+    points: (points, 3), L; one that is not finite is not valid.
+    attributes: {name: (particles,) or (particles, components)}, or a data frame.
+
+    The other arguments are those of isosurface().
+
+    {options}
     """
-    attributes = as_named(attributes)
-    arguments, names = _prepare(positions, attributes, solid, {
+    check_names(probe, options, PROBE)
+    attributes, units = as_named(attributes), Units(positions)
+    arguments, names = _prepare(units, attributes, solid, {
         "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
-    where = as_points(points, "points", "(points, 3)")
+    where = as_points(units.lengths(points, "array of points"), "points", "(points, 3)")
     view, samples = arguments.view(where, "points"), c.mcor_samples()
 
     def free():
@@ -290,7 +247,7 @@ def probe(positions: ArrayLike, points: ArrayLike, *,
             statistics=statistics(samples.statistics))
     finally:
         free()
-    _warn(result.left_out)
+    _warn_of(result.left_out)
     return result
 
 
@@ -298,7 +255,8 @@ def _or_zeros(array, count):
     return np.zeros(count) if array is None else array
 
 
-def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Union[str, int] = "corrected",
+@with_options(DERIVATIVES)
+def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Literal["corrected", "standard"] = "corrected",
                 smoothing_length: Optional[ArrayLike] = None,
                 volume: Optional[ArrayLike] = None,
                 mass: Optional[ArrayLike] = None,
@@ -310,15 +268,18 @@ def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Union[str
                 **options: Unpack[Options]) -> Derivatives:
     """SPH gradients of the attributes at the particles themselves.
 
-    attributes: {name: (particles,) or (particles, components)}. form: "corrected" (exact for linear
-    attributes) or "standard". The other arguments are those of isosurface(). For divergence,
-    vorticity and the like give the gradients of a velocity to flow().
-    """
-    attributes = as_named(attributes)
-    arguments, names = _prepare(positions, attributes, solid, {
-        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
-    from ._arrays import number
+    attributes: {name: (particles,) or (particles, components)}, or a data frame.
+    form: "corrected" (exact for linear attributes) or "standard".
 
+    The other arguments are those of isosurface(). For divergence, vorticity and the like give the
+    gradients of a velocity to flow().
+
+    {options}
+    """
+    check_names(derivatives, options, DERIVATIVES)
+    attributes = as_named(attributes)
+    arguments, names = _prepare(Units(positions), attributes, solid, {
+        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
     chosen, result = number("form", "mcor_gradient", form), c.mcor_derivatives()
 
     def free():
@@ -335,7 +296,7 @@ def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Union[str
             statistics=statistics(result.statistics))
     finally:
         free()
-    _warn(found.left_out)
+    _warn_of(found.left_out)
     return found
 
 
@@ -346,7 +307,7 @@ def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:
     J), "vorticity" (the curl, (particles, 3)), "q_criterion", "lambda2" and "strain_rate"
     ((particles, 3, 3)), in the unit of J or its square.
     """
-    matrices = contiguous(gradients, "array of velocity gradients").astype(np.float64)
+    matrices = contiguous(without_unit(gradients), "array of velocity gradients").astype(np.float64)
     if matrices.ndim != 3 or matrices.shape[1:] != (3, 3):
         raise InvalidArgument(f"Velocity gradients have the shape (particles, 3, 3), not {matrices.shape}.")
     wanted, arrays = c.mcor_flow(), {}
@@ -358,41 +319,3 @@ def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:
     if status:
         raise ERRORS[status]("The velocity gradients could not be decomposed.")
     return arrays
-
-
-def _describe_options():
-    """The header's own words."""
-    lines = []
-    for name in c.Options.__annotations__:
-        struct = "mcor_options" if name in c.KINDS["mcor_options"] else "mcor_input"
-        kind = c.KINDS[struct][name]
-        words = ""
-        if kind in c.ENUMS:
-            from ._arrays import _words
-
-            words = " | ".join(f'"{word}"' for word in _words(
-                [k for k in c.ENUMS[kind] if not k.endswith("_COUNT")])) + ". "
-        words += c.COMMENTS[struct][name] or c.COMMENTS["mcor_surface"].get(name) or "see above" * (not words)
-        lines += textwrap.wrap(f"{name}: {words}", 96, subsequent_indent="    ")
-    return "\n    ".join(lines)
-
-
-def _show_options(function):
-    """Each option as a keyword in help() and in editors, with its default."""
-    defaults = c.mcor_options()
-    lib.mcor_set_default_options(ctypes.byref(defaults))
-    signature = inspect.signature(function)
-    named = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
-
-    def default(name):
-        value = -1 if name == "scalar_component" else getattr(defaults, name, 0)
-        return None if isinstance(value, ctypes.Array) else value
-
-    more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default(name))
-            for name, kind in c.Options.__annotations__.items() if name not in signature.parameters]
-    function.__signature__ = signature.replace(parameters=named + more)
-
-
-for _function in (isosurface, free_surface, probe, derivatives):
-    _show_options(_function)
-isosurface.__doc__ = (isosurface.__doc__ or "").replace("{options}", _describe_options() + "\n")

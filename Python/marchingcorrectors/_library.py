@@ -72,6 +72,11 @@ def _open():
         "mcor_decompose_gradients": (ctypes.c_int, [pointer(ctypes.c_double), ctypes.c_int64,
                                                     pointer(c.mcor_flow)]),
         "mcor_name_rank": (ctypes.c_int, [ctypes.c_int, ctypes.c_char_p]),
+        "mcor_find_fluid_value": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_double, ctypes.c_double,
+                                                 pointer(ctypes.c_double)]),
+        "mcor_view_rank": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_int]),
+        "mcor_find_iso_value": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_ranks),
+                                               pointer(ctypes.c_double), pointer(ctypes.c_double)]),
         "mcor_opencl_set_driver": (None, [ctypes.c_char_p]),
         "mcor_opencl_use_driver": (ctypes.c_int, [ctypes.c_int]),
     }

@@ -4,7 +4,7 @@
 from vtkmodules.vtkCommonCore import vtkTimeStamp
 from vtkmodules.vtkCommonDataModel import vtkDataObjectTree, vtkPointSet
 
-from ._vtk_particles import Particles, Request, Unusable
+from ._vtk_particles import Particles, Request, Unusable, choose_array, name_of
 from ._vtk_summary import estimate_cells
 
 
@@ -27,29 +27,61 @@ class Ahead:
         self._ahead, self._look_time = None, vtkTimeStamp()
 
     def GetNextScalarRange(self):
-        return self._look_ahead()[0]
+        return self._look_ahead()["range"]
+
+    def GetNextIsoValue(self):
+        return self._look_ahead()["iso"]
+
+    def GetNextComponents(self):
+        return self._look_ahead()["components"]
 
     def GetNextCells(self):
-        return self._look_ahead()[1]
+        return self._look_ahead()["cells"]
+
+    def GetNextFluid(self):
+        return self._look_ahead()["fluid"]
+
+    def GetNextArray(self):
+        return self._look_ahead()["array"]
 
     def _look_ahead(self):
         data = self.GetInputDataObject(0, 0) if self.GetNumberOfInputConnections(0) else None
         if data is not None and max(self.GetMTime(), data.GetMTime()) < self._look_time.GetMTime():
             return self._ahead
-        limits, cells = [], 0.0
-        for points in list_point_sets(data):
-            for free_surface in (self.FreeSurface, True):  # without a scalar the number of cells is known all the same
-                choice = self._choice()
-                choice.FreeSurface, choice.InterpolateAttributes = free_surface, False
-                particles = Particles(choice, points)
-                try:
-                    particles.collect((Request(self, 0, points), Request(self, 1, points)), [])
-                except Unusable:
-                    continue
-                values = [] if free_surface else particles.fluid_values()
-                limits += [float(values.min()), float(values.max())] if len(values) else []
-                cells += estimate_cells(particles, self._options(choice))
-                break
-        self._ahead = ((min(limits), max(limits)) if limits else (0.0, 0.0)), cells
+        ahead = self._ahead = {"range": (0.0, 0.0), "iso": float("nan"), "cells": 0.0, "fluid": "", "array": "",
+                               "components": 0}
+        for points in list_point_sets(self._take_particles(data)):
+            self._look_at(points, ahead)
         self._look_time.Modified()
         return self._ahead
+
+    def _look_at(self, points, ahead):
+        """What is known does not wait for the rest: the range needs no smoothing length, the cells no scalar."""
+        fittest = choose_array(points.GetPointData())
+        ahead["array"] = ahead["array"] or name_of(fittest)
+        choice = self._choice()
+        choice.InterpolateAttributes = False
+        particles = Particles(choice, points)
+        try:
+            particles.collect_solids()
+            ahead["fluid"] = particles.describe_fluid()
+            found = None
+            if not choice.FreeSurface:
+                particles.collect_scalar(Request(self, 0, points), Request(self, 1, points))
+                found = particles.find_iso_value()
+            if found:
+                before = [ahead["range"]] if ahead["iso"] == ahead["iso"] else []
+                ranges = [*before, found[0]]
+                ahead["range"] = min(low for low, _ in ranges), max(high for _, high in ranges)
+                ahead["iso"] = ahead["iso"] if before else found[1]
+                ahead["components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
+        except Unusable:
+            pass
+        choice = self._choice()
+        choice.FreeSurface, choice.InterpolateAttributes = True, False
+        particles = Particles(choice, points)
+        try:
+            particles.collect((None, None), [])
+            ahead["cells"] += estimate_cells(particles, self._options(choice))
+        except Unusable:
+            pass

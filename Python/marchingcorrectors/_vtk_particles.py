@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The particles of a VTK data set as arguments of the core, as vtkSPHParticles finds them in C++."""
+import ctypes
+
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
@@ -9,10 +11,14 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _structs as c
 from ._arrays import Arguments
 from ._library import lib
+from ._vtk_period import NO_PERIOD, find_period
+from ._warnings import describe_unused_type
+
+lib.mcor_find_layout.restype, lib.mcor_find_layout.argtypes = ctypes.c_char_p, [ctypes.c_char_p]
 
 GHOSTS = "vtkGhostType"
-QUANTITIES = {"smoothing_length": "MCOR_SMOOTHING_LENGTH", "volume": "MCOR_VOLUME", "mass": "MCOR_MASS",
-              "density": "MCOR_DENSITY"}
+QUANTITIES = ("smoothing_length", "volume", "mass", "density")
+WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls
 
 
 class Unusable(Exception):
@@ -44,7 +50,7 @@ def to_numpy(array):
 
 def detect(data, count, quantity):
     """The point array with the most usual name for a quantity. The core has the names."""
-    number = c.ENUMS["mcor_quantity"][QUANTITIES[quantity]]
+    number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
     best = None
     for i in range(data.GetNumberOfArrays()):
         array = data.GetArray(i)
@@ -56,11 +62,89 @@ def detect(data, count, quantity):
     return best[1] if best else None
 
 
+def join_velocity(data, count):
+    """The point arrays vx, vy and vz as one vector, "Velocity", of float only where all are; None where they
+    are not there, or such an array is."""
+    parts = [data.GetArray(name) for name in ("vx", "vy", "vz")]
+    if data.HasArray("Velocity") or not all(
+            part is not None and is_real(part) and part.GetNumberOfComponents() == 1
+            and part.GetNumberOfTuples() == count for part in parts):
+        return None
+    joined = (vtkFloatArray if all(part.GetDataTypeAsString() == "float" for part in parts) else vtkDoubleArray)()
+    joined.SetName("Velocity")
+    joined.SetNumberOfComponents(3)
+    joined.SetNumberOfTuples(count)
+    for component, part in enumerate(parts):
+        joined.CopyComponent(component, part, 0)
+    return joined
+
+
+def describe_missing_length(data):
+    """What to do where no smoothing length is found."""
+    names = "\n".join(name_of(data.GetAbstractArray(i)) for i in range(data.GetNumberOfArrays()))
+    dual = lib.mcor_find_layout(names.encode(errors="replace")) == b"DualSPHysics"
+    return "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual
+
+
+def rank_of(array):
+    """How fit it is to be looked at where nobody has chosen an array; -1: not."""
+    varies = any(low < high for low, high in map(array.GetRange, range(array.GetNumberOfComponents())))
+    return lib.mcor_view_rank(name_of(array).encode(), array.GetNumberOfComponents(), is_real(array), varies)
+
+
+def choose_array(data, names=None):
+    """The fittest one; None where none is."""
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())] if names is None else \
+        [data.GetArray(name) for name in names]
+    ranks = [(rank_of(array), i) for i, array in enumerate(arrays) if array is not None]
+    best = min(((rank, i) for rank, i in ranks if rank >= 0), default=None)
+    return arrays[best[1]] if best else None
+
+
+def list_types(data):
+    """Arrays that tell kinds of particles apart, by their names, the most usual first."""
+    number = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
+    ranks = [(lib.mcor_name_rank(number, name_of(array).encode()), i) for i, array in enumerate(arrays)
+             if array is not None and array.GetNumberOfComponents() == 1]
+    return [arrays[i] for rank, i in sorted(ranks) if rank >= 0]
+
+
+def find_fluid(data):
+    """The array and its value that clearly tell which particles are fluid; None where none does."""
+    for array in list_types(data):
+        values, fluid = np.unique(to_numpy(array)), ctypes.c_double()
+        if 0 < len(values) <= 8 and (values == np.floor(values)).all() and lib.mcor_find_fluid_value(
+                name_of(array).encode(), values[0], values[-1], ctypes.byref(fluid)):
+            return name_of(array), fluid.value
+    return None
+
+
+def describe_unused_types(data):
+    """(A sentence about the first array that does, although all particles count as fluid, its name); or None."""
+    for array in list_types(data):
+        sentence = describe_unused_type(name_of(array), to_numpy(array)[:, 0])
+        if sentence:
+            return sentence, name_of(array)
+    return None
+
+
+def period_of(points):
+    """Six bounds that the field data tell of; raises Unusable where they tell of none."""
+    period = find_period(points)
+    if not period:
+        raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
+    return period
+
+
 class Particles:
     """Finds the arrays; raises Unusable. choice: the filter's properties, copied."""
 
     def __init__(self, choice, points):
         self.choice, self.points = choice, points
+        found = find_fluid(points.GetPointData()) if choice.DetectFluid and not real_name(choice.FluidArrayName) else None
+        if found:
+            choice.FluidArrayName, choice.FluidValue = found
         self.data, self.count = points.GetPointData(), points.GetNumberOfPoints()
         self.positions = points.GetPoints().GetData()
         self.scalar = self.dot = self.fluid = None
@@ -109,6 +193,8 @@ class Particles:
         if not scalar.on_points or not dot.on_points:
             raise Unusable(f"The scalar '{dot.name if scalar.on_points else scalar.name}' is not a point array; "
                            f"SPH particles are points. {self.list_point_arrays()}")
+        if scalar.name == "Velocity" and scalar.array is None:
+            scalar.array = join_velocity(self.data, self.count)
         self.scalar = self.check("scalar", scalar.name, scalar.array)
         components, component = self.scalar.GetNumberOfComponents(), self.choice.ScalarComponent
         if real_name(dot.name):
@@ -128,7 +214,7 @@ class Particles:
             if "smoothing_length" not in self.values:
                 raise Unusable("The particles have no smoothing length: no point array has one of its usual names "
                                "(SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask for an "
-                               f"estimate. {self.list_point_arrays()}")
+                               f"estimate. {describe_missing_length(self.data)}{self.list_point_arrays()}")
         mass_or_density_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName)
                                or choice.Mass or choice.Density)
         self.collect_quantity("volume", choice.VolumeArrayName, 0.0, may_detect=not mass_or_density_set)
@@ -169,17 +255,24 @@ class Particles:
             self.scalar_name += "_Dot_" + name_of(self.dot)
         elif self.scalar.GetNumberOfComponents() > 1:
             label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
-            self.scalar_name += "_" + (label or str(component))
+            label = label or ("XYZ"[component] if self.scalar.GetNumberOfComponents() <= 3 else str(component))
+            self.scalar_name += "_" + label
         if self.scalar_name and self.scalar_name not in taken:
             self.iso_value_name = self.scalar_name
 
     def collect_attributes(self, taken):
-        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS}
-        for i in range(self.data.GetNumberOfArrays()):
-            array = self.data.GetAbstractArray(i)
+        left = set(taken) | set(self.choice.ExcludedArrays) | {"", GHOSTS, WALL_BLOCK}
+        arrays = [self.data.GetAbstractArray(i) for i in range(self.data.GetNumberOfArrays())]
+        velocity = join_velocity(self.data, self.count)
+        for array in arrays + ([] if velocity is None else [velocity]):
             if name_of(array) not in left and array.GetNumberOfTuples() == self.count:
                 real = isinstance(array, vtkDataArray) and is_real(array)
                 (self.interpolated if real else self.from_nearest).append(array)
+
+    def describe_unused_type(self):
+        """A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else ""."""
+        found = None if self.fluid is not None else describe_unused_types(self.data)
+        return found[0] if found else ""
 
     # -- for the core -------------------------------------------------------------------------------
 
@@ -187,13 +280,10 @@ class Particles:
         result = Arguments(to_numpy(self.positions))
         result.set_solid(self.solid)
         for quantity, value in self.values.items():
-            if isinstance(value, float):
-                result.set_quantities({quantity: value})
-                getattr(result.input, quantity).name = None  # it is no array's
-            else:
-                setattr(result.input, quantity, self.view(result, value))
-                if hasattr(result.input, "has_" + quantity):
-                    setattr(result.input, "has_" + quantity, 1)
+            view = c.mcor_array(constant=value) if isinstance(value, float) else self.view(result, value)
+            setattr(result.input, quantity, view)
+            if hasattr(result.input, "has_" + quantity):
+                setattr(result.input, "has_" + quantity, 1)
         if self.scalar is not None:
             result.input.scalar = self.view(result, self.scalar)
             several = self.scalar.GetNumberOfComponents() > 1
@@ -226,25 +316,15 @@ class Particles:
                       choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids]
         return particles, [sign(self.scalar), sign(self.dot), choice.ScalarComponent]
 
-    def fluid_values(self):
-        """Those of the scalar (component, magnitude or dot product) at fluid particles that are finite."""
-        values = to_numpy(self.scalar).astype(np.float64, copy=False)
-        if self.dot is not None:
-            values = sum(a * b for a, b in zip(values.T, to_numpy(self.dot).astype(np.float64).T))
-        elif values.shape[1] == 1 or self.choice.ScalarComponent >= 0:
-            values = values[:, max(self.choice.ScalarComponent, 0) if values.shape[1] > 1 else 0]
-        else:
-            values = np.sqrt(sum(column * column for column in values.T))
-        return values[np.isfinite(values) & (True if self.solid is None else ~self.solid)]
+    def describe_fluid(self):
+        return f"{name_of(self.fluid)} = {self.choice.FluidValue:g}" if self.fluid is not None else ""
 
-    def middle_of_range(self):
-        """Of the fluid's scalar, the 2 % lowest and highest values left out."""
-        values = self.fluid_values()
-        if not len(values):
-            return 0.0
-        margin = len(values) // 50
-        values = np.partition(values, [margin, len(values) - 1 - margin])
-        return 0.5 * float(values[margin]) + 0.5 * float(values[-1 - margin])
+    def find_iso_value(self):
+        """The range of the scalar at fluid particles, and an iso value for those who gave none; None where no
+        value is finite. Scalar and solids alone must have been collected."""
+        given, ends, value = self.arguments(), (ctypes.c_double * 2)(), ctypes.c_double()  # it holds the arrays
+        found = lib.mcor_find_iso_value(ctypes.byref(given.input), None, ends, ctypes.byref(value))
+        return (tuple(ends), value.value) if found else None
 
 
 class Request:
@@ -256,10 +336,12 @@ class Request:
         if requests is None or index >= requests.GetNumberOfInformationObjects():
             return
         info = requests.GetInformationObject(index)
-        self.name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        name = info.Get(vtkDataObject.FIELD_NAME()) or ""
+        self.name = "" if name == "(automatic)" else name
         attribute = info.Get(vtkDataObject.FIELD_ATTRIBUTE_TYPE()) if info.Has(
             vtkDataObject.FIELD_ATTRIBUTE_TYPE()) else None
-        if not self.name and attribute is None:
+        if not self.name and (name or attribute is None):
+            self._take_fittest(index, points)
             return
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
         self.on_points = association in (vtkDataObject.FIELD_ASSOCIATION_POINTS,
@@ -267,3 +349,10 @@ class Request:
         if self.on_points:
             data = points.GetPointData()
             self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(attribute)
+        if not self.name and (self.array is None or not isinstance(self.array, vtkDataArray) or rank_of(self.array) < 0):
+            self._take_fittest(index, points)
+
+    def _take_fittest(self, index, points):
+        """Nobody has chosen the active scalars of a file: they are taken if they are fit."""
+        best = choose_array(points.GetPointData()) if index == 0 else None
+        self.array = best if best is not None else self.array

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from . import _structs as c
 from ._arrays import statistics, take, take_all
 from ._library import lib
-from ._vtk_particles import is_real, name_of
+from ._vtk_particles import choose_array, is_real, name_of
 
 COMPUTED = {"normals": "Normals", "gradients": "Gradients", "weight_sum": "WeightSum",
             "boundary_eigenvalue": "BoundaryEigenvalue", "correction_length": "CorrectionLength",
@@ -47,7 +47,9 @@ def build_mesh(surface, particles, output, as_float):
     if arrays["iso_value"] is not None:
         single = particles.scalar is not None and particles.scalar.GetDataTypeAsString() == "float"
         add(data, particles.iso_value_name, arrays["iso_value"].astype(np.float32 if single else np.float64))
-        data.SetActiveScalars(particles.iso_value_name)
+    best = choose_array(data, [name_of(array) for array in particles.interpolated] + [particles.iso_value_name])
+    if best is not None:
+        data.SetActiveScalars(name_of(best))
 
 
 def build_triangles(triangles, output):
@@ -137,12 +139,22 @@ def add_levels(data, name, counts):
     data.AddArray(array)
 
 
-def build_field_data(data, surface, particles, arguments):
+def add_iso_values(data, options):
+    array = numpy_to_vtk(np.ctypeslib.as_array(options.iso_values, (options.iso_count,)) if options.iso_count
+                         else np.empty(0), deep=True)
+    array.SetName("IsoValues")
+    data.AddArray(array)
+
+
+def add_run(data, surface, particles, arguments):
+    """What a run found, used and cost."""
     s = statistics(surface.statistics)
     add_text(data, "Device", s["device"])
     add_text(data, "Platform", s["platform"])
     add_statistics(data, s, surface, arguments.options)
+    add_iso_values(data, arguments.options)
     add_parameters(data, particles, arguments, s["wall_share"])
+    add_run_statistics(data, surface)
 
 
 def add_statistics(data, s, surface, options):
@@ -189,10 +201,6 @@ def add_quantity(data, name, given, array):
 
 def add_parameters(data, particles, arguments, wall_share):
     o, core, choice = arguments.options, arguments.input, particles.choice
-    array = numpy_to_vtk(np.ctypeslib.as_array(o.iso_values, (o.iso_count,)) if o.iso_count else np.empty(0),
-                         deep=True)
-    array.SetName("IsoValues")
-    data.AddArray(array)
     add_text(data, "Field", ("shepard", "sum", "weight sum")[o.field])
     add_text(data, "Scalar", particles.scalar_name)
     add_text(data, "SmoothingLengthArray", (core.smoothing_length.name or b"").decode())
@@ -251,3 +259,15 @@ def add_run_statistics(run, surface):
     for name in ("particles_in_reach", "bricks", "nodes_evaluated", "march_rounds"):
         add_count(run, camel(name), before(camel(name)) + s[name])
     add_count(run, "DeviceBytesPeak", max(before("DeviceBytesPeak"), s["device_bytes_peak"]))
+    add_real(run, "MedianNeighbors", s["neighbours_median"])
+    add_real(run, "MedianSpacing", s["spacing_median"])
+
+
+def describe(run):
+    """A line "Name: values" for each array."""
+    lines = []
+    for i in range(run.GetNumberOfArrays()):
+        array = run.GetAbstractArray(i)
+        values = ", ".join(array.GetVariantValue(v).ToString() for v in range(array.GetNumberOfValues()))
+        lines.append(f"{array.GetName()}: {values}\n")
+    return "".join(lines)

@@ -178,6 +178,7 @@ mcor_options core_options(const double* iso)
 {
   mcor_options options;
   mcor_set_default_options(&options);
+  options.wall_share = 0; /* ends nothing, unless a test says so */
   options.cube_size_mode = MCOR_CUBES_UNIFORM; /* where a test does not ask for others */
   options.iso_values = iso;
   options.iso_count = 1;

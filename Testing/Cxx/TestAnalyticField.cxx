@@ -6,10 +6,13 @@
 
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
+#include "vtkIntArray.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace
 {
@@ -194,7 +197,8 @@ void TestSeveralValues()
   }
 }
 
-// Without an iso value: the middle of the fluid's range, not moved by single extreme particles.
+// Without an iso value: the median of the fluid, not moved by single extreme particles; of values that range
+// over decades the middle in logarithms. Whole numbers stay whole.
 void TestDefaultValue()
 {
   auto cube = test::MakeCube();
@@ -210,13 +214,33 @@ void TestDefaultValue()
   };
   filter->SetNumberOfContours(0);
   const double middle = used();
-  CHECK(middle > 0.7 && middle < 1.0);
+  std::vector<double> sorted;
+  for (vtkIdType i = 0; i < radius->GetNumberOfTuples(); ++i)
+  {
+    sorted.push_back(radius->GetComponent(i, 0));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  CHECK(middle == sorted[(sorted.size() - 1) / 2]);
+  CHECK(filter->GetNextIsoValue() == middle);
   for (vtkIdType i = 0; i < 10; ++i)
   {
     radius->SetComponent(i, 0, 1e6);
   }
   radius->Modified();
   CHECK(std::fabs(used() - middle) < 0.02);
+  filter->SetNumberOfContours(1);
+  filter->SetValue(0, std::numeric_limits<double>::quiet_NaN()); // an empty row
+  CHECK(std::fabs(used() - middle) < 0.02);
+  filter->SetNumberOfContours(0);
+  test::AddArray<vtkDoubleArray>(cube, "Decades", 1,
+    [&](vtkIdType i, int) { return std::pow(10.0, -3.0 + 4.0 * cube->GetPoint(i)[0]); });
+  test::AddArray<vtkIntArray>(
+    cube, "Whole", 1, [&](vtkIdType i, int) { return std::floor(9.0 * cube->GetPoint(i)[0]); });
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Decades");
+  CHECK(std::fabs(std::log10(used()) + 3.0) < 0.1);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Whole");
+  const double whole = used();
+  CHECK(whole == std::floor(whole) && std::fabs(whole) < 2.0);
   filter->FreeSurfaceOn();
   filter->SetNumberOfFreeSurfaceValues(0);
   CHECK(used() == 0.5);
@@ -262,7 +286,7 @@ void TestTolerance()
   };
   const auto number = [&](const char* name)
   {
-    vtkDataArray* array = filter->GetOutput()->GetFieldData()->GetArray(name);
+    vtkDataArray* array = filter->GetRunStatistics()->GetArray(name);
     CHECK(array != nullptr);
     return array ? array->GetComponent(0, 0) : -1.0;
   };

@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Composite data: each block by itself, in its place; messages name the block, and none is lost.
+// Composite data: blocks that are one set of particles; and each block by itself, in its place, where messages
+// name the block, and none is lost.
 #include "TestParticles.h"
 
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkIntArray.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
+#include "vtkSPHDerivatives.h"
 #include "vtkTable.h"
 
 namespace
@@ -30,6 +33,14 @@ vtkSmartPointer<vtkPolyData> ExtractAlone()
   filter->Update();
   CHECK(filter->GetOutput()->GetNumberOfCells() > 0);
   return filter->GetOutput();
+}
+
+/// Each block by itself.
+vtkSmartPointer<vtkMarchingCorrectors> MakeApart(vtkDataObject* input)
+{
+  auto filter = test::MakeSphereFilter(input);
+  filter->SetBlocksToApart();
+  return filter;
 }
 
 bool Has(const std::string& text, const char* part)
@@ -58,7 +69,7 @@ void TestMessages()
   blocks->SetBlock(5, within);
   blocks->SetBlock(6, test::MakeCube());
 
-  auto filter = test::MakeSphereFilter(blocks);
+  auto filter = MakeApart(blocks);
   int errors = 0, warnings = 0;
   test::CountEvents(filter, vtkCommand::ErrorEvent, &errors);
   test::CountEvents(filter, vtkCommand::WarningEvent, &warnings);
@@ -81,7 +92,7 @@ void TestMessages()
   }
   CHECK(surface(1) && test::SameSurface(expected, surface(1)));
   CHECK(surface(1)->GetFieldData()->HasArray("TimeValue"));
-  CHECK(surface(1)->GetFieldData()->HasArray("Triangles"));
+  CHECK(surface(1)->GetFieldData()->HasArray("IsoValues"));
   CHECK(!output->GetBlock(4));
   CHECK(surface(6) && test::SameSurface(expected, surface(6)));
 
@@ -106,7 +117,7 @@ void TestPartitions()
   collection->SetPartitionedDataSet(0, walls);
   collection->SetPartitionedDataSet(1, water);
   collection->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "water");
-  auto filter = test::MakeSphereFilter(collection);
+  auto filter = MakeApart(collection);
   filter->Update();
   std::cout << filter->GetErrorMessage() << "\n";
   CHECK(Has(filter->GetErrorMessage(), "Block 'water', index 5: "));
@@ -128,7 +139,7 @@ void TestPartitions()
 // The cost is that of all blocks; the fraction of the progress never falls.
 void TestSums()
 {
-  auto filter = test::MakeSphereFilter(test::MakeCube());
+  auto filter = MakeApart(test::MakeCube());
   filter->KeepDeviceDataOff();
   filter->Update();
   const auto cost = [&filter](const char* name)
@@ -162,7 +173,7 @@ void TestAbort()
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, test::MakeCube());
   blocks->SetBlock(1, test::MakeCube());
-  auto filter = test::MakeSphereFilter(blocks);
+  auto filter = MakeApart(blocks);
   vtkNew<vtkCallbackCommand> observer;
   observer->SetCallback(
     [](vtkObject* caller, unsigned long, void*, void*)
@@ -193,8 +204,153 @@ void TestNoPointSets()
   vtkNew<vtkMultiBlockDataSet> none;
   filter->SetInputDataObject(none);
   filter->Update();
+  CHECK(filter->GetOutput() && filter->GetOutput()->GetNumberOfPoints() == 0);
+  CHECK(!*filter->GetErrorMessage());
+  filter->SetBlocksToApart();
+  filter->Update();
   CHECK(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0)));
   CHECK(!*filter->GetErrorMessage());
+}
+
+/// Those of the particles for which `isIn` is true, with all arrays.
+vtkSmartPointer<vtkPolyData> Take(vtkPolyData* from, const std::function<bool(vtkIdType)>& isIn)
+{
+  auto taken = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(from->GetPoints()->GetDataType());
+  taken->GetPointData()->CopyAllocate(from->GetPointData());
+  for (vtkIdType i = 0; i < from->GetNumberOfPoints(); ++i)
+  {
+    if (isIn(i))
+    {
+      const vtkIdType to = points->InsertNextPoint(from->GetPoint(i));
+      taken->GetPointData()->CopyData(from->GetPointData(), i, to);
+    }
+  }
+  taken->SetPoints(points);
+  return taken;
+}
+
+// Particles in two blocks, in any order, and one more empty block: the surface of one set, to the last bit.
+// An array that one block lacks is left out. What is put together is kept while the blocks are the same.
+void TestTogether()
+{
+  auto cube = test::MakeCube();
+  auto whole = test::MakeSphereFilter(cube);
+  whole->Update();
+  const auto left = [&](vtkIdType i) { return cube->GetPoint(i)[0] < 0.05; };
+  auto second = Take(cube, left);
+  auto first = Take(cube, [&](vtkIdType i) { return !left(i); });
+  test::AddArray<vtkDoubleArray>(first, "Own", 1, [](vtkIdType, int) { return 1.0; });
+  vtkNew<vtkMultiBlockDataSet> blocks, within;
+  within->SetBlock(0, second);
+  blocks->SetBlock(0, first);
+  blocks->SetBlock(1, within);
+  blocks->SetBlock(2, vtkNew<vtkPolyData>());
+  blocks->SetBlock(3, vtkNew<vtkImageData>());
+  vtkNew<vtkDoubleArray> time;
+  time->SetName("TimeValue");
+  time->InsertNextValue(0.5);
+  second->GetFieldData()->AddArray(time);
+  auto filter = test::MakeSphereFilter(blocks);
+  int warnings = 0;
+  test::CountEvents(filter, vtkCommand::WarningEvent, &warnings);
+  filter->Update();
+  CHECK(warnings == 0 && !*filter->GetErrorMessage());
+  CHECK(filter->GetOutput() && test::SameSurface(whole->GetOutput(), filter->GetOutput()));
+  CHECK(filter->GetOutput()->GetFieldData()->HasArray("TimeValue"));
+  CHECK(test::SameStatistics(whole->GetRunStatistics(), filter->GetRunStatistics()));
+
+  const double before = filter->GetRunStatistics()->GetArray("MarchRounds")->GetComponent(0, 0);
+  filter->SetValue(0, 0.7);
+  filter->Update();
+  whole->SetValue(0, 0.7);
+  whole->Update();
+  CHECK(before > 0.0 && test::SameSurface(whole->GetOutput(), filter->GetOutput()));
+  vtkDataArray* radius = second->GetPointData()->GetArray("Radius");
+  for (vtkIdType i = 0; i < radius->GetNumberOfTuples(); ++i)
+  {
+    radius->SetComponent(i, 0, 2.0 * radius->GetComponent(i, 0));
+  }
+  radius->Modified();
+  filter->Modified();
+  filter->Update();
+  CHECK(!test::SameSurface(whole->GetOutput(), filter->GetOutput()));
+
+  filter->SetBlocksToApart();
+  filter->Update();
+  CHECK(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0)));
+}
+
+// Walls in a block of their own, as its name says, without the scalar: solid, where that is asked for.
+void TestWalls()
+{
+  auto cube = test::MakeCube();
+  const auto isWall = [&](vtkIdType i) { return cube->GetPoint(i)[2] < -0.45; };
+  auto walls = Take(cube, isWall);
+  walls->GetPointData()->RemoveArray("Radius");
+  walls->GetPointData()->RemoveArray("Volume");
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, walls);
+  blocks->SetBlock(1, Take(cube, [&](vtkIdType i) { return !isWall(i); }));
+  blocks->GetMetaData(0u)->Set(vtkCompositeDataSet::NAME(), "Boundary");
+  blocks->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "Fluid");
+  auto filter = test::MakeSphereFilter(blocks);
+  int warnings = 0;
+  test::CountEvents(filter, vtkCommand::WarningEvent, &warnings);
+  filter->Update();
+  CHECK(warnings == 1 && !*filter->GetUsedFluid());
+  const vtkIdType all = filter->GetOutput()->GetNumberOfCells();
+  filter->DetectFluidOn();
+  CHECK(!std::strcmp(filter->GetNextFluid(), "WallBlock = 0"));
+  filter->Update();
+  CHECK(warnings == 1 && !std::strcmp(filter->GetUsedFluid(), "WallBlock = 0"));
+  CHECK(!filter->GetOutput()->GetPointData()->HasArray("WallBlock"));
+
+  // As one set in which an array tells.
+  test::AddArray<vtkIntArray>(cube, "Kind", 1, [&](vtkIdType i, int) { return isWall(i) ? 7 : 4; });
+  auto one = test::MakeSphereFilter(cube);
+  one->SetFluidArrayName("Kind");
+  one->SetFluidValue(4.0);
+  one->AddExcludedArray("Kind");
+  one->Update();
+  CHECK(test::SameSurface(one->GetOutput(), filter->GetOutput()));
+  CHECK(filter->GetOutput()->GetNumberOfCells() > 100);
+  CHECK(filter->GetOutput()->GetNumberOfCells() != all);
+
+  filter->SetBlocksToApart();
+  filter->Update();
+  CHECK(warnings >= 2); // walls that are not seen
+}
+
+// Derivatives stay in their blocks, and see the others.
+void TestDerivatives()
+{
+  auto cube = test::MakeCube();
+  const auto left = [&](vtkIdType i) { return cube->GetPoint(i)[0] < 0.05; };
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, Take(cube, left));
+  blocks->SetBlock(2, Take(cube, [&](vtkIdType i) { return !left(i); }));
+  vtkNew<vtkSPHDerivatives> derivatives, whole;
+  derivatives->SetInputDataObject(blocks);
+  whole->SetInputDataObject(cube);
+  for (vtkSPHDerivatives* each : { derivatives.Get(), whole.Get() })
+  {
+    each->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Radius");
+    each->Update();
+  }
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(derivatives->GetOutput());
+  auto* expected = vtkPolyData::SafeDownCast(whole->GetOutput());
+  CHECK(output && output->GetNumberOfBlocks() == 3 && !output->GetBlock(1));
+  for (const unsigned int b : { 0u, 2u })
+  {
+    auto* block = vtkPolyData::SafeDownCast(output->GetBlock(b));
+    const auto part = Take(expected, [&](vtkIdType i) { return left(i) == (b == 0); });
+    CHECK(block &&
+      test::SameValues(
+        part->GetPointData()->GetArray("Gradients"), block->GetPointData()->GetArray("Gradients")));
+    CHECK(block->GetPointData()->HasArray("Radius"));
+  }
 }
 }
 
@@ -205,5 +361,8 @@ int TestBlocks(int, char*[])
   TestSums();
   TestAbort();
   TestNoPointSets();
+  TestTogether();
+  TestWalls();
+  TestDerivatives();
   return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

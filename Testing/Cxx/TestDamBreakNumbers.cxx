@@ -82,6 +82,7 @@ void CheckTrimBoundary(vtkPolyData* surface, const char* name, double threshold)
 int TestDamBreakNumbers(int argc, char* argv[])
 {
   auto filter = test::MakeDamBreakFilter(argc, argv);
+  filter->SetSolids(vtkMarchingCorrectors::SOLIDS_WEIGHT);
   filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   filter->ComputeBoundaryFlagOn();
   filter->ComputeWeightSumOn();
@@ -99,7 +100,25 @@ int TestDamBreakNumbers(int argc, char* argv[])
   CHECK(surface->GetNumberOfCells() > 8000 && surface->GetNumberOfCells() < 20000);
   CHECK(worst <= 1e-5 * (range[1] - range[0]));
   CheckTrimBoundary(surface, "WeightSum", 0.5);
-  CHECK(surface->GetFieldData()->GetArray("SolidParticles")->GetComponent(0, 0) == 55348.0);
+  vtkFieldData* run = filter->GetRunStatistics();
+  CHECK(run->GetArray("SolidParticles")->GetComponent(0, 0) == 55348.0);
+
+  // By default a scalar's surface ends at the walls, and only there is less of it.
+  const vtkIdType behind = surface->GetNumberOfCells();
+  filter->SetSolids(vtkMarchingCorrectors::SOLIDS_AUTO);
+  filter->Update();
+  std::cout << "to the walls: " << filter->GetOutput()->GetNumberOfCells() << " triangles\n";
+  CHECK(vtkNew<vtkMarchingCorrectors>()->GetSolids() == vtkMarchingCorrectors::SOLIDS_AUTO);
+  CHECK(filter->GetOutput()->GetNumberOfCells() < behind);
+  CHECK(filter->GetOutput()->GetNumberOfCells() > behind / 2);
+  auto byHand = test::MakeDamBreakFilter(argc, argv);
+  byHand->SetSolids(vtkMarchingCorrectors::SOLIDS_WALL);
+  byHand->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  byHand->ComputeBoundaryFlagOn();
+  byHand->ComputeWeightSumOn();
+  byHand->Update();
+  CHECK(test::SameSurface(byHand->GetOutput(), filter->GetOutput()));
+  filter->SetSolids(vtkMarchingCorrectors::SOLIDS_WEIGHT);
 
   filter->SetBoundaryDetectionToEigenvalue();
   filter->SetVertexThreshold(0.3);
@@ -112,6 +131,11 @@ int TestDamBreakNumbers(int argc, char* argv[])
 
   filter->FreeSurfaceOn();
   filter->Update();
+  vtkNew<vtkPolyData> closed;
+  closed->ShallowCopy(filter->GetOutput());
+  filter->SetSolids(vtkMarchingCorrectors::SOLIDS_AUTO);
+  filter->Update();
+  CHECK(test::SameSurface(closed, filter->GetOutput())); // the free surface goes on as it did
   surface = filter->GetOutput();
   worst = WorstResidual(surface, fluid, 0.5, true);
   const double* bounds = surface->GetBounds();

@@ -251,6 +251,7 @@ void TestPointSets()
   blocks->SetBlock(0, cube);
   blocks->SetBlock(1, grid);
   auto filter = test::MakeSphereFilter(blocks);
+  filter->SetBlocksToApart();
   filter->InterpolateAttributesOff();
   filter->ComputeScalarsOff();
   filter->Update();

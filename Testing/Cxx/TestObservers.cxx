@@ -75,12 +75,10 @@ vtkSmartPointer<vtkPolyData> ExtractObserved(Filter* filter, Observer& observer)
 
 void TestChanges()
 {
-  const auto expected = []
-  {
-    auto filter = MakeFilter(MakeParticles());
-    filter->Update();
-    return Copy(filter->GetOutput());
-  }();
+  auto plain = MakeFilter(MakeParticles());
+  plain->Update();
+  const auto expected = Copy(plain->GetOutput());
+  vtkFieldData* statistics = plain->GetRunStatistics();
   CHECK(expected->GetNumberOfCells() > 0);
   const auto dataOf = [](Filter* f)
   { return vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0))->GetPointData(); };
@@ -134,7 +132,7 @@ void TestChanges()
     Observer observer{ change.second };
     const auto surface = ExtractObserved(filter, observer);
     const bool same = test::SameSurface(expected, surface) &&
-      test::SameFieldData(expected->GetFieldData(), surface->GetFieldData());
+      test::SameStatistics(statistics, filter->GetRunStatistics());
     std::cout << change.first << ": " << observer.Calls << " calls" << (same ? "" : ", differs")
               << "\n";
     CHECK(observer.Calls > 3 && same);

@@ -133,8 +133,7 @@ void TestSteps()
     std::cout << steps[last].Name << ": " << fresh->GetOutput()->GetNumberOfCells() << " triangles"
               << (same ? "" : ", differs") << "\n";
     CHECK(same);
-    CHECK(test::SameFieldData(
-      lasting->GetOutput()->GetFieldData(), fresh->GetOutput()->GetFieldData()));
+    CHECK(test::SameStatistics(lasting->GetRunStatistics(), fresh->GetRunStatistics()));
     CHECK(std::strcmp(lasting->GetErrorMessage(), fresh->GetErrorMessage()) == 0);
   }
 }

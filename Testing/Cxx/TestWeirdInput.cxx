@@ -64,10 +64,11 @@ const double Infinity = std::numeric_limits<double>::infinity();
 std::vector<Case> MissingOrMistyped()
 {
   return {
-    { "no scalar", { "scalar", "free surface", "Radius" },
+    { "no scalar", { "scalar", "free surface", "Volume" },
       [](Filter* f)
       { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, ""); },
-      Nothing },
+      [](vtkPolyData* data)
+      { data->GetPointData()->RemoveArray("Radius"); } }, // no other one varies
     { "unknown scalar", { "'NoSuch'", "scalar", "Radius" }, [](Filter* f) { Scalar(f, "NoSuch"); },
       Nothing },
     { "cell scalar", { "scalar", "point array" },
@@ -127,7 +128,7 @@ std::vector<Case> IllegalValues()
       [](vtkPolyData* d) { d->GetPoints()->SetPoint(20, 0.0, NaN, 0.0); } },
     { "constant smoothing length negative", { "smoothing length" },
       [](Filter* f) { f->SetSmoothingLength(-0.1); }, Nothing },
-    { "iso value NaN", { "iso" }, [](Filter* f) { f->SetValue(0, NaN); }, Nothing },
+    { "iso value infinite", { "iso" }, [](Filter* f) { f->SetValue(0, Infinity); }, Nothing },
     { "scale 0", { "scale" }, [](Filter* f) { f->SetHScaleFactor(0.0); }, Nothing },
     { "cube size negative", { "cube size" }, [](Filter* f) { f->SetCubeSize(-1.0); }, Nothing },
     { "cube size tiny", { "cube size" }, [](Filter* f) { f->SetCubeSize(1e-12); }, Nothing },

@@ -201,7 +201,7 @@ Extracted Extract(const Setup& setUp, vtkPolyData* particles, vtkMultiProcessCon
     { range[0], range[1], filter->GetEstimatedCells(), next[0], next[1], filter->GetNextCells() } };
   for (std::size_t i = 0; i < OfSurfaceCount; ++i)
   {
-    vtkDataArray* found = extracted.Surface->GetFieldData()->GetArray(OfSurface[i]);
+    vtkDataArray* found = filter->GetRunStatistics()->GetArray(OfSurface[i]);
     extracted.Said[6 + i] = found ? found->GetComponent(0, 0) : -1.0;
   }
   return extracted;

@@ -1,27 +1,31 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The XML of SPH Derivatives and SPH Probe against the wrapped filters, without ParaView."""
+"""The XML of SPH Derivatives, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
 import pathlib
 import unittest
 import xml.etree.ElementTree
 
-from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHProbe
+from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample
 
 PLUGIN = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
-NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds"}
-# Setters without a property: (automatic) in the panel's lists stands for the first.
+NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds", "ReleaseDeviceMemory",
+                       "SetOrigin", "SetNormal", "SetPoint1", "SetPoint2", "SetBounds", "SetDimensions"}
+# Setters without a property: (automatic) in the panel's lists stands for the first. A probe's particles are one set.
 NOT_IN_XML = {"SetController", "SetDetectArrays"}
+PROBES = NOT_IN_XML | {"SetBlocks"}
+# Defaults that are not the filter's, and what those are: a panel shows what was found.
+DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
 
 
 class TestFieldXml(unittest.TestCase):
     def for_each(self, check):
-        for filter_class in (vtkSPHDerivatives, vtkSPHProbe):
+        for filter_class in (vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample):
             name = filter_class.__name__[3:]
             proxy = xml.etree.ElementTree.parse(PLUGIN / f"{name}.xml").find(".//SourceProxy")
             self.assertEqual((proxy.get("name"), proxy.get("class")), (name, filter_class.__name__))
-            elements = [e for e in proxy if e.tag.endswith("Property")]
+            elements = [e for e in proxy if e.tag.endswith("Property") and not e.get("information_only")]
             with self.subTest(name):
                 check(filter_class, proxy, elements)
 
@@ -44,9 +48,11 @@ class TestFieldXml(unittest.TestCase):
 
     def test_setters_have_properties(self):
         def check(filter_class, proxy, elements):
-            own = {**vars(vtkSPHAlgorithm), **vars(filter_class)}
+            own = {**vars(vtkSPHAlgorithm), **vars(filter_class),
+                   **(vars(vtkSPHProbe) if filter_class is vtkSPHResample else {})}
             setters = {name for name in own if name.startswith("Set") and "G" + name[1:] in own}
-            self.assertEqual(setters - {e.get("command") for e in elements}, NOT_IN_XML)
+            self.assertEqual(setters - {e.get("command") for e in elements},
+                             NOT_IN_XML if filter_class is vtkSPHDerivatives else PROBES)
         self.for_each(check)
 
     def test_defaults_and_values(self):
@@ -54,6 +60,8 @@ class TestFieldXml(unittest.TestCase):
             made = filter_class()
             get = getattr(made, "Get" + command[len("Set"):])
             text = element.get("default_values")
+            if filter_class is not vtkSPHResample or element.get("name") != "NaNOutside":
+                text = DIFFERENT.get(element.get("name"), text)
             self.assertIs(type(get()), kind)
             self.assertEqual(get(), kind("" if text in ("(automatic)", "(none)") else text))
             for domain in element:
@@ -71,12 +79,25 @@ class TestFieldXml(unittest.TestCase):
             for element in elements:
                 text = element.findtext("Documentation", "")
                 self.assertRegex(text, "." if element.get("command") in INPUTS else "Default:")
-            grouped = [e.get("name") for e in proxy.findall("PropertyGroup/Property")]
+            grouped = [e.get("name") for e in proxy.findall("PropertyGroup/Property")
+                       if e.get("name") not in ("UsedFluid", "Input")]
             names = [e.get("name") for e in elements if e.get("command") not in INPUTS]
             self.assertEqual(sorted(grouped), sorted(names))
+            if filter_class is vtkSPHResample:
+                return  # not in the menu itself
             menu = proxy.find("Hints/ShowInMenu")
             self.assertEqual(menu.get("category"), "Point Interpolation")
         self.for_each(check)
+
+    def test_shapes(self):
+        """SPH Slice, SPH Line and SPH Volume: the same filter with its shape chosen, where the panel says."""
+        root = xml.etree.ElementTree.parse(PLUGIN / "SPHResample.xml")
+        for shape, name in enumerate(("SPHSlice", "SPHLine", "SPHVolume")):
+            proxy = root.find(f".//ProxyGroup[@name='filters']/SourceProxy[@name='{name}']")
+            self.assertEqual(proxy.get("base_proxyname"), "SPHResample")
+            defaults = {e.get("name"): e.get("default_values") for e in proxy if e.get("override")}
+            self.assertEqual(defaults, {"Shape": str(shape), **({"FitBounds": "0"} if name != "SPHVolume" else {})})
+            self.assertEqual(proxy.find("Hints/ShowInMenu").get("category"), "Point Interpolation")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import faulthandler
 import os
 
 from paraview import servermanager, smtrace
-from paraview.simple import (Connect, Delete, Disconnect, FindSource, LoadPlugin, LoadState,
+from paraview.simple import (Clip, Connect, Delete, Disconnect, FindSource, GroupDatasets, LoadPlugin, LoadState,
                              PointSource, RenameSource, SaveState, XMLPolyDataReader)
 from vtkmodules.vtkCommonCore import reference
 import numpy
@@ -23,9 +23,10 @@ def check_panel(extract):
     vectors = {"Velocity", "Vorticity"}
     scalars = {"Density", "Lambda2", "Mass", "ParticleType", "Pressure", "SmoothingLength",
                "SmoothingLengthAdaptive", "VorticityMagnitude"}
-    assert set(names_offered(extract, "SelectInputScalars")) == scalars | vectors
+    assert set(names_offered(extract, "SelectInputScalars")) == scalars | vectors | {"(automatic)"}
+    assert list(extract.ContourBy)[-1] == "(automatic)"
     assert set(names_offered(extract, "SmoothingLengthArray")) == scalars | {"(automatic)"}
-    assert set(names_offered(extract, "FluidArray")) == scalars | {"(none)"}
+    assert set(names_offered(extract, "FluidArray")) == scalars | {"(automatic)"}
     assert set(names_offered(extract, "DotProductWith")) == vectors | {"(none)"}
     assert list(extract.DotProductWith)[-1] == "(none)"
     iterator = extract.SMProxy.NewPropertyIterator()
@@ -38,8 +39,13 @@ def check_panel(extract):
 
 
 def check_surfaces(extract):
-    # Choosing a scalar is enough: without an iso value, the middle of its range is taken.
+    # Nothing need be chosen: velocities, their median in the fluid, which is found, to the walls.
     assert list(extract.Isosurfaces) == []
+    extract.UpdatePipeline()
+    extract.UpdatePropertyInformation()
+    assert value_of(extract, "UsedFluid") == "ParticleType = 0"
+    assert abs(float(value_of(extract, "UsedIsoValues")) - 1.06648) < 1e-5
+    assert {extract.FieldData[i].Name for i in range(len(extract.FieldData))} == {"IsoValues", "TimeValue"}
     for name in ("Pressure", "Lambda2", "Velocity"):
         extract.ContourBy = ["POINTS", name]
         extract.UpdatePipeline()
@@ -140,17 +146,17 @@ def has_choices(extract):
 def check_trace(reader):
     """A trace of what was done, run again, makes the same surface with the same choices."""
     smtrace.start_trace()
-    extract = SPHIsosurfaceMarchingCorrectors(registrationName="traced", Input=reader)  # noqa: F821
+    extract = SPHContourIsosurfaceFreeSurface(registrationName="traced", Input=reader)  # noqa: F821
     applied = smtrace.PropertiesModified(extract)  # as the window does around Apply
     for name, value in CHOICES.items():
         setattr(extract, name, value)
     applied.finalize()
     expected = triangles(extract)
     trace = smtrace.stop_trace()
-    assert "SPHIsosurfaceMarchingCorrectors(" in trace, trace
+    assert "SPHContourIsosurfaceFreeSurface(" in trace, trace
     # All but the reader, which is there already.
     lines = trace.splitlines()
-    first = next(i for i, line in enumerate(lines) if "SPHIsosurfaceMarchingCorrectors(" in line)
+    first = next(i for i, line in enumerate(lines) if "SPHContourIsosurfaceFreeSurface(" in line)
     RenameSource("original", extract)
     names = {**globals(), lines[first].split("Input=")[1].rstrip(")"): reader}
     exec("\n".join(lines[first:]), names)  # pylint: disable=exec-used
@@ -208,6 +214,19 @@ def check_refusal(extract):
     assert extract.GetDataInformation().GetNumberOfCells() > 0
 
 
+def check_blocks(reader):
+    """Blocks of one input are one set of particles, unless they are taken apart."""
+    halves = [Clip(Input=reader, ClipType="Plane", Invert=side) for side in (0, 1)]
+    for half in halves:
+        half.ClipType.Origin, half.ClipType.Normal = [1.5, 0, 0], [1, 0, 0]
+    split, counts = GroupDatasets(Input=halves), []
+    for source, blocks in ((reader, "Together"), (split, "Together"), (split, "Apart")):
+        extract = MarchingCorrectors(Input=source, FreeSurface=1, Blocks=blocks)  # noqa: F821
+        counts.append(triangles(extract))
+        Delete(extract)
+    assert counts[0] == counts[1] < counts[2], counts
+
+
 def check_plugin(remote):
     LoadPlugin(PLUGIN, remote=remote, ns=globals())
     reader = XMLPolyDataReader(FileName=[os.path.join(DATA, "dam_break_45k.vtp")])
@@ -217,6 +236,7 @@ def check_plugin(remote):
     check_surfaces(extract)
     check_refusal(extract)
     check_in_use(reader)
+    check_blocks(reader)
     check_undo(extract)
     check_state(*check_trace(reader))
 

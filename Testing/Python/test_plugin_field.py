@@ -78,7 +78,7 @@ def check_probe(reader, plane):
     assert data.IsA("vtkPolyData") and data.GetNumberOfPoints() == 21 * 21
     assert strings_offered(probe, "ExcludedArrays") >= {"Velocity", "Height", "Idp"}
     assert strings_offered(probe, "SmoothingLengthArray") >= {"(automatic)", "SmoothingLength"}
-    assert strings_offered(probe, "FluidArray") >= {"(none)", "Kind"}
+    assert strings_offered(probe, "FluidArray") >= {"(automatic)", "Kind"}
     assert {"Velocity", "Height", "Weight", "vtkValidPointMask"} <= set(found) and "Idp" not in found
     points = vtk_to_numpy(data.GetPoints().GetData())
     inside = numpy.abs(points[:, :2]).max(1) < 0.25  # the kernel's support is whole there
@@ -102,6 +102,33 @@ def check_probe(reader, plane):
     assert blocks.GetCompositeDataClassName() == "vtkMultiBlockDataSet"
     assert blocks.GetNumberOfPoints() == 2 * 21 * 21 and probe.PointData.GetArray("Height")
     Delete(probe)
+
+
+def check_slices(reader):
+    """Particles in, and the panel's own place: nothing else need be chosen."""
+    cut = SPHSlice(Input=reader)  # noqa: F821
+    data, found = arrays_of(cut)
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    low, high = numpy.array(reader.GetDataInformation().GetBounds()).reshape(3, 2).T
+    assert numpy.allclose(list(cut.Origin), (low + high) / 2), cut.Origin
+    assert abs(points[:, 2] - cut.Origin[2]).max() < 1e-12
+    assert data.GetNumberOfCells() > 100 and data.GetPointData().GetScalars().GetName() == "Velocity"
+    assert numpy.isnan(found["Height"][found["vtkValidPointMask"] == 0]).all()
+    assert abs(found["Velocity"][:, 2][found["vtkValidPointMask"] == 1]).max() < 1e-3
+    cut.Resolution = 20
+    assert arrays_of(cut)[0].GetNumberOfPoints() <= 400
+    Delete(cut)
+    line = SPHLine(Input=reader, Resolution=50)  # noqa: F821
+    data, found = arrays_of(line)
+    assert data.GetNumberOfPoints() == 50 and abs(found["arc_length"][-1] - numpy.linalg.norm(high - low)) < 1e-6
+    Delete(line)
+    volume = SPHVolume(Input=reader, Dimensions=[20, 21, 22])  # noqa: F821
+    data, found = arrays_of(volume)
+    assert data.IsA("vtkImageData") and data.GetDimensions() == (20, 21, 22)
+    assert 0 < numpy.isnan(found["Height"]).sum() < data.GetNumberOfPoints()
+    volume.NaNOutside = 0
+    assert not numpy.isnan(arrays_of(volume)[1]["Height"]).any()
+    Delete(volume)
 
 
 def check_derivatives(reader):
@@ -222,6 +249,7 @@ def main():
         plane = Plane(registrationName="plane", Origin=[-1.0, -1.0, 0.0], Point1=[1.0, -1.0, 0.0],
                       Point2=[-1.0, 1.0, 0.0], XResolution=20, YResolution=20)
         check_probe(reader, plane)
+    check_slices(reader)
         check_derivatives(reader)
         check_interpolator(reader)
         state = os.path.join(folder, "state.pvsm")

@@ -65,20 +65,25 @@ def first_apply(folder):
     """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
     return [
         APPLY, FILTERS, PAUSE,
+        shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
+        shown("sph_in_use/Values", "visible", "false"),
+        change("sph_in_use/Show", "set_boolean", "true"),
+        shown("sph_in_use/Values", "visible", "true"),
+        shown("sph_in_use/Values/NextFluid", "text", "ParticleType = 0"),
         change("FreeSurface/CheckBox", "set_boolean", "true"),
         change("FluidArray/ComboBox", "set_string", "ParticleType"),
         change("CubeSizeMode/ComboBox", "set_string", "Uniform"), PAUSE,
-        shown("sph_in_use/NextCells", "text", "163423"),
+        shown("sph_in_use/Values/NextCells", "text", "163423"),
         shown("InteractiveBox", "visible", "false"),
         change("UseBox/CheckBox", "set_boolean", "true"),
         shown("InteractiveBox", "visible", "true"),
         change("InteractiveBox/translateX", "set_string", "0.75"),
         change("InteractiveBox/scaleX", "set_string", "1.5"), PAUSE,
-        shown("sph_in_use/NextCells", "text", "75211.7"),
+        shown("sph_in_use/Values/NextCells", "text", "75211.7"),
         change("CubeSize/DoubleLineEdit0", "set_string", "0.0003"), PAUSE,
-        shown("sph_in_use/NextCells", "text", "4.57686e+09: this may take minutes and much memory"),
+        shown("sph_in_use/Values/NextCells", "text", "4.57686e+09: this may take minutes and much memory"),
         change("CubeSize/DoubleLineEdit0", "set_string", "0"), PAUSE,
-        shown("sph_in_use/NextCells", "text", "75211.7"),
+        shown("sph_in_use/Values/NextCells", "text", "75211.7"),
         APPLY, *save_state(f"{folder}/applied.pvsm"),
     ]
 
@@ -103,7 +108,7 @@ def later_applies(folder):
     ]
 
 
-SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange")  # how names begin of what the panel shows
+SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics")  # how names begin of what the panel shows
 
 
 def properties(file):
@@ -124,11 +129,15 @@ def check_states(states):
     # The box began as the particles' bounds.
     assert applied["BoxPosition"] == ["0.75", "0", "-0.5"] and applied["BoxLength"][0] == "1.5", applied
     assert abs(float(applied["BoxLength"][1]) - 1.2) < 1e-6, applied
+    # A new filter begins with an array and its median in the fluid.
+    assert applied["SelectInputScalars"][4] == "Velocity", applied
+    assert [abs(float(value) - 1.06648) < 1e-5 for value in applied["ContourValues"]] == [True], applied
     changes = {"CubeSizeFactor", "CubeSizeMode", "BoxPosition"}
     assert differing(states, "applied", "changed") == changes, differing(states, "applied", "changed")
     assert not differing(states, "applied", "undone") and not differing(states, "changed", "redone")
     assert states["dot"]["DotProductWith"][4] == "Vorticity" and states["dot"]["SelectInputScalars"][4] == "Velocity"
-    assert differing(states, "dot", "none") == {"DotProductWith"} and states["none"]["DotProductWith"][4] == "(none)"
+    # The iso value follows until it is touched.
+    assert differing(states, "dot", "none") == {"DotProductWith", "ContourValues"} and states["none"]["DotProductWith"][4] == "(none)"
 
 
 def main(paraview):

@@ -107,9 +107,11 @@ def main():
     reader.UpdatePipeline()
     plane = Plane(registrationName="plane")
     # pylint: disable=undefined-variable
-    check("SPHIsosurfaceMarchingCorrectors",
-          lambda name: SPHIsosurfaceMarchingCorrectors(registrationName=name, Input=reader))  # noqa: F821
+    check("SPHContourIsosurfaceFreeSurface",
+          lambda name: SPHContourIsosurfaceFreeSurface(registrationName=name, Input=reader))  # noqa: F821
     check("SPHProbe", lambda name: SPHProbe(registrationName=name, Points=plane, Particles=reader))  # noqa: F821
+    for name in ("SPHSlice", "SPHLine", "SPHVolume"):
+        check(name, lambda own, made=globals()[name]: made(registrationName=own, Input=reader))
     check("SPHDerivatives", lambda name: SPHDerivatives(registrationName=name, Input=reader))  # noqa: F821
     check("SPHTemporalInterpolator",
           lambda name: SPHTemporalInterpolator(registrationName=name, Input=reader))  # noqa: F821

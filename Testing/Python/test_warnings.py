@@ -54,6 +54,7 @@ class TestWarnings(unittest.TestCase):
 
     def test_once_in_a_run(self):
         extract = test_filter.make_filter(blocks_of(a=self.particles, b=self.particles))
+        extract.SetBlocksToApart()
         extract.SetSmoothingLength(0.26)
         for _ in range(2):
             found = warnings_of(extract)
@@ -64,11 +65,30 @@ class TestWarnings(unittest.TestCase):
 
     def test_walls_in_a_block(self):
         fluid = self.particles
-        found = warnings_of(test_filter.make_filter(blocks_of(PartFluid=fluid, PartBound=fluid)))
-        self.assertEqual(len(found), 1)
-        self.assertRegex(found[0], "Block 'PartBound', index 2 of 2 seems to hold walls.*Merge")
-        extract = test_filter.make_filter(blocks_of(Bound1=fluid, Bound2=fluid))
-        self.assertEqual(warnings_of(extract), [])
+        for apart, words in ((1, "Block 'PartBound', index 2 of 2 seems to hold walls.*together"),
+                             (0, "Names of blocks tell of walls.*'WallBlock'")):
+            extract = test_filter.make_filter(blocks_of(PartFluid=fluid, PartBound=fluid))
+            extract.SetBlocks(apart)
+            found = warnings_of(extract)
+            self.assertEqual(len(found), 1)
+            self.assertRegex(found[0], words)
+            extract = test_filter.make_filter(blocks_of(Bound1=fluid, Bound2=fluid))
+            extract.SetBlocks(apart)
+            self.assertEqual(warnings_of(extract), [])
+
+    def test_likely_kernel(self):
+        """Named where such particles are usual for another one."""
+        for kernel, h, words in (("cubic", 0.24, "Or the kernel is wendland"), ("wendland", 0.24, None),
+                                 ("cubic", 0.08, "Or the kernel is quintic"), ("cubic", 0.05, "neighbours.*unit")):
+            with self.subTest(kernel=kernel, h=h):
+                extract = test_filter.make_filter(self.particles)
+                extract.SetKernelByName(kernel)
+                extract.SetSmoothingLength(h)
+                found = [text for text in warnings_of(extract) if "neighbours" in text]
+                self.assertEqual(len(found), 1 if words else 0)
+                if words:
+                    self.assertRegex(found[0], words)
+                    self.assertEqual("Or the kernel" in found[0], "Or" in words)
 
     def test_unused_type(self):
         for name, kind, words in [
@@ -87,6 +107,7 @@ class TestWarnings(unittest.TestCase):
                     extract = test_filter.make_filter(particles)
                     extract.SetFluidArrayName(name)
                     extract.SetFluidValue(3 if name == "Type" else 1)
+                    extract.SetSolids(extract.SOLIDS_WEIGHT)  # they lie everywhere
                     self.assertEqual(warnings_of(extract), [])
 
 

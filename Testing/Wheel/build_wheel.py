@@ -16,6 +16,8 @@ from pathlib import Path
 # What the system trusts, where that is more than pip does by itself.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pocl,pyvista,vtk"
+# What users have beside it: tests alone need these.
+OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel")
 SKIPPED = 77
 
 
@@ -66,7 +68,7 @@ def main():
     assert "-py3-none-manylinux_2_" in wheel.name, wheel.name
     size = wheel.stat().st_size
     assert size < 4 << 20, f"{size} bytes"
-    run(*pip, "install", f"{wheel}[{EXTRAS}]", "h5py")
+    run(*pip, "install", f"{wheel}[{EXTRAS}]", *OTHERS)
     print(f"{wheel.name}: {size} bytes")
 
 

@@ -31,6 +31,13 @@ def sphere(**more):
     return mc.isosurface(POSITIONS, DISTANCE, **{"iso": 0.4, "smoothing_length": H, "volume": V, **more})
 
 
+def quietly(function, *arguments, **words):
+    """Where a warning is not the point."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mc.InputWarning)
+        return function(*arguments, **words)
+
+
 class Results(unittest.TestCase):
     def test_sphere(self):
         surface = sphere()
@@ -49,22 +56,16 @@ class Results(unittest.TestCase):
         for array in (surface.points, surface.triangles, surface.normals, surface.attributes["x"]):
             self.assertTrue(array.flags.owndata and array.flags.writeable)
 
-    def test_every_option_is_a_keyword(self):
-        names = ("sph_kernel field seeds topology h_scale cube_size_factor cube_size iso_values node_threshold "
-                 "boundary_detection vertex_threshold preview tolerance iteration_limit precision memory_limit "
-                 "normals gradients weight_sum boundary_eigenvalue correction_length residual boundary_flag "
-                 "iso_value nearest_particle triangle_normals").split()
-        known = inspect.signature(mc.isosurface).parameters
-        for name in names:
-            if name != "iso_values":
-                self.assertIn(name, known)
-                self.assertIn(name + ":", mc.isosurface.__doc__)
-        wanted = names[17:26]
-        surface = sphere(**dict.fromkeys(wanted, True))
-        for name in wanted[:-1]:
-            if name != "normals":
-                self.assertEqual(len(getattr(surface, name)), len(surface.points), name)
-                self.assertIsNone(getattr(sphere(), name))
+    def test_every_array_on_request(self):
+        wanted = ("gradients weight_sum boundary_eigenvalue correction_length residual boundary_flag iso_value "
+                  "nearest_particle point_keys").split()
+        surface = sphere(**dict.fromkeys(wanted, True), triangle_keys=True)
+        for name in wanted:
+            self.assertEqual(len(getattr(surface, name)), len(surface.points), name)
+            self.assertIsNone(getattr(sphere(), name))
+        self.assertEqual((surface.point_keys.shape, surface.point_keys.dtype), ((len(surface.points), 3), np.uint64))
+        self.assertEqual(len(np.unique(surface.point_keys, axis=0)), len(surface.points))
+        self.assertEqual(surface.triangle_keys.shape, (len(surface.triangles), 2))
         self.assertIsNone(sphere(normals=False).normals)
 
     def test_options_count(self):
@@ -81,7 +82,7 @@ class Results(unittest.TestCase):
         self.assertLess(halves[0].points[:, 0].max(), 0.65 + H)
         with self.assertRaisesRegex(mc.InvalidArgument, "6 numbers"):
             sphere(box=(1, 2))
-        two = sphere(iso_values=[0.3, 0.4], iso_value=True)
+        two = sphere(iso=[0.3, 0.4], iso_value=True)
         self.assertEqual(sorted(set(two.iso_value)), [0.3, 0.4])
         half = sphere(smoothing_length=2 * H, smoothing_length_is_support_radius=True)
         self.assertEqual(half.points.tobytes(), sphere().points.tobytes())
@@ -133,7 +134,9 @@ class Results(unittest.TestCase):
     def test_empty(self):
         surface = mc.isosurface(np.empty((0, 3)), np.empty(0), iso=1, smoothing_length=1.0)
         self.assertEqual((surface.points.shape, surface.triangles.shape), ((0, 3), (0, 3)))
-        self.assertEqual(len(sphere(iso=99).triangles), 0)
+        self.assertEqual(len(quietly(sphere, iso=99).triangles), 0)
+        everything = quietly(sphere, iso=99, point_keys=True, triangle_keys=True, nearest_particle=True)
+        self.assertEqual((everything.point_keys.shape, everything.triangle_keys.shape), ((0, 3), (0, 2)))
         self.assertEqual(len(mc.probe(POSITIONS, np.empty((0, 3)), smoothing_length=H).valid), 0)
 
     def test_probe_and_derivatives(self):
@@ -199,7 +202,7 @@ class Inputs(unittest.TestCase):
         with self.assertRaisesRegex(mc.InvalidArgument, "wendland"):
             sphere(sph_kernel="gaussian")
         with self.assertRaisesRegex(TypeError, "no option 'cubesize'"):
-            sphere(cubesize=1)
+            sphere(cubesize=1.0)
         with self.assertRaisesRegex(mc.OutOfCapacity, "(?i)memory|cube"):
             sphere(memory_limit=1000)
         with self.assertRaisesRegex(mc.InvalidArgument, "does not hold numbers"):
@@ -271,8 +274,11 @@ class Runs(unittest.TestCase):
         seen = []
         sphere(progress=lambda fraction, phase: seen.append((fraction, phase)))
         self.assertTrue(seen and all(0 <= fraction <= 1 and phase for fraction, phase in seen))
-        with self.assertRaises(mc.Cancelled):
-            sphere(progress=lambda fraction, phase: True)
+        for end in (False, np.bool_(False)):
+            with self.assertRaises(mc.Cancelled):
+                sphere(progress=lambda fraction, phase, end=end: end)
+        for go_on in (True, None, 0, 1, np.bool_(True)):  # tqdm's update() returns True
+            self.assertEqual(sphere(progress=lambda fraction, phase, answer=go_on: answer), sphere())
 
         def fail(fraction, phase):
             raise LookupError("mine")

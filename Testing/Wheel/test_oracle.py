@@ -18,6 +18,7 @@ os.environ["OCL_ICD_VENDORS"] = EMPTY.name  # no driver of the system's
 
 import marchingcorrectors as mc
 from marchingcorrectors import _structs as c
+from marchingcorrectors._options import ISOSURFACE
 
 TYPES = {0: ctypes.c_float, 1: ctypes.c_double}
 libc = ctypes.CDLL(None)
@@ -38,7 +39,7 @@ def keywords(given, options):
     """Everything that the structures say, as a user would write it."""
     words, count = {}, given.count
     for name, kind in c.KINDS["mcor_options"].items():
-        if name in c.Options.__annotations__ and "[" not in kind:
+        if name in ISOSURFACE and "[" not in kind:
             words[name] = getattr(options, name)
     for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", "scalar_component",
                  "ignore_solids"):
@@ -50,6 +51,7 @@ def keywords(given, options):
             words[name] = array_of(getattr(given, name), count)
     if given.solid:
         words["solid"] = np.ctypeslib.as_array(given.solid, (count,))
+    words["scalar"] = None
     words["attributes"] = {str(i): array_of(given.attributes[i], count) for i in range(given.attribute_count)}
     if options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
         words["scalar"] = array_of(given.scalar, count)

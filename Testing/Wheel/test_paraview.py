@@ -29,7 +29,7 @@ surface.Isosurfaces = [1.0]
 surface.FluidArray = "ParticleType"
 surface.UpdatePipeline()
 data = servermanager.Fetch(surface)
-assert (data.GetNumberOfPoints(), data.GetNumberOfCells()) == (8012, 13855), data
+assert (data.GetNumberOfPoints(), data.GetNumberOfCells()) == (7904, 13362), data
 assert data.GetPointData().GetNormals() and data.GetPointData().HasArray("Pressure")
 assert data.GetFieldData().GetAbstractArray("SmoothingLengthArray").GetValue(0) == "SmoothingLength"
 surface.FreeSurface = 1

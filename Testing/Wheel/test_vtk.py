@@ -82,7 +82,7 @@ class Test(unittest.TestCase):
             self.assertEqual(extract.GetErrorMessage(), "")
             self.assertEqual(found.points.tobytes(), expected.points.tobytes())
             self.assertNotEqual(found.points.tobytes(), small.sph.isosurface("Speed", 1.5).points.tobytes())
-            self.assertIn("Box" if "box" in words else "PeriodicBounds", found.field_data.keys())
+            self.assertTrue(extract.GetRunStatistics().HasArray("Box" if "box" in words else "PeriodicBounds"))
         told = small.copy()
         for name, values in {"PeriodicBounds": words["periodic"], "BoxSize": (x1 - x0 + 0.05, 0, 0),
                              "box": (x0 - 0.05, x1, -9, 9, -9, 9)}.items():
@@ -95,7 +95,7 @@ class Test(unittest.TestCase):
             self.assertEqual(extract.GetErrorMessage(), "")
             if name != "BoxSize":  # of which only the length is told
                 self.assertEqual(again.points.tobytes(), found.points.tobytes())
-            sides = np.ravel(again.field_data["PeriodicBounds"])
+            sides = extract.GetRunStatistics().GetArray("PeriodicBounds").GetTuple(0)
             self.assertAlmostEqual(sides[1] - sides[0], x1 - x0 + 0.05)
             self.assertEqual(list(sides[2:]), [0] * 4)
 
@@ -125,8 +125,6 @@ class Test(unittest.TestCase):
                 subprocess.run([os.environ["MCOR_TEST_PROGRAM"], DAM, file, "--fluid", "ParticleType=0",
                                 *arguments], check=True, stdout=subprocess.DEVNULL)
                 program = pyvista.read(file)
-                if program.field_data["Device"][0] not in " ".join(mc.devices()):
-                    self.skipTest("the program and the wheel have other devices")
                 _, found = run_filter(self.dam, FluidArrayName="ParticleType", **properties)
                 self.assert_same(found, program)
                 for name in program.field_data.keys():
@@ -150,6 +148,8 @@ class Test(unittest.TestCase):
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [], "add them to PROPERTIES of MarchingCorrectorsFilter.py")
         for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):
+            if name == "NextIsoValue":  # no number where there is no input, in both
+                continue
             if value.replace(".", "").replace("e-", "").isdigit() and hasattr(vtkMarchingCorrectors, "Get" + name):
                 self.assertEqual(getattr(vtkMarchingCorrectors(), "Get" + name)(), float(value), name)
 

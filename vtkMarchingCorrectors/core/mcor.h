@@ -214,6 +214,9 @@ extern "C"
     uint64_t* splits; /* [split_count] */
   } mcor_globals;
 
+/* The default wall share: of a scalar's surface the one that is measured, of the free surface none. */
+#define MCOR_WALL_SHARE_AUTO (-2)
+
 /* A wall share that is measured: the solids' share of the weight at some solids themselves, the median,
  * each one counting as much as the fluid weighs there. A surface of the scalar then ends, in the median, on
  * the solids that face the fluid, whether they are one layer or more, and how far away the fluid keeps.
@@ -269,8 +272,8 @@ extern "C"
                               * is lower; default 0.5 */
     double wall_share;    /* above 0: the surface, the free surface too, also ends where the solids'
                         * share of the weight, unless they are ignored, becomes greater than this;
-                        * 0.5: where they weigh more than the fluid. 0, the default: nowhere.
-                        * MCOR_WALL_SHARE_MEASURED: see there */
+                        * 0.5: where they weigh more than the fluid. 0: nowhere. MCOR_WALL_SHARE_AUTO (the
+                        * default), MCOR_WALL_SHARE_MEASURED: see there */
     int preview;          /* nonzero: vertices by linear interpolation, no correction */
     double tolerance;     /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
@@ -489,9 +492,40 @@ extern "C"
    * Case, blanks, "_" and "-" do not matter. */
   int mcor_name_rank(mcor_quantity quantity, const char* name);
 
+  /* Whether an array of this name, whose values are whole and range from low to high over all particles,
+   * says clearly which of them are fluid: *fluid becomes the value that these have. So do 0 and 1 alone,
+   * and the codes of DualSPHysics. */
+  int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
+
+  /* How fit an array of this name is to be looked at where nobody has chosen one; the least is best:
+   * velocities, other vectors, scalars, what describes particles, the rest. -1: not fit, as it does
+   * not vary (`varies`: whether any component has two values), or numbers particles or their types. */
+  int mcor_view_rank(const char* name, int components, int is_real, int varies);
+
   /* The solver whose output has arrays of these names, each on a line: "DualSPHysics", "PySPH",
    * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
   const char* mcor_find_layout(const char* names);
+
+  /* A numeric array of a particle file's field data, in tuples of any size. */
+  typedef struct mcor_field_data
+  {
+    const char* name;     /* may be NULL */
+    const double* values; /* [count]; borrowed until return */
+    int64_t count;
+  } mcor_field_data;
+
+  /* The period that field data tell of: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box where
+   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_rank. Returns how many numbers
+   * `period` has: 6 bounds, as mcor_options.periodic; 3 lengths, for mcor_place_period; 0: no array
+   * tells of a period. which: the number of the array; may be NULL. */
+  int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
+
+  /* Bounds of a period of which only the lengths are known: along each axis from 0 on or around 0, if
+   * the particles, of this extent (x0, x1, ...), lie in them, else from the first particle on. */
+  void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
+
+  /* Whether mcor_find_period looks at arrays of this name. */
+  int mcor_tells_of_period(const char* name);
 
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
@@ -500,6 +534,14 @@ extern "C"
   mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
+
+  /* Least and greatest value of the scalar at fluid particles, where it is finite, and an iso value for
+   * those who have named none: one of the values, the median; where all are positive and range over
+   * three decades (without the 2 % lowest and highest), the middle of the range in logarithms. Of the input
+   * the scalar and solids alone are read; of all ranks, unless that is NULL. Returns 0, and changes
+   * nothing, where there is no such particle, or a rank has given up. */
+  int mcor_find_iso_value(
+    const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
   /* Measures an input for options.globals of later calls, in this or other contexts, with the same
    * options otherwise. *globals is overwritten; free with mcor_free_globals. Where there are no
@@ -530,6 +572,15 @@ extern "C"
    * or memory ran out. Takes what mcor_extract was given and made. */
   char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
+
+  /* A sentence, to be freed with free(), about an array of particle types (MCOR_PARTICLE_TYPE) where
+   * all particles count as fluid: it has counts[i] times values[i]. NULL where such an array tells
+   * nothing, as it has one value, or more than MCOR_PARTICLE_TYPES; or memory ran out. */
+  char* mcor_describe_unused_type(
+    const char* name, const double* values, const int64_t* counts, int count);
+#define MCOR_PARTICLE_TYPES 8
+/* The array that says, of blocks that are one set, which particles are of blocks whose names tell of walls. */
+#define MCOR_WALL_BLOCK "WallBlock"
 
   /* The field at points of the caller's choice. Owned; free with mcor_free_samples. */
   typedef struct mcor_samples

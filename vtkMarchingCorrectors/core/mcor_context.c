@@ -26,6 +26,7 @@ void mcor_set_default_options(mcor_options* options)
     .level_limit = MCOR_CUBE_LEVELS - 1,
     .node_threshold = 0.1,
     .vertex_threshold = 0.5,
+    .wall_share = MCOR_WALL_SHARE_AUTO,
     .boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM,
     .tolerance = 1e-6,
     .iteration_limit = 30,

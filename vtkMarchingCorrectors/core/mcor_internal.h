@@ -148,16 +148,16 @@ typedef struct mcor_cluster
 /* A set of bricks of one level. */
 typedef struct mcor_brick_set
 {
-  mcor_cluster* slots; /* [capacity]; one without bricks is free */
-  size_t capacity;     /* a power of 2, or 0 */
+  mcor_cluster* slots;    /* [capacity]; one without bricks is free */
+  size_t capacity;        /* a power of 2, or 0 */
   size_t clusters, count; /* of bricks */
 } mcor_brick_set;
 
 /* Leaves of adaptive cubes; see mcor_tree.h. */
 typedef struct mcor_tree
 {
-  int top;                        /* highest level of leaves */
-  int period[3], period_first[3]; /* as in mcor_lattice */
+  int top;                                    /* highest level of leaves */
+  int period[3], period_first[3];             /* as in mcor_lattice */
   mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 2]; /* up to one above */
   uint64_t key_limit;
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
@@ -253,7 +253,7 @@ typedef struct mcor_attributes
   mcor_component* varying; /* [varying_count] */
   int varying_count;
   int first, count;
-  mcor_buffer sorted;  /* real [count][grid.count] */
+  mcor_buffer sorted; /* real [count][grid.count] */
   uint64_t kept; /* attributes_version of a probe, where all of it holds for the next one; or 0 */
   mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
@@ -270,16 +270,16 @@ typedef struct mcor_box
 {
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
-  int halves[6]; /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
-  int near[6];   /* the same of those whose particles are on the device */
+  int halves[6];          /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
+  int near[6];            /* the same of those whose particles are on the device */
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
   int begin[3], end[3]; /* the same of those whose particles are on the device */
   int whole_first[3], whole_last[3], whole_halves[6]; /* cells that any rank owns */
-  mcor_buffer cells;    /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
-  mcor_buffer clipped;  /* ulong per brick, of mcor_count_cells */
-  uint8_t* kept;        /* per triangle of the surface: 1 of an owned cell; NULL: all are */
-  cl_ulong* told;       /* per brick or leaf, cells that others know of; see mcor_pair_rounds.c */
+  mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
+  mcor_buffer clipped; /* ulong per brick, of mcor_count_cells */
+  uint8_t* kept;       /* per triangle of the surface: 1 of an owned cell; NULL: all are */
+  cl_ulong* told;      /* per brick or leaf, cells that others know of; see mcor_pair_rounds.c */
   int told_count;
 } mcor_box;
 
@@ -372,16 +372,25 @@ static inline int mcor_batches(const mcor_context* context, int count)
   return (count - 1) / MCOR_BATCH_OF(context->cl.lanes) + 1;
 }
 
+/* The wall share that is asked for. */
+static inline double mcor_asked_share(const mcor_options* options)
+{
+  return options->wall_share != MCOR_WALL_SHARE_AUTO ? options->wall_share
+    : options->field == MCOR_WEIGHT_SUM              ? 0
+                                                     : MCOR_WALL_SHARE_MEASURED;
+}
+
 /* The free surface needs solids only to end at them. */
 static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options* options)
 {
-  return !input->ignore_solids && (options->field != MCOR_WEIGHT_SUM || options->wall_share != 0);
+  return !input->ignore_solids &&
+    (options->field != MCOR_WEIGHT_SUM || mcor_asked_share(options) != 0);
 }
 
 /* The wall share in use. */
 static inline double mcor_wall_share(const mcor_context* context)
 {
-  const double share = context->options->wall_share;
+  const double share = mcor_asked_share(context->options);
   return share < 0 ? context->measure.wall_share : share;
 }
 

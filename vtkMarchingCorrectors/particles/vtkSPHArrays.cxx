@@ -6,11 +6,13 @@
 #include "vtkFloatArray.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 namespace
 {
@@ -103,7 +105,7 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 //------------------------------------------------------------------------------
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
 {
-  if (run->GetNumberOfArrays() == 0)
+  if (!run->GetArray("Seconds"))
   {
     AddSeconds(run);
   }
@@ -131,4 +133,71 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
     run, "DeviceBytesPeak", { std::max(count("DeviceBytesPeak"), s.device_bytes_peak) });
   vtkSPHAddReal(run, "MedianNeighbors", { s.neighbours_median });
   vtkSPHAddReal(run, "MedianSpacing", { s.spacing_median });
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHDescribe(vtkFieldData* data)
+{
+  std::ostringstream text;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = data->GetAbstractArray(i);
+    text << array->GetName() << ":";
+    for (vtkIdType v = 0; v < array->GetNumberOfValues(); ++v)
+    {
+      text << (v ? ", " : " ") << array->GetVariantValue(v).ToString();
+    }
+    text << "\n";
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool isReal, bool varies)
+{
+  const int rank = mcor_view_rank(name.c_str(), components, isReal, varies);
+  if (rank >= 0 && (this->Rank < 0 || rank < this->Rank))
+  {
+    this->Best = name;
+    this->Rank = rank;
+  }
+}
+
+namespace
+{
+void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
+{
+  bool varies = false;
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  {
+    double range[2];
+    array->GetRange(range, c);
+    varies = varies || range[0] < range[1];
+  }
+  const int type = array->GetDataType();
+  choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
+    type == VTK_FLOAT || type == VTK_DOUBLE, varies);
+}
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHChooseArray(vtkFieldData* data)
+{
+  vtkSPHArrayChoice choice;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    if (vtkDataArray* array = data->GetArray(i))
+    {
+      Consider(array, choice);
+    }
+  }
+  return choice.Best;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHIsFit(vtkDataArray* array)
+{
+  vtkSPHArrayChoice choice;
+  Consider(array, choice);
+  return choice.Rank >= 0;
 }

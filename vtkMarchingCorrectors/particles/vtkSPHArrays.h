@@ -43,4 +43,21 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 /** Adds what a call of the core cost to what calls before it did: not the same for each run. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
+/** Finds among arrays the one to be looked at where nobody has chosen one, see mcor_view_rank(). */
+struct vtkSPHArrayChoice
+{
+  void Consider(const std::string& name, int components, bool isReal, bool varies);
+
+  std::string Best; ///< empty where none is fit
+  int Rank = -1;
+};
+
+/** The same of all that it has. */
+std::string vtkSPHChooseArray(vtkFieldData* data);
+/** Whether an array is fit. */
+bool vtkSPHIsFit(vtkDataArray* array);
+
+/** A line "Name: values" for each array. */
+std::string vtkSPHDescribe(vtkFieldData* data);
+
 #endif

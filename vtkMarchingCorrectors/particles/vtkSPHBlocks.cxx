@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHBlocks.h"
 
+#include "mcor.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPointData.h"
@@ -12,41 +14,157 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <iterator>
 
 namespace
 {
 using Blocks = std::vector<vtkPointSet*>;
 
-/** The arrays of this name one after the other; nothing if a block lacks it. */
+bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
+{
+  vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(like->GetName());
+  return array && array->GetDataType() == like->GetDataType() &&
+    array->GetNumberOfComponents() == like->GetNumberOfComponents() &&
+    array->GetNumberOfTuples() == block->GetNumberOfPoints();
+}
+
+/** The arrays of this name one after the other; nothing if a block lacks it that is no wall. What tells
+ * kinds of particles apart is not made up for walls either. */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
-  const Blocks& blocks, vtkAbstractArray* first, vtkIdType total)
+  const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
 {
   auto joined = vtkSmartPointer<vtkAbstractArray>::Take(first->NewInstance());
   joined->SetName(first->GetName());
   joined->SetNumberOfComponents(first->GetNumberOfComponents());
   joined->CopyComponentNames(first);
   joined->SetNumberOfTuples(total);
+  const bool isType = mcor_name_rank(MCOR_PARTICLE_TYPE, first->GetName()) >= 0;
   vtkIdType at = 0;
-  for (vtkPointSet* block : blocks)
+  for (std::size_t b = 0; b < blocks.size(); ++b)
   {
-    const vtkIdType count = block->GetNumberOfPoints();
-    vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(first->GetName());
-    if (!array || array->GetDataType() != first->GetDataType() ||
-      array->GetNumberOfComponents() != first->GetNumberOfComponents() ||
-      array->GetNumberOfTuples() != count)
+    const vtkIdType count = blocks[b]->GetNumberOfPoints();
+    if (HasArray(blocks[b], first))
+    {
+      joined->InsertTuples(
+        at, count, 0, blocks[b]->GetPointData()->GetAbstractArray(first->GetName()));
+    }
+    else if (!walls[b] || isType || blocks[b]->GetPointData()->HasArray(first->GetName()))
     {
       return nullptr;
     }
-    joined->InsertTuples(at, count, 0, array);
+    for (vtkIdType i = 0; !HasArray(blocks[b], first) && i < count; ++i)
+    {
+      joined->InsertTuple(at + i, 0, first);
+    }
     at += count;
   }
   return joined;
 }
+
+bool TellsOfWalls(const std::string& name)
+{
+  std::string small = name;
+  std::transform(small.begin(), small.end(), small.begin(),
+    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const char* const words[] = { "wall", "bound", "solid", "obstacle", "rigid" };
+  return std::any_of(std::begin(words), std::end(words),
+    [&small](const char* word) { return small.find(word) != std::string::npos; });
 }
+
+/** Which of the blocks have names that tell of walls; of all that the tree has, empty ones too, so that
+ * processes that have but some agree. All false where none, or all do. */
+std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const Blocks& blocks, bool& some)
+{
+  std::vector<bool> walls(blocks.size(), false);
+  std::size_t wallCount = 0, count = 0;
+  std::string whole;
+  unsigned int last = 0;
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(tree->NewTreeIterator());
+  iterator->VisitOnlyLeavesOff();
+  iterator->SkipEmptyNodesOff();
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    const unsigned int index = iterator->GetCurrentFlatIndex();
+    vtkDataObject* data = iterator->GetCurrentDataObject();
+    vtkInformation* about =
+      iterator->HasCurrentMetaData() ? iterator->GetCurrentMetaData() : nullptr;
+    const char* own = about ? about->Get(vtkCompositeDataSet::NAME()) : nullptr;
+    if (auto* parts = vtkPartitionedDataSet::SafeDownCast(data))
+    {
+      whole = own ? own : "";
+      last = index + parts->GetNumberOfPartitions();
+    }
+    else if (!data || !data->IsA("vtkCompositeDataSet"))
+    {
+      const bool isWall = TellsOfWalls(own ? own : index <= last ? whole : "");
+      wallCount += isWall ? 1 : 0;
+      ++count;
+      const auto found = std::find(blocks.begin(), blocks.end(), data);
+      if (data && found != blocks.end())
+      {
+        walls[static_cast<std::size_t>(found - blocks.begin())] = isWall;
+      }
+    }
+  }
+  some = wallCount > 0 && wallCount < count;
+  return some ? walls : std::vector<bool>(blocks.size(), false);
+}
+
+void JoinPoints(const Blocks& blocks, vtkPolyData* joined, vtkIdType total)
+{
+  const bool asDouble = std::any_of(blocks.begin(), blocks.end(),
+    [](vtkPointSet* block) { return block->GetPoints()->GetDataType() != VTK_FLOAT; });
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(asDouble ? VTK_DOUBLE : VTK_FLOAT);
+  points->SetNumberOfPoints(total);
+  vtkIdType at = 0;
+  for (vtkPointSet* block : blocks)
+  {
+    points->InsertPoints(at, block->GetNumberOfPoints(), 0, block->GetPoints());
+    at += block->GetNumberOfPoints();
+  }
+  joined->SetPoints(points);
+}
+
+void MarkWallParticles(const Blocks& blocks, const std::vector<bool>& walls, vtkPolyData* joined)
+{
+  auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  marks->SetName(vtkSPHWallBlockName);
+  marks->SetNumberOfTuples(joined->GetNumberOfPoints());
+  vtkIdType at = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+  {
+    const vtkIdType end = at + blocks[b]->GetNumberOfPoints();
+    for (; at < end; ++at)
+    {
+      marks->SetValue(at, walls[b] ? 1 : 0);
+    }
+  }
+  joined->GetPointData()->AddArray(marks);
+}
+
+/** The data set, and all blocks in it at any depth. */
+std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
+{
+  std::vector<vtkDataObject*> all{ tree };
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(tree->NewTreeIterator());
+  iterator->VisitOnlyLeavesOff();
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    all.push_back(iterator->GetCurrentDataObject());
+  }
+  return all;
+}
+}
+
+const char* const vtkSPHWallBlockName = MCOR_WALL_BLOCK;
 
 //------------------------------------------------------------------------------
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
@@ -104,66 +222,101 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data)
 }
 
 //------------------------------------------------------------------------------
+vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree)
+{
+  vtkMTimeType time = 0;
+  for (vtkDataObject* each : ListAll(tree))
+  {
+    time = std::max(time, each->GetMTime());
+  }
+  return time;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
 {
   const Blocks blocks = vtkSPHListPointSets(tree);
+  bool someAreWalls = false;
+  const std::vector<bool> walls = MarkWalls(tree, blocks, someAreWalls);
   auto joined = vtkSmartPointer<vtkPolyData>::New();
-  if (blocks.size() == 1)
-  {
-    return blocks.front();
-  }
   vtkIdType total = 0;
-  bool asDouble = false;
   for (vtkPointSet* block : blocks)
   {
     total += block->GetNumberOfPoints();
-    asDouble = asDouble || block->GetPoints()->GetDataType() != VTK_FLOAT;
   }
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(asDouble ? VTK_DOUBLE : VTK_FLOAT);
-  points->SetNumberOfPoints(total);
-  vtkIdType at = 0;
+  JoinPoints(blocks, joined, total);
   for (vtkPointSet* block : blocks)
   {
-    points->InsertPoints(at, block->GetNumberOfPoints(), 0, block->GetPoints());
-    at += block->GetNumberOfPoints();
-  }
-  joined->SetPoints(points);
-  vtkPointData* first = blocks.empty() ? nullptr : blocks.front()->GetPointData();
-  for (int i = 0; first && i < first->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* array = first->GetAbstractArray(i);
-    const auto all = array->GetName() ? JoinArrays(blocks, array, total) : nullptr;
-    if (all)
+    for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
     {
-      joined->GetPointData()->AddArray(all);
+      vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(i);
+      const bool isNew = array->GetName() && !joined->GetPointData()->HasArray(array->GetName());
+      if (const auto all = isNew ? JoinArrays(blocks, walls, array, total) : nullptr)
+      {
+        joined->GetPointData()->AddArray(all);
+      }
     }
+  }
+  if (someAreWalls)
+  {
+    MarkWallParticles(blocks, walls, joined);
+  }
+  const std::vector<vtkDataObject*> all = ListAll(tree);
+  for (auto each = all.rbegin(); each != all.rend(); ++each) // of several arrays the first stays
+  {
+    joined->GetFieldData()->PassData((*each)->GetFieldData());
   }
   return joined;
 }
 
 //------------------------------------------------------------------------------
+void vtkSPHSplitBlocks(
+  vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output)
+{
+  output->CopyStructure(tree);
+  vtkPointData* made = joined->GetPointData();
+  vtkIdType at = 0;
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  iterator.TakeReference(tree->NewTreeIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    auto* block = vtkPointSet::SafeDownCast(iterator->GetCurrentDataObject());
+    if (!block)
+    {
+      continue;
+    }
+    auto copy = vtkSmartPointer<vtkPointSet>::Take(block->NewInstance());
+    copy->ShallowCopy(block);
+    const vtkIdType count = block->GetNumberOfPoints();
+    for (int i = 0; count > 0 && i < made->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* from = made->GetAbstractArray(i);
+      if (from->GetName() && before->GetPointData()->GetAbstractArray(from->GetName()) != from)
+      {
+        auto part = vtkSmartPointer<vtkAbstractArray>::Take(from->NewInstance());
+        part->SetName(from->GetName());
+        part->SetNumberOfComponents(from->GetNumberOfComponents());
+        part->CopyComponentNames(from);
+        part->SetNumberOfTuples(count);
+        part->InsertTuples(0, count, at, from);
+        copy->GetPointData()->AddArray(part);
+      }
+    }
+    at += count;
+    output->SetDataSet(iterator, copy);
+  }
+}
+
+//------------------------------------------------------------------------------
 std::string vtkSPHFindWalls(const std::vector<std::string>& names)
 {
-  std::size_t walls = 0;
-  std::string first;
-  for (const std::string& name : names)
-  {
-    std::string small = name;
-    std::transform(small.begin(), small.end(), small.begin(),
-      [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    const char* const words[] = { "wall", "bound", "solid", "obstacle", "rigid" };
-    const bool isWall = std::any_of(std::begin(words), std::end(words),
-      [&small](const char* word) { return small.find(word) != std::string::npos; });
-    first = isWall && walls == 0 ? name : first;
-    walls += isWall ? 1 : 0;
-  }
-  if (walls == 0 || walls == names.size())
+  const auto walls = std::count_if(names.begin(), names.end(), TellsOfWalls);
+  if (walls == 0 || walls == static_cast<std::ptrdiff_t>(names.size()))
   {
     return {};
   }
-  return first + " of " + std::to_string(names.size()) +
-    " seems to hold walls. Each block is contoured by itself, so that its particles are neither "
-    "walls nor neighbours of the others'. Merge the blocks, and tell fluid from solids by an "
-    "array.";
+  return *std::find_if(names.begin(), names.end(), TellsOfWalls) + " of " +
+    std::to_string(names.size()) +
+    " seems to hold walls. Each block is taken by itself, so that its particles are neither "
+    "walls nor neighbours of the others'. Take the blocks together.";
 }

@@ -8,6 +8,7 @@
 #define vtkSPHBlocks_h
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <string>
 #include <vector>
@@ -30,13 +31,28 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 
 /**
  * The points of all blocks that are point sets, one block after the other, with the point arrays
- * that all of them have: same name, type and number of components.
+ * that all of them have: same name, type and number of components. Where the names of some blocks, but
+ * not of all, tell of walls, there is an array WallBlock too, 1 for particles of these; and what these
+ * lack that all others have is there, with a value that means nothing. Field data are those of all.
  */
 vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree);
 
+/** The name of that array. */
+extern const char* const vtkSPHWallBlockName;
+
 /**
- * A sentence where the name of a block, but not those of all, tells of walls: blocks do not see each
- * other. Empty otherwise.
+ * Gives the blocks, as they are, the point arrays that `joined`, made of vtkSPHJoinBlocks(), has and
+ * `before` has not.
+ */
+void vtkSPHSplitBlocks(
+  vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output);
+
+/** Of the data set, and of all that it is made of. */
+vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree);
+
+/**
+ * A sentence where the name of a block, but not those of all, tells of walls, and blocks are contoured
+ * by themselves. Empty otherwise.
  */
 std::string vtkSPHFindWalls(const std::vector<std::string>& names);
 

@@ -8,10 +8,14 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkSPHBlocks.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <sstream>
 
 namespace
@@ -214,27 +218,79 @@ bool vtkSPHParticles::CollectSolids()
 }
 
 //------------------------------------------------------------------------------
-// An array of one value, or of many, tells nothing of that sort.
+std::vector<std::string> vtkSPHParticles::ListTypes(
+  const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+{
+  std::multimap<int, std::string> names;
+  vtkPointData* pointData = points->GetPointData();
+  for (int i = 0; RealName(choice.FluidArrayName).empty() && i < pointData->GetNumberOfArrays();
+       ++i)
+  {
+    vtkDataArray* array = pointData->GetArray(i);
+    const int rank = array ? mcor_name_rank(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
+    if (rank >= 0 && array->GetNumberOfComponents() == 1)
+    {
+      names.emplace(rank, array->GetName());
+    }
+  }
+  std::vector<std::string> list;
+  for (const auto& name : names)
+  {
+    list.push_back(name.second);
+  }
+  return list;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
+{
+  const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
+    points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
+  const bool whole = std::all_of(counts.begin(), counts.end(),
+    [](const std::pair<const double, vtkIdType>& count)
+    { return count.first == std::floor(count.first); });
+  if (whole && !counts.empty())
+  {
+    range[0] = counts.begin()->first;
+    range[1] = counts.rbegin()->first;
+  }
+  return whole && !counts.empty();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::DescribeFluid() const
+{
+  std::ostringstream text;
+  if (this->Fluid)
+  {
+    text << NameOf(this->Fluid) << " = " << this->Description.FluidValue;
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
 std::string vtkSPHParticles::DescribeUnusedType()
 {
-  vtkDataArray* type = this->Fluid ? nullptr : this->Detect(MCOR_PARTICLE_TYPE);
-  const std::map<double, vtkIdType> counts =
-    type ? vtkMarchingCorrectorsCountValues(type, 8) : std::map<double, vtkIdType>();
-  if (counts.size() < 2)
+  for (const std::string& name : ListTypes(this->Description, this->Points))
   {
-    return {};
+    std::vector<double> values;
+    std::vector<std::int64_t> counts;
+    for (const auto& count : vtkMarchingCorrectorsCountValues(
+           this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
+    {
+      values.push_back(count.first);
+      counts.push_back(count.second);
+    }
+    const std::unique_ptr<char, decltype(&std::free)> text(
+      mcor_describe_unused_type(
+        name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())),
+      std::free);
+    if (text)
+    {
+      return text.get();
+    }
   }
-  std::ostringstream text;
-  text << "Point array " << Quote(NameOf(type))
-       << " is not used, all particles count as fluid: it has";
-  const char* between = " ";
-  for (const auto& count : counts)
-  {
-    text << between << count.second << " x " << count.first;
-    between = ", ";
-  }
-  text << ". If it tells fluid from walls, name it and the fluid's value.";
-  return text.str();
+  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -244,7 +300,7 @@ bool vtkSPHParticles::IsCarried(
 {
   const std::string name = NameOf(array);
   return !name.empty() && !Contains(taken, name) &&
-    name != vtkDataSetAttributes::GhostArrayName() &&
+    name != vtkDataSetAttributes::GhostArrayName() && name != vtkSPHWallBlockName &&
     !Contains(this->Description.ExcludedArrays, name) &&
     array->GetNumberOfTuples() == this->Core.count;
 }

@@ -103,6 +103,23 @@ public:
   vtkSmartPointer<vtkDataArray> JoinVelocity() const;
 
   /**
+   * Names of the arrays that may tell fluid from solids, the most usual one first; none where the choice
+   * names the fluid array.
+   */
+  static std::vector<std::string> ListTypes(
+    const vtkSPHParticlesChoice& choice, vtkPointSet* points);
+
+  /**
+   * Least and greatest value of an array of some whole numbers; false for any other, and an empty one.
+   */
+  static bool FindWholeRange(vtkPointSet* points, const std::string& name, double range[2]);
+
+  /**
+   * "ParticleType = 0"; empty where all particles are fluid.
+   */
+  std::string DescribeFluid() const;
+
+  /**
    * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else empty.
    */
   std::string DescribeUnusedType();
@@ -137,12 +154,13 @@ protected:
   vtkDataArray* Check(const std::string& role, const std::string& name, vtkAbstractArray* array);
   std::string ListPointArrays() const;
 
+  bool CollectSolids();
+
   vtkSmartPointer<vtkPointSet> Points;
 
 private:
   bool CollectSmoothingLength();
   bool CollectVolume();
-  bool CollectSolids();
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
   void Sign();
 

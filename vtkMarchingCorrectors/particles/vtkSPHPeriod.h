@@ -22,8 +22,7 @@ struct vtkSPHPeriod
 };
 
 /**
- * Of an array PeriodicBounds, of BoxSize (GADGET, SWIFT), or of box where boundaryType says that it
- * repeats (SPH-EXA); whatever the case. One that is no period tells of none.
+ * As mcor_find_period finds it.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 

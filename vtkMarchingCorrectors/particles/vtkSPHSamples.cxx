@@ -41,9 +41,10 @@ void Copy(const double* from, vtkIdType first, vtkIdType tuples, vtkDataArray* t
 
 //------------------------------------------------------------------------------
 vtkSPHSamples::vtkSPHSamples(const vtkSPHParticles& particles, const mcor_options& options,
-  const std::string& maskName, vtkIdType count)
+  const std::string& maskName, vtkIdType count, double null)
   : NotFinite(particles.Interpolated.size(), -1)
   , Count(count)
+  , Null(null)
 {
   const bool gradients = options.gradients != 0;
   for (const vtkSPHAttribute& from : particles.Interpolated)
@@ -51,6 +52,13 @@ vtkSPHSamples::vtkSPHSamples(const vtkSPHParticles& particles, const mcor_option
     this->Arrays.push_back(
       this->Make(from.Name, from.Components, from.Array->GetDataType() == VTK_FLOAT, gradients));
     Pair& made = this->Arrays.back();
+    for (vtkDataArray* array : { made.Values.GetPointer(), made.Gradient.GetPointer() })
+    {
+      if (array && null != 0.0)
+      {
+        array->Fill(null);
+      }
+    }
     made.Values->CopyComponentNames(from.Array);
   }
   this->Weight = this->Make("Weight", 1, options.precision == MCOR_FLOAT32, gradients);
@@ -91,10 +99,24 @@ void vtkSPHSamples::Put(vtkIdType first, const mcor_samples& samples)
     Copy(samples.values[a], first, samples.count, this->Arrays[a].Values);
     Copy(samples.gradients ? samples.gradients[a] : nullptr, first, samples.count,
       this->Arrays[a].Gradient);
+    this->PutNull(first, samples, this->Arrays[a].Values);
+    this->PutNull(first, samples, this->Arrays[a].Gradient);
   }
   Copy(samples.weight_sum, first, samples.count, this->Weight.Values);
   Copy(samples.weight_gradient, first, samples.count, this->Weight.Gradient);
   std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHSamples::PutNull(vtkIdType first, const mcor_samples& samples, vtkDataArray* array) const
+{
+  for (vtkIdType i = 0; array && this->Null != 0.0 && i < samples.count; ++i)
+  {
+    for (int c = 0; !samples.valid[i] && c < array->GetNumberOfComponents(); ++c)
+    {
+      array->SetComponent(first + i, c, this->Null);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -22,9 +22,9 @@ class vtkSPHParticles;
 class vtkSPHSamples
 {
 public:
-  /** Zeros at `count` points for the interpolated arrays of the particles and their weight. */
+  /** `null` at `count` points for the interpolated arrays of the particles, and zeros for their weight. */
   vtkSPHSamples(const vtkSPHParticles& particles, const mcor_options& options,
-    const std::string& maskName, vtkIdType count);
+    const std::string& maskName, vtkIdType count, double null);
 
   /** Takes over what the core found at the points from `first` on. */
   void Put(vtkIdType first, const mcor_samples& samples);
@@ -43,7 +43,10 @@ private:
 
   Pair Make(const std::string& name, int components, bool asFloat, bool gradient) const;
 
+  void PutNull(vtkIdType first, const mcor_samples& samples, vtkDataArray* array) const;
+
   const vtkIdType Count;
+  const double Null;        // what arrays are at points that are not valid
   std::vector<Pair> Arrays; // in the order of the core's attributes
   Pair Weight;
   vtkNew<vtkCharArray> Mask; // as in vtkProbeFilter

@@ -11,11 +11,11 @@
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
 #include "vtkMarchingCorrectorsSummary.h"
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
+#include "vtkSPHRanksCalls.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksPoints.h"
 #include "vtkSPHRanksRoute.h"
@@ -38,59 +38,6 @@ struct vtkMarchingCorrectorsRun
   std::int64_t Particles; ///< of all ranks
 };
 
-namespace
-{
-/** Of sorted values, how many of all ranks' are below. */
-void CountBelow(
-  vtkSPHRanks& ranks, const std::vector<double>& sorted, const double at[2], std::int64_t below[2])
-{
-  for (int i = 0; i < 2; ++i)
-  {
-    below[i] = std::lower_bound(sorted.begin(), sorted.end(), at[i]) - sorted.begin();
-  }
-  ranks.Reduce(vtkSPHRanks::SUM, below, 2);
-}
-
-/** A number halfway between two, in the order of those that there are; the lower one if none is. */
-double Halfway(double low, double high)
-{
-  const double middle = 0.5 * low + 0.5 * high;
-  return middle > low && middle < high ? middle : low;
-}
-
-/** vtkMarchingCorrectorsMiddleOfRange() of all ranks' values: found by halving, as none has all. */
-double MiddleOfRange(vtkSPHRanks& ranks, std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  auto count = static_cast<std::int64_t>(values.size());
-  ranks.Reduce(vtkSPHRanks::SUM, &count, 1);
-  if (count == 0)
-  {
-    return 0.0;
-  }
-  const double infinity = std::numeric_limits<double>::infinity();
-  double ends[2] = { values.empty() ? infinity : values.front(),
-    values.empty() ? infinity : -values.back() };
-  ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
-  const std::int64_t goal[2] = { count / 50, count - 1 - count / 50 };
-  double low[2] = { ends[0], ends[0] }; // no more than the goal's number are below
-  double high[2] = { std::nextafter(-ends[1], infinity), std::nextafter(-ends[1], infinity) };
-  for (bool goesOn = true; goesOn;)
-  {
-    const double at[2] = { Halfway(low[0], high[0]), Halfway(low[1], high[1]) };
-    std::int64_t below[2];
-    CountBelow(ranks, values, at, below);
-    goesOn = false;
-    for (int i = 0; i < 2; ++i)
-    {
-      goesOn = goesOn || at[i] > low[i];
-      (below[i] <= goal[i] ? low[i] : high[i]) = at[i];
-    }
-  }
-  return 0.5 * low[0] + 0.5 * low[1];
-}
-}
-
 //------------------------------------------------------------------------------
 std::vector<double> vtkMarchingCorrectors::ListIsoValuesTogether(
   vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input)
@@ -99,7 +46,10 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValuesTogether(
   {
     return this->ListIsoValues(input);
   }
-  return { MiddleOfRange(ranks, vtkMarchingCorrectorsFluidValues(input.Core)) };
+  vtkSPHRanksCalls calls(ranks);
+  double range[2], value = 0.0;
+  calls.End(!mcor_find_iso_value(&input.Core, calls.Get(), range, &value));
+  return { value };
 }
 
 //------------------------------------------------------------------------------
@@ -133,6 +83,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(options);
   this->FillChoice(choice, own);
+  this->FindFluidTogether(ranks, choice, own);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput mine(choice, own);
   std::string message = mine.Collect() ? "" : mine.Error;
@@ -175,7 +126,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
                                             : vtkSPHCountWork(mine.Core, options);
   const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
   const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
-  this->FillChoice(choice, near);
+  this->FillRequests(choice, near);
   vtkMarchingCorrectorsInput input(choice, near);
   message = input.Collect() ? "" : input.Error;
   if (!ranks.Agree(message))
@@ -227,12 +178,14 @@ void vtkMarchingCorrectors::FinishTogether(
   }
   this->Summarize(run.Input.Core, run.Options, surface.statistics);
   vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
-  builder.BuildFieldData(output->GetFieldData());
-  vtkSPHAddCount(output->GetFieldData(), "Points", { points });
-  vtkSPHAddCount(output->GetFieldData(), "Triangles", { triangles });
-  vtkSPHAddRunStatistics(this->RunStatistics, surface.statistics);
+  builder.AddIsoValues(output->GetFieldData());
+  builder.AddRun(this->RunStatistics);
+  vtkSPHAddCount(this->RunStatistics, "Points", { points });
+  vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
   vtkSPHAddShares(this->RunStatistics, shares);
-  builder.BuildMesh(output, this->OutputPointsPrecision);
+  builder.BuildMesh(output, this->OutputPointsPrecision,
+    [&ranks](std::vector<double>& ends)
+    { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
   output->GetPointData()->SetGlobalIds(numbers);
   output->GetCellData()->SetGlobalIds(triangleNumbers);
   vtkSPHMatchEmpty(ranks, output);

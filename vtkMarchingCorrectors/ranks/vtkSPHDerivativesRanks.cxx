@@ -78,10 +78,11 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
   std::int64_t fluid = 0;
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
+  this->FindFluidTogether(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
-    const bool usable = mine.CollectArray(this->FindRequest(0, own)) && mine.CollectParticles();
+    const bool usable = mine.CollectArray(this->FindFirstRequest(own)) && mine.CollectParticles();
     std::string message = usable ? "" : mine.Error;
     this->SetUsedNames(&mine);
     if (!ranks.Agree(message))
@@ -91,9 +92,10 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
     }
     fluid = mine.FluidCount;
     ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-    if (fluid == 0 && ranks.GetRank() == 0)
+    if (ranks.GetRank() == 0)
     {
-      this->WarnOfNoFluid(choice, "there are no derivatives");
+      fluid == 0 ? this->WarnOfNoFluid(choice, "there are no derivatives")
+                 : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
     }
   }
   vtkNew<vtkPointData> found;
@@ -113,7 +115,7 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
 bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
   vtkIdList* numbers, vtkIdType count, vtkPointData* results)
 {
-  const vtkWanted wanted = this->ListWanted();
+  const vtkWanted wanted = this->ListWanted(own);
   const mcor_gradient form =
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
   mcor_options options;

@@ -133,6 +133,7 @@ void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
   }
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
+  this->FindFluidTogether(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
@@ -150,9 +151,10 @@ void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
   }
   std::int64_t fluid = mine.FluidCount;
   ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-  if (counts[0] > 0 && fluid == 0 && ranks.GetRank() == 0)
+  if (counts[0] > 0 && ranks.GetRank() == 0)
   {
-    this->WarnOfNoFluid(choice, "no point is valid");
+    fluid == 0 ? this->WarnOfNoFluid(choice, "no point is valid")
+               : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
   }
   if (fluid > 0 && counts[1] > 0)
   {
@@ -163,7 +165,7 @@ void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
     mcor_options options;
     this->FillProbeOptions(options);
     const vtkSPHSamples samples(
-      mine, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints());
+      mine, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints(), this->GetNull());
     output->ShallowCopy(points);
     samples.AddTo(output->GetPointData());
   }
@@ -223,7 +225,8 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
   }
   options.globals = &globals;
   std::copy(route.Box, route.Box + 6, options.box);
-  vtkSPHSamples samples(input, options, this->ValidPointMaskArrayName, here->GetNumberOfPoints());
+  vtkSPHSamples samples(
+    input, options, this->ValidPointMaskArrayName, here->GetNumberOfPoints(), this->GetNull());
   samples.NotFinite = ListNotFinite(input, globals);
   vtkFieldData* statistics = this->RunStatistics;
   if (!this->CallCoreTogether(ranks, input, options,
@@ -251,6 +254,7 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
     {
       output->GetPointData()->AddArray(came->GetArray(i));
     }
+    this->FinishOutput(output);
   }
   return true;
 }

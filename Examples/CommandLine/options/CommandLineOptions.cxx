@@ -86,13 +86,15 @@ const std::vector<Option>& AllOptions()
     { "--density", "NAME|VALUE", "array of densities, or one value",
       [](Options& o, Text n, Text v) { o.Density = ToQuantity(n, v); } },
     { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
-    { "--solids", "weight|ignore|wall",
-      "count in the weight that trims (default), not at all, or end the surface",
+    { "--solids", "auto|weight|ignore|wall",
+      "count in the weight that trims, not at all, or end the surface; auto (default): the last "
+      "for "
+      "a scalar, the first for the free surface",
       [](Options& o, Text n, Text v) {
-        o.Solids = ToChoice(n, v, { "weight", "ignore", "wall" });
+        o.Solids = ToChoice(n, v, { "auto", "weight", "ignore", "wall" });
       } },
     { "--wall-share", "S|measured",
-      "with --solids wall: their share of the weight there (default: as measured at the walls)",
+      "where solids end the surface: their share of the weight (default: as measured at the walls)",
       [](Options& o, Text n, Text v) { o.WallShare = ToShare(n, v); } },
 
     { "", "", "The method", {} },

@@ -34,7 +34,7 @@ struct CommandLineOptions
   double FluidValue = 0.0;
   double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
   double CoefH = 1.0;
-  std::string Solids = "weight";
+  std::string Solids = "auto";
   double WallShare = 0.0; ///< 0: measured
 
   std::string Kernel = "cubic";
@@ -46,9 +46,9 @@ struct CommandLineOptions
   double CubeFactor = 0.5;
   double CubeSize = 0.0; ///< 0: CubeFactor times the smallest smoothing length
   std::string Cubes = "adaptive";
-  int MaxLevel = 24;                   ///< of adaptive cubes
+  int MaxLevel = 24;              ///< of adaptive cubes
   std::string Partition = "work"; ///< what processes have alike
-  std::vector<double> Box;             ///< x0, x1, y0, y1, z0, z1; empty: all
+  std::vector<double> Box;        ///< x0, x1, y0, y1, z0, z1; empty: all
   bool Capping = false;
   bool DetectPeriod = false;    ///< --periodic auto
   std::vector<double> Periodic; ///< three lengths, or bounds like those of Box; empty: open

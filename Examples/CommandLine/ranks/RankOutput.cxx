@@ -16,6 +16,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <vector>
@@ -114,16 +115,23 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   auto whole = vtkSmartPointer<vtkPolyData>::New();
   vtkPolyData* first = parts.front();
   whole->GetFieldData()->ShallowCopy(first->GetFieldData());
-  vtkDataArray *pointCount = first->GetFieldData()->GetArray("Points"),
-               *triangleCount = first->GetFieldData()->GetArray("Triangles");
-  if (!pointCount || !triangleCount || !first->GetPoints())
+  if (!first->GetPoints())
   {
     return whole;
   }
-  const auto count = static_cast<vtkIdType>(pointCount->GetComponent(0, 0));
+  vtkIdType count = 0, triangleCount = 0; // numbers go from 0 on; a triangle is in one part
+  for (const auto& part : parts)
+  {
+    vtkDataArray* numbers = part->GetPointData()->GetGlobalIds();
+    for (vtkIdType i = 0; numbers && i < part->GetNumberOfPoints(); ++i)
+    {
+      count = std::max(count, static_cast<vtkIdType>(numbers->GetComponent(i, 0)) + 1);
+    }
+    triangleCount += part->GetNumberOfPolys();
+  }
   vtkNew<vtkPoints> points;
   vtkNew<vtkIdTypeArray> corners;
-  corners->SetNumberOfValues(3 * static_cast<vtkIdType>(triangleCount->GetComponent(0, 0)));
+  corners->SetNumberOfValues(3 * triangleCount);
   points->SetDataType(first->GetPoints()->GetDataType());
   points->SetNumberOfPoints(count);
   whole->SetPoints(points);

@@ -107,10 +107,10 @@ void ShareSurface(CommandLineOptions options, RankSession& session, MessageCaptu
   ResolvePeriod(options, session, particles);
   session.Together([&] { SetUpFilter(filter, options, particles); });
   session.Together([&] { run.reset(new Run(Extract(filter, options, messages))); });
-  vtkDataArray* triangles = run->Surface->GetFieldData()->GetArray("Triangles");
+  vtkDataArray* triangles = run->Statistics->GetArray("Triangles");
   const std::vector<std::string> warnings = triangles && triangles->GetComponent(0, 0) > 0
     ? messages->GetWarnings()
-    : Warnings(run->Surface, messages);
+    : Warnings(run->Surface, run->Statistics, messages);
   if (session.IsFirst())
   {
     Report(options, *run, warnings);

@@ -264,7 +264,7 @@ private:
     SetUpFilter(this->Filter, this->Options, particles, this->Derivatives);
     this->Filter->KeepDeviceDataOn(); // the next step takes the buffers of this one
     const Run run = Extract(this->Filter, this->Options, this->Messages);
-    for (const std::string& warning : Warnings(run.Surface, this->Messages))
+    for (const std::string& warning : Warnings(run.Surface, run.Statistics, this->Messages))
     {
       warnings.push_back(warning);
     }

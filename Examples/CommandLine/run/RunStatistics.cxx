@@ -204,7 +204,7 @@ void WriteSetting(JsonText& json, const CommandLineOptions& options, vtkFieldDat
     json.Value("array", options.FluidArray);
     json.Value("value", options.FluidValue);
     json.Value("solids", options.Solids);
-    if (options.Solids == "wall")
+    if (options.Solids == "wall" || (options.Solids == "auto" && !options.FreeSurface))
     {
       vtkDataArray* used = run->GetArray("WallShare");
       json.Value("wall_share", used ? used->GetComponent(0, 0) : options.WallShare);

@@ -82,7 +82,8 @@ void SetSolids(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
 {
   filter->SetSolids(options.Solids == "wall" ? vtkMarchingCorrectors::SOLIDS_WALL
       : options.Solids == "ignore"           ? vtkMarchingCorrectors::SOLIDS_IGNORE
-                                             : vtkMarchingCorrectors::SOLIDS_WEIGHT);
+      : options.Solids == "weight"           ? vtkMarchingCorrectors::SOLIDS_WEIGHT
+                                             : vtkMarchingCorrectors::SOLIDS_AUTO);
   filter->SetWallShare(options.WallShare);
 }
 
@@ -182,6 +183,7 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(
   filter->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, options.Derive.c_str());
   filter->ComputeStrainRateOn();
+  filter->ReplaceArraysOn(); // the next step is to find them under their names
   filter->SetInputData(particles);
   filter->Update();
   const std::string error = filter->GetErrorMessage();
@@ -219,16 +221,16 @@ void SetAttributes(
 }
 
 /// Why there is none, as far as the ranges tell.
-std::string ReasonForNoSurface(vtkPolyData* surface)
+std::string ReasonForNoSurface(vtkFieldData* statistics)
 {
-  vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
+  vtkDataArray* values = statistics->GetArray("IsoValues");
   if (!values)
   {
     return "";
   }
-  vtkDataArray* range = surface->GetFieldData()->GetArray("ScalarRange");
+  vtkDataArray* range = statistics->GetArray("ScalarRange");
   std::ostringstream stream;
-  const bool inBox = surface->GetFieldData()->HasArray("Box");
+  const bool inBox = statistics->HasArray("Box");
   stream << "no part of the field" << (inBox ? " in the box" : "") << " reaches the iso value";
   if (values->GetNumberOfValues() == 1)
   {
@@ -324,14 +326,14 @@ Run Extract(
   run.Surface = vtkSmartPointer<vtkPolyData>::New();
   run.Surface->ShallowCopy(filter->GetOutput());
   filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
-  run.Statistics->PassData(run.Surface->GetFieldData());
   run.Statistics->PassData(filter->GetRunStatistics());
   run.WallSeconds = elapsed.count();
   return run;
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages)
+std::vector<std::string> Warnings(
+  vtkPolyData* surface, vtkFieldData* statistics, MessageCapture* messages)
 {
   if (surface->GetNumberOfCells() > 0)
   {
@@ -340,7 +342,7 @@ std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages
   std::vector<std::string> all = messages->GetWarnings();
   if (all.empty())
   {
-    all.push_back(ReasonForNoSurface(surface));
+    all.push_back(ReasonForNoSurface(statistics));
   }
   all.front() = "the surface is empty" + (all.front().empty() ? "" : ": " + all.front());
   return all;

@@ -47,7 +47,8 @@ Run Extract(
   vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages);
 
 /// What the user should know of a run that went well, one sentence each.
-std::vector<std::string> Warnings(vtkPolyData* surface, MessageCapture* messages);
+std::vector<std::string> Warnings(
+  vtkPolyData* surface, vtkFieldData* statistics, MessageCapture* messages);
 
 /// Where --periodic is not given, and the particles' field data may tell of a period: that.
 void AddHintOfPeriod(

@@ -331,6 +331,44 @@ static void test_measured(void** state)
   core_free_set(&set);
 }
 
+/* What is measured for a scalar, nothing for the free surface: with global values, too. That is the default. */
+static void test_auto(void** state)
+{
+  core_set set = make_tank();
+  const double iso = 0, half = 0.5;
+  mcor_options options;
+  mcor_set_default_options(&options);
+  assert_true(options.wall_share == MCOR_WALL_SHARE_AUTO);
+  for (int field = MCOR_SHEPARD; field <= MCOR_WEIGHT_SUM; ++field)
+  {
+    const wall_case at = { .field = (mcor_field)field };
+    const mcor_input input = core_input(&set);
+    uint64_t hash[3];
+    mcor_globals globals;
+    options = make_options(&at, field == MCOR_WEIGHT_SUM ? &half : &iso);
+    for (int i = 0; i < 3; ++i)
+    {
+      options.wall_share = i < 2   ? MCOR_WALL_SHARE_AUTO
+        : field == MCOR_WEIGHT_SUM ? 0
+                                   : MCOR_WALL_SHARE_MEASURED;
+      if (i == 1)
+      {
+        CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
+        assert_true((globals.wall_share > 0) == (field != MCOR_WEIGHT_SUM));
+      }
+      options.globals = i == 1 ? &globals : NULL;
+      mcor_surface surface = core_extract(*state, &input, &options);
+      assert_true((surface.statistics.wall_share > 0) == (field != MCOR_WEIGHT_SUM));
+      assert_true(surface.triangle_count > 0);
+      hash[i] = core_hash(&surface);
+      mcor_free_surface(&surface);
+    }
+    CORE_CHECK(hash[0] == hash[1] && hash[0] == hash[2], "field %d: another surface", field);
+    mcor_free_globals(&globals);
+  }
+  core_free_set(&set);
+}
+
 /* The free surface takes one half; global values must have been measured for it. */
 static void test_measured_elsewhere(void** state)
 {
@@ -358,6 +396,6 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_exact), cmocka_unit_test(test_forms),
     cmocka_unit_test(test_iso_values), cmocka_unit_test(test_without_solids),
     cmocka_unit_test(test_share), cmocka_unit_test(test_measured),
-    cmocka_unit_test(test_measured_elsewhere) };
+    cmocka_unit_test(test_measured_elsewhere), cmocka_unit_test(test_auto) };
   return cmocka_run_group_tests_name("wall", tests, core_set_up, core_tear_down);
 }

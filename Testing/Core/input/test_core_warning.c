@@ -160,10 +160,46 @@ static void test_without_input(void** state)
   core_free_set(&call.set);
 }
 
+static void test_unused_type(void** state)
+{
+  const double values[9] = { 0, 3, 0.5 };
+  const int64_t counts[9] = { 12, INT64_C(5000000000), 1 };
+  char* text = mcor_describe_unused_type("Type", values, counts, 3);
+  assert_non_null(text);
+  assert_string_equal(text,
+    "Point array 'Type' is not used, all particles count as fluid: it has 12 x 0, 5000000000 x 3, "
+    "1 x 0.5. If it tells fluid from walls, name it and the fluid's value.");
+  free(text);
+  text = mcor_describe_unused_type("Type", values, counts, 2);
+  assert_non_null(strstr(text, "name it and the fluid's value, which seems to be 3."));
+  free(text);
+  text = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
+  assert_non_null(strstr(text, "Names of blocks tell of walls"));
+  free(text);
+  assert_null(mcor_describe_unused_type("Type", values, counts, 1));
+  assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1));
+  assert_null(mcor_describe_unused_type(NULL, values, counts, 3));
+  /* The longest there can be. */
+  char name[500];
+  double far[MCOR_PARTICLE_TYPES];
+  int64_t many[MCOR_PARTICLE_TYPES];
+  memset(name, 'x', sizeof name - 1);
+  name[sizeof name - 1] = 0;
+  for (int i = 0; i < MCOR_PARTICLE_TYPES; ++i)
+  {
+    far[i] = -1.23456e-300;
+    many[i] = INT64_MAX;
+  }
+  text = mcor_describe_unused_type(name, far, many, MCOR_PARTICLE_TYPES);
+  assert_non_null(strstr(text, "9223372036854775807 x -1.23456e-300. If it"));
+  free(text);
+  (void)state;
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
     cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
-    cmocka_unit_test(test_without_input) };
+    cmocka_unit_test(test_without_input), cmocka_unit_test(test_unused_type) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

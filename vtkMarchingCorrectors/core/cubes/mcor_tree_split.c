@@ -202,16 +202,19 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
       {
         continue;
       }
-      const int level = mcor_tree_level_of(h[i], h_min, job->tree->top) + 1;
+      /* As far as was measured, whatever other threads write to the arrays meanwhile. */
+      const double own = h[i] <= context->measure.h_max ? h[i] : context->measure.h_max;
+      const int level = mcor_tree_level_of(own, h_min, job->tree->top) + 1;
       double at[3];
       for (int a = 0; a < 3; ++a)
       {
         at[a] = x[a][i] / lattice->cube - (double)lattice->origin[a];
         const double from = at[a] - lattice->period_first[a], period = lattice->period[a];
         at[a] -= period > 0 ? floor(from / period) * period : 0;
+        at[a] = fmin(fmax(at[a], 0), (double)lattice->last[a]);
       }
       job->failed[slice] =
-        !mcor_split_reached(job, level, at, h[i] * job->reach, &job->split[slice][level]) ||
+        !mcor_split_reached(job, level, at, own * job->reach, &job->split[slice][level]) ||
         mcor_are_too_many(job->split[slice]);
     }
   }

@@ -99,9 +99,10 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     "The node threshold is %g and the vertex threshold %g; neither may be negative.",
     options->node_threshold, options->vertex_threshold);
   MCOR_NEED((options->wall_share >= 0 && options->wall_share < 1) ||
-      options->wall_share == MCOR_WALL_SHARE_MEASURED,
-    "The wall share is %g; it must be from 0 (the surface does not end at solids) to below 1, or "
-    "MCOR_WALL_SHARE_MEASURED.",
+      options->wall_share == MCOR_WALL_SHARE_MEASURED ||
+      options->wall_share == MCOR_WALL_SHARE_AUTO,
+    "The wall share is %g; it must be from 0 (the surface does not end at solids) to below 1, "
+    "MCOR_WALL_SHARE_MEASURED or MCOR_WALL_SHARE_AUTO.",
     options->wall_share);
   MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
     "The tolerance is %g; it must be above 0.", options->tolerance);

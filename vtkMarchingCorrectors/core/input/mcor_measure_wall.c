@@ -220,7 +220,7 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
 {
   mcor_measure* m = &context->measure;
-  if (context->options->wall_share >= 0 || m->wall_share > 0 || m->solid_count == 0 ||
+  if (mcor_asked_share(context->options) >= 0 || m->wall_share > 0 || m->solid_count == 0 ||
     !context->uses_solids)
   {
     return MCOR_OK;

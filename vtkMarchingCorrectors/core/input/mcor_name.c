@@ -1,11 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The names under which particle files hold what a run needs. */
+/* The names under which particle files hold what a run needs, and the period that they tell of. */
 
 #include "mcor.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -21,7 +22,7 @@ static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_PARTICLE_ID] = { "idp", "particleid", "particleids", "partid", "id", "ids", "globalids",
     "globalid", "gid", "pid", "iorig" },
   [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
-    "isboundary" },
+    "isboundary", "iswall", "issolid", "isfluid", "wallblock" },
 };
 
 static bool mcor_is_same_name(const char* name, const char* usual)
@@ -52,6 +53,42 @@ int mcor_name_rank(mcor_quantity quantity, const char* name)
     }
   }
   return -1;
+}
+
+int mcor_find_fluid_value(const char* name, double low, double high, double* fluid)
+{
+  if (mcor_name_rank(MCOR_PARTICLE_TYPE, name) < 0)
+  {
+    return 0;
+  }
+  if (low == 0 && high == 1)
+  {
+    *fluid = mcor_is_same_name(name, "isfluid");
+    return 1;
+  }
+  /* DualSPHysics: fixed, moving and floating bodies, fluid. */
+  if (low >= 0 && low < 3 && high == 3 && mcor_is_same_name(name, "type"))
+  {
+    *fluid = 3;
+    return 1;
+  }
+  return 0;
+}
+
+int mcor_view_rank(const char* name, int components, int is_real, int varies)
+{
+  if (!name || !varies || mcor_name_rank(MCOR_PARTICLE_ID, name) >= 0 ||
+    mcor_name_rank(MCOR_PARTICLE_TYPE, name) >= 0)
+  {
+    return -1;
+  }
+  const bool describes = mcor_name_rank(MCOR_SMOOTHING_LENGTH, name) >= 0 ||
+    mcor_name_rank(MCOR_VOLUME, name) >= 0 || mcor_name_rank(MCOR_MASS, name) >= 0;
+  return !is_real                                                 ? 5
+    : components == 3 && mcor_name_rank(MCOR_VELOCITY, name) >= 0 ? 0
+    : components == 3                                             ? 1
+    : components == 1                                             ? 2 + describes
+                                                                  : 4;
 }
 
 /* By which names a solver's output is told, as above; sources: Documentation/Guide/your-data.md. Those
@@ -106,4 +143,110 @@ const char* mcor_find_layout(const char* names)
     }
   }
   return "";
+}
+
+/* The first array of this name and so many values. */
+static const double* mcor_find_values(
+  const mcor_field_data* arrays, int count, const char* usual, int64_t values, int* which)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    if (arrays[i].name && arrays[i].values && arrays[i].count == values &&
+      mcor_is_same_name(arrays[i].name, usual))
+    {
+      *which = i;
+      return arrays[i].values;
+    }
+  }
+  return NULL;
+}
+
+/* Whether there are periods, of which some may be 0. */
+static bool mcor_are_periods(const double bounds[6])
+{
+  bool some = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double length = bounds[2 * a + 1] - bounds[2 * a];
+    if (!isfinite(length) || length < 0)
+    {
+      return false;
+    }
+    some = some || length > 0;
+  }
+  return some;
+}
+
+/* One edge for all axes, or one each. */
+static bool mcor_find_box_size(
+  const mcor_field_data* arrays, int count, int edges, double period[6], int* which)
+{
+  const double* found = mcor_find_values(arrays, count, "boxsize", edges, which);
+  double bounds[6] = { 0 };
+  for (int a = 0; found && a < 3; ++a)
+  {
+    bounds[2 * a + 1] = period[a] = found[edges == 1 ? 0 : a];
+  }
+  return mcor_are_periods(bounds);
+}
+
+int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which)
+{
+  int found, type_at;
+  which = which ? which : &found;
+  const double* bounds = mcor_find_values(arrays, count, "periodicbounds", 6, which);
+  if (bounds && mcor_are_periods(bounds))
+  {
+    memcpy(period, bounds, 6 * sizeof *period);
+    return 6;
+  }
+  if (mcor_find_box_size(arrays, count, 3, period, which) ||
+    mcor_find_box_size(arrays, count, 1, period, which))
+  {
+    return 3;
+  }
+  const double* type = mcor_find_values(arrays, count, "boundarytype", 3, &type_at);
+  bounds = mcor_find_values(arrays, count, "box", 6, which);
+  for (int side = 0; side < 6; ++side) /* 0: open, 1: periodic, 2: fixed */
+  {
+    period[side] = bounds && type && type[side / 2] == 1 ? bounds[side] : 0;
+  }
+  if (mcor_are_periods(period))
+  {
+    return 6;
+  }
+  *which = -1;
+  memset(period, 0, 6 * sizeof *period);
+  return 0;
+}
+
+void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6])
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    const double length = lengths[a], rounding = 1e-6 * length;
+    const double begins[2] = { 0, -0.5 * length };
+    double begin = extent[2 * a];
+    for (int i = 1; i >= 0; --i)
+    {
+      const bool holds =
+        extent[2 * a] >= begins[i] - rounding && extent[2 * a + 1] <= begins[i] + length + rounding;
+      begin = holds ? begins[i] : begin;
+    }
+    bounds[2 * a] = length > 0 ? begin : 0;
+    bounds[2 * a + 1] = bounds[2 * a] + length;
+  }
+}
+
+int mcor_tells_of_period(const char* name)
+{
+  static const char* const usual[] = { "periodicbounds", "boxsize", "box", "boundarytype" };
+  for (int i = 0; name && i < 4; ++i)
+  {
+    if (mcor_is_same_name(name, usual[i]))
+    {
+      return 1;
+    }
+  }
+  return 0;
 }

@@ -82,10 +82,12 @@ typedef struct mcor_stage_job
   const mcor_input* input;
   const mcor_staging* staging;
   const mcor_reach_box* reach; /* NULL: all particles are needed */
+  double h_max;                /* the largest measured one, and rounding */
   uint8_t* images;             /* of each particle, whether any is staged; NULL without reach */
   int64_t used[MCOR_SLICES];   /* particles in each slice */
   int64_t to[MCOR_SLICES];     /* where the first of them goes */
   int64_t heavy[MCOR_SLICES];  /* see mcor_find_heavy */
+  bool changed[MCOR_SLICES]; /* not what was measured and counted: somebody writes to the arrays */
   double largest_weight[MCOR_SLICES];
 } mcor_stage_job;
 
@@ -107,7 +109,8 @@ static int mcor_images_of(
   {
     at[a] = chunk->x[a][i] * job->reach->unit;
   }
-  return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, chunk->h[i]), images);
+  const double h = chunk->h[i] <= job->h_max ? chunk->h[i] : job->h_max;
+  return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, h), images);
 }
 
 /* Marks the particles that may reach something, by one look at each coordinate that the box limits: all
@@ -200,11 +203,37 @@ static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
   job->used[slice] = used;
 }
 
+/* Whether a chunk's particles are within the measured bounds: what comes after counts on it. */
+static bool mcor_is_as_measured(const mcor_stage_job* job, const mcor_stage_chunk* chunk)
+{
+  const mcor_lattice* lattice = &job->context->lattice;
+  int outside = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double high = ldexp((double)lattice->last[a], lattice->fix_bits);
+    for (int i = 0; i < chunk->count; ++i)
+    {
+      outside |= !(chunk->x[a][i] >= 0 && chunk->x[a][i] <= high);
+    }
+  }
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    outside |= !(chunk->h[i] > 0 && chunk->h[i] <= job->h_max);
+  }
+  return !outside;
+}
+
 /* Stages a chunk from element *to on, which moves to where the next one goes; not after a particle
- * that is too heavy. */
+ * that is too heavy, or after one that changed. */
 static void mcor_stage_chunk_at(
   mcor_stage_job* job, int slice, mcor_stage_chunk* chunk, int64_t* to)
 {
+  job->changed[slice] = job->changed[slice] ||
+    *to + chunk->count > job->to[slice] + job->used[slice] || !mcor_is_as_measured(job, chunk);
+  if (job->changed[slice])
+  {
+    return;
+  }
   if (job->heavy[slice] < 0)
   {
     job->heavy[slice] =
@@ -262,9 +291,11 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
   int64_t to = job->to[slice];
   mcor_stage_chunk chunk, out;
   job->heavy[slice] = -1;
+  job->changed[slice] = false;
   out.count = 0;
   int64_t begin = first;
-  while (job->heavy[slice] < 0 && (chunk.count = mcor_next_run(job, &begin, last)) > 0)
+  while (job->heavy[slice] < 0 && !job->changed[slice] &&
+    (chunk.count = mcor_next_run(job, &begin, last)) > 0)
   {
     const int read = chunk.count;
     mcor_read_stage_chunk(job->context, job->input, begin, job->staging, job->reach, &chunk);
@@ -279,6 +310,8 @@ static void mcor_stage_slice(void* data, int slice, int64_t first, int64_t last)
     begin += read;
   }
   mcor_stage_chunk_at(job, slice, &out, &to);
+  job->changed[slice] =
+    job->changed[slice] || (job->heavy[slice] < 0 && to != job->to[slice] + job->used[slice]);
 }
 
 static mcor_status mcor_refuse_heavy(
@@ -335,6 +368,10 @@ static mcor_status mcor_stage_particles(
     context->options->h_scale);
   for (int s = 0; s < slices; ++s)
   {
+    MCOR_RETURN_IF(job->changed[s], context, MCOR_INVALID_DATA,
+      "The particles' arrays were changed during the call%s. Let no other thread write to them "
+      "until it returns.",
+      context->options->globals ? ", or options.globals were measured of other particles" : "");
     if (job->heavy[s] >= 0)
     {
       return mcor_refuse_heavy(context, input, staging, job->heavy[s]);
@@ -348,6 +385,8 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
 {
   mcor_stage_job job = { .context = context, .input = input, .staging = staging };
   staging->size_scale = mcor_size_scale(context, input);
+  job.h_max = 1.000001 * context->measure.support_max / context->options->h_scale /
+    mcor_support_factor(context->options->sph_kernel);
   mcor_reach_box reach;
   if (mcor_find_reach(context, input, &reach))
   {

@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define MCOR_SENTENCE 800
 
@@ -44,12 +45,22 @@ mcor_say(mcor_suspicion* s, const char* format, ...)
 #define MCOR_LEAST_RATIO 0.9
 #define MCOR_MOST_RATIO 2.2
 #define MCOR_MOST_RATIO_WENDLAND 2.6
+#define MCOR_LEAST_RATIO_QUINTIC 0.7
 
 /* Particles strewn at random lie as near as with the former, but have not so many neighbours (per cube
  * of the kernel's support in smoothing lengths); sheets and drops have few. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
+
+/* The kernel with which such particles, `ratio` smoothing lengths to the nearest one, would be usual: that
+ * of many neighbours, or the one that reaches farther. */
+static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
+{
+  return few && kernel != MCOR_QUINTIC_SPLINE && ratio >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
+    : !few && kernel != MCOR_WENDLAND_C2 && ratio <= MCOR_MOST_RATIO_WENDLAND      ? "wendland"
+                                                                                   : "";
+}
 
 static bool mcor_warn_neighbours(mcor_suspicion* s)
 {
@@ -77,6 +88,7 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
       "of the positions."
     : few ? "Perhaps it is not in the unit of the positions."
           : "Perhaps it is the support radius (then say so), or not in the unit of the positions.";
+  const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
   char times[100] = "no other particle is within that";
   if (spacing > 0)
   {
@@ -85,9 +97,9 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   }
   return mcor_say(s,
     "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
-    "%s (medians). Usual for the %s kernel are %s neighbours and 1 to %g times. %s",
+    "%s (medians). Usual for the %s kernel are %s neighbours and 1 to %g times. %s%s%s%s",
     n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel],
-    wendland ? 2.2 : 1.7, why);
+    wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
 static bool mcor_warn_plane(mcor_suspicion* s)
@@ -193,6 +205,13 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
                : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
 }
 
+static char* mcor_copy_text(const char* text)
+{
+  const size_t size = strlen(text) + 1;
+  char* copy = malloc(size);
+  return copy ? memcpy(copy, text, size) : NULL;
+}
+
 char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
@@ -209,14 +228,50 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   {
     return NULL;
   }
-  size_t length = 0;
-  while (suspicion.text[length++])
+  return mcor_copy_text(suspicion.text);
+}
+
+/* What seems to be the fluid's value, as ", which seems to be 0"; "" where it is not clear. */
+static void mcor_suggest_fluid(
+  const char* name, const double* values, int count, char* text, size_t size)
+{
+  double low = values[0], high = values[0], fluid;
+  bool whole = true;
+  for (int i = 0; i < count; ++i)
   {
+    low = values[i] < low ? values[i] : low;
+    high = values[i] > high ? values[i] : high;
+    whole = whole && values[i] == floor(values[i]);
   }
-  char* text = malloc(length);
-  for (size_t i = 0; text && i < length; ++i)
+  text[0] = '\0';
+  if (whole && mcor_find_fluid_value(name, low, high, &fluid))
   {
-    text[i] = suspicion.text[i];
+    snprintf(text, size, ", which seems to be %g", fluid);
   }
-  return text;
+}
+
+char* mcor_describe_unused_type(
+  const char* name, const double* values, const int64_t* counts, int count)
+{
+  char text[MCOR_SENTENCE], seems[50], *end = text;
+  if (!name || !values || !counts || count < 2 || count > MCOR_PARTICLE_TYPES)
+  {
+    return NULL;
+  }
+  if (strcmp(name, MCOR_WALL_BLOCK) == 0)
+  {
+    return mcor_copy_text(
+      "Names of blocks tell of walls, but all particles count as fluid. Have the fluid detected, "
+      "or name '" MCOR_WALL_BLOCK "' as what tells fluid from walls, and 0 as the fluid's value.");
+  }
+  mcor_suggest_fluid(name, values, count, seems, sizeof seems);
+  end += snprintf(end, MCOR_SENTENCE / 2,
+    "Point array '%.200s' is not used, all particles count as fluid: it has", name);
+  for (int i = 0; i < count; ++i)
+  {
+    end += snprintf(end, 40, "%s %lld x %g", i ? "," : "", (long long)counts[i], values[i]);
+  }
+  snprintf(end, (size_t)(text + sizeof text - end),
+    ". If it tells fluid from walls, name it and the fluid's value%s.", seems);
+  return mcor_copy_text(text);
 }

@@ -1,0 +1,200 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The options that all functions share: their types and what they mean. The names are those of mcor.h."""
+import ctypes
+import difflib
+import inspect
+import textwrap
+from typing import Callable, Literal, Optional, Sequence, TypedDict, TypeVar, Union
+
+from . import _structs as c
+from ._library import lib
+
+Function = TypeVar("Function", bound=Callable)  # type checkers see it as it is written
+
+
+class Options(TypedDict, total=False):
+    """Keywords of isosurface(); the other functions take those of them that matter there."""
+
+    sph_kernel: Literal["cubic", "quadratic", "mprime4", "quintic", "wendland"]
+    field: Literal["shepard", "sum", "weight_sum"]
+    seeds: Literal["complete", "pairs"]
+    topology: Literal["table", "field"]
+    h_scale: float
+    cube_size_factor: float
+    cube_size: float
+    cube_size_mode: Literal["uniform", "adaptive"]
+    level_limit: int
+    node_threshold: float
+    boundary_detection: Literal["weight_sum", "eigenvalue"]
+    vertex_threshold: float
+    wall_share: Union[float, Literal["auto", "measured"]]
+    preview: bool
+    tolerance: float
+    iteration_limit: int
+    precision: Literal["float32", "float64"]
+    memory_limit: int
+    box: Optional[Sequence[float]]
+    periodic: Optional[Sequence[float]]
+    capping: bool
+    normals: bool
+    gradients: bool
+    weight_sum: bool
+    boundary_eigenvalue: bool
+    correction_length: bool
+    residual: bool
+    boundary_flag: bool
+    iso_value: bool
+    nearest_particle: bool
+    point_keys: bool
+    triangle_keys: bool
+    triangle_normals: bool
+    smoothing_length_is_support_radius: bool
+    estimate_smoothing_length: bool
+    scalar_component: Union[int, Literal["magnitude"]]
+    ignore_solids: bool
+    particles_version: int
+    scalar_version: int
+    attributes_version: int
+
+
+WORDS = {
+    "sph_kernel": "the SPH kernel of the simulation: the cubic spline M4, the quadratic kernel, M'4 as a product "
+                  "over the axes, the quintic spline M6, or Wendland C2.",
+    "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
+             "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
+    "seeds": "where the surface is looked for: everywhere, so that no part of it is missed, or between pairs of "
+             "particles on both sides of the iso value, as in the paper.",
+    "topology": "how nodes are connected where their values leave it open: by a fixed table, or as the field says.",
+    "h_scale": "the kernel uses this times the smoothing length; below 1 it smooths less. Volumes do not change.",
+    "cube_size_factor": "edge of the smallest cubes of the marching grid, in smallest smoothing lengths.",
+    "cube_size": "the same in the unit of the positions; 0: the factor counts.",
+    "cube_size_mode": "cubes as fine as the particles are, or all of the smallest size.",
+    "level_limit": "how often adaptive cubes may double in size, 0 to 24.",
+    "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): points of a lower one are not "
+                      "valid.",
+    "boundary_detection": "what tells where the fluid ends: the sum of the weights, or the smallest eigenvalue of the "
+                          "inverse renormalisation matrix (Marrone et al. 2010), with vertex_threshold=0.3.",
+    "vertex_threshold": "the surface is cut where boundary_detection falls below this; 0: nowhere.",
+    "wall_share": "above 0, the surface also ends where solids have a greater share of the weight: 0.5 where they "
+                  "weigh more than the fluid; \"measured\" on the layer of solids that faces it. 0: it runs on. "
+                  "\"auto\": \"measured\" for a scalar, 0 for the free surface.",
+    "preview": "True: vertices by linear interpolation on the grid's edges, faster and not exact.",
+    "tolerance": "the field at a vertex differs from the iso value by at most this share of the scalar's range.",
+    "iteration_limit": "Newton iterations of a vertex, 1 to 255.",
+    "precision": "of the evaluation on the device.",
+    "memory_limit": "bytes of device memory; 0: all there is.",
+    "box": "(x0, x1, y0, y1, z0, z1): only the cells with their middle in it; sides may be infinite.",
+    "periodic": "(x0, x1, y0, y1, z0, z1): particles repeat with this period, along an axis with x0 < x1; or three "
+                "lengths, 0: open.",
+    "capping": "True: the surface is closed at periodic sides.",
+    "normals": "True: unit normals from the field's gradient.",
+    "gradients": "True: the gradient of the field; probe(): of every attribute.",
+    "weight_sum": "True: the sum of the weights at the points.",
+    "boundary_eigenvalue": "True: the eigenvalue of boundary_detection at the points.",
+    "correction_length": "True: how far each point was moved by the correction.",
+    "residual": "True: field minus iso value at the points.",
+    "boundary_flag": "True: 0 inside; 1 or 2 on a cut; 4 next to a cube that was left out; 8 of a cap.",
+    "iso_value": "True: the iso value of each point.",
+    "nearest_particle": "True: the index of the fluid particle that is nearest to each point.",
+    "point_keys": "True: numbers by which points of neighbouring boxes are the same.",
+    "triangle_keys": "True: numbers by which triangles of neighbouring boxes are put in order.",
+    "triangle_normals": "True: normals are means over triangles instead.",
+    "smoothing_length_is_support_radius": "True: smoothing_length is the radius at which the kernel ends.",
+    "estimate_smoothing_length": "True: 1.3 times the median particle distance; smoothing_length is not needed.",
+    "scalar_component": "of a vector as scalar: 0, 1, ..., or its magnitude.",
+    "ignore_solids": "True: walls do not count in the weights that trim the surface.",
+    "particles_version": "equal numbers above 0 in two calls with one context promise that positions, smoothing "
+                         "lengths, volumes and solids are the same: they stay on the device.",
+    "scalar_version": "the same promise for the scalar.",
+    "attributes_version": "the same promise for probe()'s attributes.",
+}
+
+# Those that each function takes.
+ISOSURFACE = tuple(Options.__annotations__)
+FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
+    "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
+    "scalar_version", "attributes_version"))
+DERIVATIVES = ("sph_kernel", "h_scale", "precision", "memory_limit", "periodic",
+               "smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids",
+               "particles_version")
+PROBE = ("field", "gradients", "node_threshold", "attributes_version") + DERIVATIVES
+
+
+def words_of(kind):
+    """An enumeration's words, in the order of its numbers: MCOR_TOPOLOGY_TABLE is "table"."""
+    names = [name for name in c.ENUMS[kind] if not name.endswith("_COUNT")]
+    if kind == "mcor_sph_kernel":
+        return [lib.mcor_sph_kernel_name(i).decode() for i in range(len(names))]
+    parts = [name.lower().split("_")[1:] for name in names]
+    while all(len(part) > 1 for part in parts) and len({part[0] for part in parts}) == 1:
+        parts = [part[1:] for part in parts]
+    return ["_".join(part) for part in parts]
+
+
+def kind_of(name):
+    return c.KINDS["mcor_options" if name in c.KINDS["mcor_options"] else "mcor_input"][name]
+
+
+def default_of(name):
+    """As a user would write it."""
+    options = c.mcor_options()
+    lib.mcor_set_default_options(ctypes.byref(options))
+    if name in ("scalar_component", "wall_share"):
+        return "magnitude" if name == "scalar_component" else "auto"
+    if name == "precision":
+        return "float32"
+    value, kind = getattr(options, name, 0), kind_of(name)
+    if kind in c.ENUMS:
+        return words_of(kind)[value]
+    if isinstance(value, ctypes.Array):
+        return None
+    return bool(value) if Options.__annotations__[name] is bool else value
+
+
+def did_you_mean(name, known):
+    """ Did you mean '...'?"""
+    close = difflib.get_close_matches(str(name), [str(other) for other in known], 1)
+    if not close:  # "kernel" for sph_kernel
+        close = [other for other in known if len(str(name)) > 3 and str(name).lower() in str(other).lower()][:1]
+    return f" Did you mean '{close[0]}'?" if close else ""
+
+
+def check_names(function, given, known):
+    """TypeError, as Python raises it, for a keyword that there is not."""
+    parameters = [p.name for p in inspect.signature(function).parameters.values() if p.kind != p.VAR_KEYWORD]
+    for name in given:
+        if name not in known:
+            raise TypeError(f"{function.__name__}() has no option '{name}'."
+                            + (did_you_mean(name, dict.fromkeys([*parameters, *known]))
+                               or f" Its options are {', '.join(known)}."))
+
+
+def describe(names):
+    """A line or more for each option."""
+    lines = []
+    for name in names:
+        kind = kind_of(name)
+        choices = " | ".join(f'"{word}"' for word in words_of(kind)) + ": " if kind in c.ENUMS \
+            and kind != "mcor_type" else '"float32" | "float64": ' if kind == "mcor_type" else ""
+        lines += textwrap.wrap(f"{name}: {choices}{WORDS[name]}", 100, subsequent_indent="    ")
+    return lines
+
+
+def with_options(names: Sequence[str]) -> Callable[[Function], Function]:
+    """Decorator: the options stand in the function's signature and in its text, in place of {options}."""
+    def decorate(function: Function) -> Function:
+        signature = inspect.signature(function)
+        own = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
+        more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=Options.__annotations__[name],
+                                  default=default_of(name)) for name in names if name not in signature.parameters]
+        function.__signature__ = signature.replace(parameters=own + more)  # type: ignore[attr-defined]
+        lines = (function.__doc__ or "").split("\n")
+        at = [i for i, line in enumerate(lines) if line.strip() == "{options}"]
+        for i in at:
+            indent = lines[i][:-len("{options}")]
+            lines[i:i + 1] = [indent + line for line in describe(names)]
+        function.__doc__ = "\n".join(lines)
+        return function
+
+    return decorate

@@ -1,0 +1,235 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the functions return: a surface, samples, derivatives."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field as dataclass_field, fields
+from pathlib import Path
+from typing import Any, Dict, Optional
+
+import numpy as np
+
+from ._library import InvalidArgument
+from ._warnings import warn
+
+
+def _same(one, other):
+    """Arrays are the same with the same elements, NaN included."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return type(one) is type(other) and one.shape == other.shape and one.dtype == other.dtype \
+            and one.tobytes() == other.tobytes()
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_same(one[name], other[name]) for name in one)
+    return one == other
+
+
+class Result:
+    """A short repr(), and a == that compares all but the statistics, in which there are seconds."""
+
+    __hash__ = None  # type: ignore[assignment]  # arrays can be changed
+
+    def __eq__(self, other):
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self)
+                   if f.name != "statistics")
+
+    def _names(self, left_out=()):
+        """Of the arrays that are there."""
+        names = []
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if isinstance(value, np.ndarray) and f.name not in left_out:
+                names.append(f.name)
+            elif isinstance(value, dict) and value and f.name in ("attributes", "values", "gradients"):
+                names.append(f"{f.name} of {', '.join(value)}")
+        return "; ".join(names) or "none"
+
+
+@dataclass(eq=False, repr=False)
+class Surface(Result):
+    """A triangle mesh. Arrays that were not asked for are None; all own their memory."""
+
+    points: np.ndarray  #: (points, 3) float64, unit of the positions (L)
+    triangles: np.ndarray  #: (triangles, 3) int32; the right-hand normal points to lower values
+    normals: Optional[np.ndarray] = None  #: (points, 3) float32, unit length
+    gradients: Optional[np.ndarray] = None  #: (points, 3) float64, scalar unit / L
+    weight_sum: Optional[np.ndarray] = None  #: (points,) float32, the trimming weight
+    boundary_eigenvalue: Optional[np.ndarray] = None  #: (points,) float32
+    correction_length: Optional[np.ndarray] = None  #: (points,) float32, L
+    residual: Optional[np.ndarray] = None  #: (points,) float32, field minus iso value, scalar unit
+    boundary_flag: Optional[np.ndarray] = None  #: (points,) uint8, see isosurface()
+    iso_value: Optional[np.ndarray] = None  #: (points,) float64, scalar unit
+    nearest_particle: Optional[np.ndarray] = None  #: (points,) int64, index of a fluid particle
+    point_keys: Optional[np.ndarray] = None  #: (points, 3) uint64
+    triangle_keys: Optional[np.ndarray] = None  #: (triangles, 2) uint64
+    #: {name: (points,) or (points, components)}: float64 means of real arrays, others as they are
+    attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
+    #: {name: particle} of the attributes that are left out, being NaN or infinite there
+    left_out: Dict[str, int] = dataclass_field(default_factory=dict)
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)  #: as mcor_statistics of mcor.h
+
+    def __repr__(self):
+        return (f"<Surface: {len(self.points)} points, {len(self.triangles)} triangles; "
+                f"arrays: {self._names(('points', 'triangles'))}>")
+
+    def point_arrays(self):
+        """{name: array} of all that points carry, under the names that VTK's filter gives them."""
+        arrays = dict(self.attributes)
+        for f in fields(self):
+            array = getattr(self, f.name)
+            if isinstance(array, np.ndarray) and f.name not in ("points", "triangles", "triangle_keys"):
+                arrays["".join(part.capitalize() for part in f.name.split("_"))] = array
+        return arrays
+
+    def to_pyvista(self):
+        """A pyvista.PolyData with all arrays of the surface."""
+        import pyvista
+
+        if not len(self.points):
+            return _empty_pyvista(self.point_arrays(), self.triangle_keys)
+        faces = np.insert(self.triangles.astype(np.int64), 0, 3, axis=1).ravel()
+        mesh = pyvista.PolyData(self.points, faces) if len(faces) else pyvista.PolyData(self.points)
+        for name, array in self.point_arrays().items():
+            mesh.point_data[name] = array
+        if self.triangle_keys is not None:
+            mesh.cell_data["TriangleKeys"] = self.triangle_keys
+        if self.normals is not None:
+            mesh.point_data.active_normals_name = "Normals"
+        mesh.set_active_scalars(None)  # colours are for the user to choose
+        return mesh
+
+    def to_trimesh(self):
+        """A trimesh.Trimesh with all arrays of the points as vertex_attributes."""
+        import trimesh
+
+        arrays = {name: array for name, array in self.point_arrays().items() if name != "Normals"}
+        normals = self.normals if len(self.points) else None
+        return trimesh.Trimesh(self.points, self.triangles, vertex_normals=normals, vertex_attributes=arrays,
+                               process=False)
+
+    def to_meshio(self):
+        """A meshio.Mesh with all arrays of the points that hold numbers."""
+        import meshio
+
+        arrays = {name: array.astype(np.uint8) if array.dtype == bool else array
+                  for name, array in self.point_arrays().items() if array.dtype.kind in "fiub"}
+        return meshio.Mesh(self.points, [("triangle", self.triangles)], point_data=arrays)
+
+    def save(self, path):
+        """Writes a file, whose name's end tells the format.
+
+        .npz: NumPy's, all arrays by their names, read by numpy.load(). .ply: with all arrays of
+        numbers as properties of the points. .vtp, .vtk, .stl, .obj: by PyVista. All others: by
+        meshio. Formats that hold no arrays get the triangles alone; a warning says so.
+        """
+        path = Path(path)
+        ending = path.suffix.lower()
+        if ending == ".npz":
+            arrays = {f.name: getattr(self, f.name) for f in fields(self)
+                      if isinstance(getattr(self, f.name), np.ndarray)}
+            np.savez_compressed(path, **arrays, **{f"attributes/{k}": v for k, v in self.attributes.items()})
+        elif ending == ".ply":
+            _save_ply(path, self)
+        elif ending in (".vtp", ".vtk", ".stl", ".obj"):
+            self.to_pyvista().save(path)
+        elif ending:
+            self.to_meshio().write(path)
+        else:
+            raise InvalidArgument(f"The file name '{path}' has no ending that tells the format, as .npz, .ply, .vtp.")
+        lost = sorted(set(self.point_arrays()) - {"Normals"})
+        if lost and ending in (".stl", ".obj", ".off"):
+            warn(f"A file {ending} holds no arrays: {', '.join(lost)} {'is' if len(lost) == 1 else 'are'} not in "
+                 f"{path.name}. Formats that hold them are .ply, .vtp and .npz.")
+
+
+def _empty_pyvista(point_arrays, triangle_keys):
+    """PyVista takes no arrays without elements; VTK does."""
+    import pyvista
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    mesh = pyvista.PolyData()
+    cells = {} if triangle_keys is None else {"TriangleKeys": triangle_keys}
+    for data, arrays in ((mesh.GetPointData(), point_arrays), (mesh.GetCellData(), cells)):
+        for name, array in arrays.items():
+            if array.dtype.kind in "fiub":
+                made = numpy_to_vtk(array.astype(np.uint8) if array.dtype == bool else array, deep=True)
+                made.SetNumberOfComponents(array.shape[1] if array.ndim > 1 else 1)
+                made.SetName(name)
+                data.AddArray(made)
+    if "Normals" in point_arrays:
+        mesh.GetPointData().SetActiveNormals("Normals")
+    return mesh
+
+
+PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "char", "u4": "uint", "u2": "ushort",
+             "u1": "uchar"}
+
+
+def _ply_columns(surface):
+    """[(property, column)] of the points. PLY has no whole numbers of 64 bits: they are written as double."""
+    columns = [("xyz"[axis], surface.points[:, axis]) for axis in range(3)]
+    if surface.normals is not None:
+        columns += [("n" + "xyz"[axis], surface.normals[:, axis]) for axis in range(3)]
+    for name, array in surface.point_arrays().items():
+        if name == "Normals" or array.dtype.kind not in "fiub":
+            continue
+        flat = array[:, None] if array.ndim == 1 else array.reshape(len(array), int(np.prod(array.shape[1:])))
+        name = "_".join(name.split())
+        for i in range(flat.shape[1]):
+            columns.append((name if array.ndim == 1 else f"{name}_{i}", flat[:, i]))
+    named = []
+    for name, column in columns:
+        column = column.astype(np.uint8) if column.dtype == bool else column
+        short = column.dtype.str[1:]
+        named.append((name, column if short in PLY_TYPES else column.astype(np.float64)))
+    return named
+
+
+def _save_ply(path, surface):
+    columns = _ply_columns(surface)
+    lines = ["ply", "format binary_little_endian 1.0", "comment marching-correctors",
+             f"element vertex {len(surface.points)}"]
+    lines += [f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns]
+    lines += [f"element face {len(surface.triangles)}", "property list uchar int vertex_indices", "end_header", ""]
+    kinds = [(str(i), "<" + column.dtype.str[1:]) for i, (_, column) in enumerate(columns)]
+    points = np.zeros(len(surface.points), kinds)
+    for i, (_, column) in enumerate(columns):
+        points[str(i)] = column
+    faces = np.zeros(len(surface.triangles), [("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, surface.triangles
+    with open(path, "wb") as file:
+        file.write("\n".join(lines).encode())
+        file.write(points.tobytes())
+        file.write(faces.tobytes())
+
+
+@dataclass(eq=False, repr=False)
+class Samples(Result):
+    """The field at points. Values are 0 where the field is not valid."""
+
+    weight_sum: np.ndarray  #: (points,) float64, of fluid particles
+    valid: np.ndarray  #: (points,) bool: the weight sum is not below node_threshold
+    values: Dict[str, np.ndarray]  #: {name: (points,) or (points, components)} float64
+    gradients: Dict[str, np.ndarray]  #: {name: (points, 3) or (points, components, 3)}, per L
+    weight_gradient: Optional[np.ndarray] = None  #: (points, 3), 1 / L
+    left_out: Dict[str, int] = dataclass_field(default_factory=dict)
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    def __repr__(self):
+        return (f"<Samples: {len(self.valid)} points, {int(self.valid.sum())} of them valid; "
+                f"arrays: {self._names(('valid',))}>")
+
+
+@dataclass(eq=False, repr=False)
+class Derivatives(Result):
+    """Gradients at the particles."""
+
+    gradients: Dict[str, np.ndarray]  #: {name: (particles, 3) or (particles, components, 3)}, per L
+    corrected: np.ndarray  #: (particles,) bool: where the corrected form was taken
+    left_out: Dict[str, int] = dataclass_field(default_factory=dict)
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    def __repr__(self):
+        return (f"<Derivatives: {len(self.corrected)} particles, {int(self.corrected.sum())} of them corrected; "
+                f"arrays: {self._names(('corrected',))}>")

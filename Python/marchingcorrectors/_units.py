@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arrays with units, of pint, unyt or astropy: all lengths are converted to the unit of the positions. What has a unit
+beside what has none is refused, as nobody can know what was meant."""
+from ._library import InvalidArgument
+
+
+def unit_of(thing):
+    """None where it has none."""
+    unit = getattr(thing, "units", None)
+    unit = getattr(thing, "unit", None) if unit is None else unit
+    return unit if unit is not None and callable(getattr(thing, "to", None)) else None
+
+
+def plain(thing):
+    """Its numbers, in its own unit."""
+    for name in ("magnitude", "value"):
+        if hasattr(thing, name):
+            return getattr(thing, name)
+    return thing
+
+
+def without_unit(thing):
+    return thing if unit_of(thing) is None else plain(thing)
+
+
+def convert(thing, unit, role, reference):
+    """The numbers of `thing` in the unit that `reference` has, None being no unit."""
+    if isinstance(thing, (list, tuple)) and any(unit_of(part) is not None for part in thing):
+        return [convert(part, unit, role, reference) for part in thing]
+    own = unit_of(thing)
+    if thing is None or own is None and unit is None:
+        return thing
+    if own is None or unit is None:
+        with_unit, bare = (role, reference) if unit is None else (reference, role)
+        raise InvalidArgument(f"The {with_unit} has the unit {own if unit is None else unit}, the {bare} has none. "
+                              "Give both with units, or both as plain numbers.")
+    try:
+        return plain(thing.to(unit))
+    except Exception as error:  # each library has its own
+        raise InvalidArgument(f"The {role} in {own} cannot be converted to {unit}: {error}") from None
+
+
+class Units:
+    """Of one call. Takes arguments as they were given, and makes plain numbers of them."""
+
+    def __init__(self, positions):
+        self.length = unit_of(positions)
+        self.positions = without_unit(positions)
+
+    def lengths(self, thing, role, power=1):
+        return convert(thing, self.length if self.length is None or power == 1 else self.length ** power, role,
+                       "array of positions")
+
+    def quantities(self, given):
+        """{smoothing_length, volume, mass, density}: mass / density is a volume in the positions' unit."""
+        mass, density = given["mass"], given["density"]
+        if mass is not None and density is not None:
+            own = unit_of(mass)
+            if own is None or unit_of(density) is None:
+                density = convert(density, own, "density", "mass")
+            else:
+                density = self.lengths(density, "density", 0) if self.length is None else \
+                    convert(density, own / self.length ** 3, "density", "mass")
+        return {"smoothing_length": self.lengths(given["smoothing_length"], "smoothing length"),
+                "volume": self.lengths(given["volume"], "volume", 3),
+                "mass": without_unit(mass), "density": without_unit(density)}
+
+    def options(self, words):
+        """cube_size, box and periodic are lengths."""
+        return {name: self.lengths(value, name) if name in ("box", "periodic") or name == "cube_size" and value
+                else value for name, value in words.items()}
+
+
+def scalar_and_iso(scalar, scalar_dot, iso):
+    """Plain numbers; the iso value in the scalar's unit, or in that of the dot product."""
+    unit, other = unit_of(scalar), unit_of(scalar_dot)
+    if scalar_dot is not None and (unit is None) != (other is None):
+        convert(scalar_dot, unit, "second vector of the dot product", "scalar")  # which refuses
+    if unit is not None and other is not None:
+        unit = unit * other
+    return without_unit(scalar), without_unit(scalar_dot), convert(iso, unit, "iso value", "scalar")

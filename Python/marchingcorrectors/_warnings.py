@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The core's warnings as Python's."""
+import ctypes
+import sys
+import warnings
+
+import numpy as np
+
+from . import _structs as c
+from ._library import _free, lib
+
+_pointer = ctypes.POINTER
+lib.mcor_describe_warning.restype = ctypes.c_void_p
+lib.mcor_describe_warning.argtypes = [ctypes.c_int, _pointer(c.mcor_input), _pointer(c.mcor_options),
+                                      _pointer(c.mcor_surface)]
+lib.mcor_describe_unused_type.restype = ctypes.c_void_p
+lib.mcor_describe_unused_type.argtypes = [ctypes.c_char_p, _pointer(ctypes.c_double), _pointer(ctypes.c_int64),
+                                          ctypes.c_int]
+
+
+class InputWarning(UserWarning):
+    """Something about the particles or options is legal, but hardly what was meant."""
+
+
+def warn(sentence):
+    """At the caller's line, which is the first one outside of this package."""
+    level, frame = 1, sys._getframe(0)
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, InputWarning, stacklevel=level)
+
+
+def take_text(pointer):
+    """A text of the core, which is freed; "" for NULL."""
+    if not pointer:
+        return ""
+    try:
+        return ctypes.string_at(pointer).decode(errors="replace")
+    finally:
+        _free(pointer)
+
+
+def describe_warnings(arguments, surface):
+    """{number: sentence} of what the core finds strange about a surface's input."""
+    found = {}
+    for number in range(c.ENUMS["mcor_warning"]["MCOR_WARNING_COUNT"]):
+        text = take_text(lib.mcor_describe_warning(
+            number, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)))
+        if text:
+            found[number] = text
+    return found
+
+
+def describe_unused_type(name, values):
+    """A sentence about an array of particle types where all particles count as fluid, or ""."""
+    kinds, counts = np.unique(np.asarray(values), return_counts=True)
+    if not 2 <= len(kinds) <= 8:  # the core's limit, before arrays are made for it
+        return ""
+    return take_text(lib.mcor_describe_unused_type(
+        name.encode(errors="replace"), (ctypes.c_double * len(kinds))(*kinds.tolist()),
+        (ctypes.c_int64 * len(kinds))(*counts.tolist()), len(kinds)))

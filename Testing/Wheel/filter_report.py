@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the VTK filter, whichever there is, says and makes of particle files, as JSON.
+
+    filter_report.py CASES.json
+CASES: [[file, scalar, iso value, {property: value}]]
+"""
+import hashlib
+import json
+import re
+import sys
+
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_STRING
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from marchingcorrectors import vtkMarchingCorrectors
+
+STATISTICS = ("Points", "Triangles", "VirtualCells", "SeedCells", "CellsUsed", "FluidParticles", "PeriodicBounds",
+              "CubeSize", "ScalarRange", "SmoothingLengthRange", "IsoValues")
+
+
+def hash_of(array):
+    values = vtk_to_numpy(array)
+    return f"{values.dtype} {values.shape} {hashlib.sha256(values.tobytes()).hexdigest()[:16]}"
+
+
+def report(file, scalar, value, properties):
+    reader, extract, said = vtkXMLPolyDataReader(), vtkMarchingCorrectors(), []
+    reader.SetFileName(file)
+    reader.Update()
+    extract.SetInputData(reader.GetOutput())
+    extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, scalar)
+    extract.SetValue(0, value)
+    for name, setting in properties.items():
+        getattr(extract, "Set" + name)(setting)
+
+    def keep(_, event, text):
+        said.append(re.sub(r"(?s)^.*\(0x[0-9a-f]+\): ", "", text).strip())
+
+    keep.CallDataType = VTK_STRING
+    extract.AddObserver("WarningEvent", keep)
+    extract.AddObserver("ErrorEvent", lambda *_: None)
+    extract.Update()
+    surface = extract.GetOutput()
+    data, fields = surface.GetPointData(), surface.GetFieldData()
+    arrays = {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    found = {"warnings": said, "error": extract.GetErrorMessage(), "arrays": arrays,
+             "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
+             "fields": {name: vtk_to_numpy(data.GetArray(name)).tolist() for name in STATISTICS
+                        for data in (fields, extract.GetRunStatistics()) if data.HasArray(name)}}
+    if surface.GetNumberOfPoints():
+        found["points"] = hash_of(surface.GetPoints().GetData())
+        found["triangles"] = hashlib.sha256(vtk_to_numpy(
+            surface.GetPolys().GetConnectivityArray()).astype("i8").tobytes()).hexdigest()[:16]
+    return found
+
+
+def main():
+    with open(sys.argv[1]) as file:
+        cases = json.load(file)
+    print("report:" + json.dumps({"class": vtkMarchingCorrectors.__module__,
+                                  "cases": [report(*case) for case in cases]}))
+
+
+if __name__ == "__main__":
+    main()

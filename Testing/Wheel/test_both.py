@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The same files through the wheel's filter, its accessor, and the C++ filter: the same warnings, errors, arrays,
+bits and statistics. The C++ filter runs in the Python that it was built for."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pyvista
+
+import marchingcorrectors as mc
+
+DATA = Path(os.environ["MCOR_TEST_DATA"])
+REPORT = Path(__file__).with_name("filter_report.py")
+N = 14
+
+
+def lattice(folder, name, arrays, fields=(), positions=None, h=0.13):
+    """A file of particles on a lattice, somewhat out of order."""
+    x = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), -1).reshape(-1, 3) * 0.1 if positions is None \
+        else positions
+    x = x + np.random.default_rng(1).normal(0, 0.004, x.shape) * (positions is None)
+    particles = pyvista.PolyData(x.astype(np.float32))
+    particles["SmoothingLength"] = np.full(len(x), h, np.float32)
+    for array, make in arrays.items():
+        particles[array] = make(x)
+    for field, values in dict(fields).items():
+        particles.field_data[field] = values
+    particles.save(folder / name)
+    return str(folder / name)
+
+
+def distance(x):
+    return np.linalg.norm(x - 0.65, axis=1).astype(np.float32)
+
+
+def component(axis, kind=np.float32):
+    return lambda x: (x[:, axis] - 0.65).astype(kind)
+
+
+PARTS = {"vx": component(0), "vy": component(1), "vz": component(2)}
+
+
+def make_cases(folder):
+    plane = np.stack(np.meshgrid(np.arange(40.0), np.arange(40.0), [0.0], indexing="ij"), -1).reshape(-1, 3) * 0.1
+    dam, small = str(DATA / "dam_break_45k.vtp"), str(DATA / "double_dam_break_small.vtp")
+    fluid = {"FluidArrayName": "ParticleType"}
+    r = {"R": distance}
+    return {
+        "as it is": [small, "Speed", 1.5, {}],
+        "with walls": [dam, "Velocity", 1.0, fluid],
+        "unused type": [dam, "Pressure", 2000.0, {"Kernel": 4}],
+        "free surface": [dam, "", 0.0, {**fluid, "FreeSurface": 1, "Solids": 2}],
+        "iso value": [lattice(folder, "a.vtp", r), "R", 99.0, {}],
+        "neighbours": [lattice(folder, "b.vtp", r, h=0.3), "R", 0.4, {}],
+        "few neighbours": [lattice(folder, "c.vtp", r, h=0.07), "R", 0.4, {}],
+        "plane": [lattice(folder, "d.vtp", r, positions=plane), "R", 1.0, {}],
+        "units": [lattice(folder, "e.vtp", {**r, "Mass": lambda x: np.full(len(x), 1e-9),
+                                            "Density": lambda x: np.ones(len(x))}), "R", 0.4, {}],
+        "all trimmed": [lattice(folder, "f.vtp", r), "R", 0.4, {"VertexThreshold": 5.0}],
+        "velocity": [lattice(folder, "g.vtp", PARTS), "Velocity", 0.4, {}],
+        "velocity of doubles": [lattice(folder, "h.vtp", {**PARTS, "vy": component(1, np.float64)}), "vx", 0.1, {}],
+        "velocity there": [lattice(folder, "i.vtp", {**PARTS, "Velocity": distance}), "Velocity", 0.4, {}],
+        "two parts": [lattice(folder, "j.vtp", {"vx": component(0), "vy": component(1)}), "Velocity", 0.4, {}],
+        "bad attribute": [lattice(folder, "k.vtp", {**r, "T": lambda x: np.where(x[:, 0] > 1.2, np.nan, 1.0)}),
+                          "R", 0.4, {}],
+        "no length": [lattice(folder, "l.vtp", {"Rhop": distance, "Idp": lambda x: np.arange(len(x))}), "Rhop", 0.4,
+                      {"SmoothingLengthArrayName": "nonsuch"}],
+        "period": [lattice(folder, "m.vtp", r, {"boxsize": [1.4, 0.0, 0.0]}), "R", 0.4, {"DetectPeriod": 1}],
+        "period of SPH-EXA": [lattice(folder, "n.vtp", r, {"box": [-0.05, 1.35, 0, 9, -0.05, 1.35],
+                                                           "boundaryType": [1, 0, 1]}),
+                              "R", 0.6, {"DetectPeriod": 1, "Capping": 1}],
+        "no period": [lattice(folder, "o.vtp", r, {"BoxSize": [-1.0]}), "R", 0.4, {"DetectPeriod": 1}],
+    }
+
+
+WANTED = {"unused type": "'ParticleType' is not used.*44880 x 0, 55348 x 1", "iso value": "Iso value 99 is outside",
+          "neighbours": "neighbours within its support", "few neighbours": "not in the unit", "plane": "lie in a plane",
+          "units": "node threshold", "all trimmed": "vertex threshold 5", "bad attribute": "'T' is NaN"}
+
+
+class Test(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.cases = make_cases(Path(cls.folder.name))
+        cls.wheel = cls.run_report(sys.executable, {})
+        assert "MarchingCorrectorsFilter" in cls.wheel["class"], cls.wheel["class"]
+
+    @classmethod
+    def run_report(cls, python, environment):
+        file = Path(cls.folder.name) / "cases.json"
+        file.write_text(json.dumps(list(cls.cases.values())))
+        done = subprocess.run([python, str(REPORT), str(file)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True, env={**os.environ, **environment})
+        assert done.returncode == 0, done.stderr[-3000:]
+        line, = [line for line in done.stdout.splitlines() if line.startswith("report:")]
+        return json.loads(line[len("report:"):])
+
+    def test_warnings(self):
+        for name, found in zip(self.cases, self.wheel["cases"]):
+            if name in WANTED:
+                self.assertEqual(len(found["warnings"]), 1, (name, found["warnings"]))
+                self.assertRegex(found["warnings"][0], WANTED[name])
+            else:
+                self.assertEqual(found["warnings"], [], name)
+            fails = name in ("two parts", "no length", "no period")
+            self.assertEqual(bool(found["error"]), fails, (name, found["error"]))
+            empty = fails or name in ("iso value", "units", "all trimmed")
+            self.assertEqual("points" in found, not empty, name)
+        velocity = self.wheel["cases"][list(self.cases).index("velocity")]["arrays"]
+        self.assertTrue(velocity["Velocity"].startswith("float32 ("), velocity)
+        doubles = self.wheel["cases"][list(self.cases).index("velocity of doubles")]["arrays"]
+        self.assertTrue(doubles["Velocity"].startswith("float64 ("), doubles)
+
+    @unittest.skipUnless(os.environ.get("MCOR_TEST_VTK_PYTHON"), "the C++ filter was built without Python")
+    def test_as_in_cxx(self):
+        cxx = self.run_report(os.environ["MCOR_TEST_VTK_PYTHON"], {"PYTHONPATH": os.environ["MCOR_TEST_VTK_PATH"]})
+        self.assertNotIn("MarchingCorrectorsFilter", cxx["class"])
+        for name, found, expected in zip(self.cases, self.wheel["cases"], cxx["cases"]):
+            for part in sorted({*found, *expected}):
+                self.assertEqual(found.get(part), expected.get(part), f"{name}: {part}")
+
+    def test_accessor(self):
+        """As doubles, with the same arrays and sentences."""
+        words_of = {"Kernel": lambda value: {"sph_kernel": value},
+                    "VertexThreshold": lambda value: {"vertex_threshold": value},
+                    "FluidArrayName": lambda value: {"fluid": (value, 0)},
+                    "DetectPeriod": lambda value: {"periodic": "auto"}, "Capping": lambda value: {"capping": True},
+                    "SmoothingLengthArrayName": lambda value: {"smoothing_length": value}}
+        compared = 0
+        for (name, (file, scalar, value, properties)), found in zip(self.cases.items(), self.wheel["cases"]):
+            words = {}
+            for key, setting in properties.items():
+                words.update(words_of.get(key, lambda setting: {})(setting))
+            if "FreeSurface" in properties:
+                continue
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                try:
+                    surface = pyvista.read(file).sph.isosurface(scalar, value, **words)
+                except mc.Error as error:
+                    self.assertTrue(found["error"], f"{name}: {error}")
+                    continue
+            self.assertEqual(found["error"], "", name)
+            sentences = [str(warning.message) for warning in caught]
+            self.assertEqual(len(sentences), len(found["warnings"]), (name, sentences))
+            for mine, its in zip(sentences, found["warnings"]):
+                if name == "bad attribute":
+                    self.assertRegex(mine, "attribute 'T' is NaN or infinite at particle")
+                elif name == "unused type":
+                    self.assertEqual(mine.split(". If")[0], its.split(". If")[0])
+                    self.assertIn("say fluid=('ParticleType', VALUE)", mine)
+                else:
+                    self.assertEqual(mine, its.replace(f"range of {scalar}", "range of the scalar"))
+            self.assertEqual(surface.n_points, found["fields"]["Points"][0], name)
+            self.assertEqual(surface.n_cells, found["fields"]["Triangles"][0], name)
+            computed = {scalar, scalar + "_Magnitude", "Normals"}  # the filter's iso value
+            self.assertEqual(set(surface.point_data.keys()) | computed, set(found["arrays"]) | computed, name)
+            compared += 1
+        self.assertGreater(compared, 12)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,356 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What people at a prompt meet: signatures and help, misspelt names, repr and ==, warnings, units, data frames,
+DLPack, bars, files, copies."""
+import contextlib
+import copy
+import inspect
+import io
+import pickle
+import re
+import subprocess
+import sys
+import tempfile
+import typing
+import unittest
+import warnings
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pandas
+import pint
+import pyvista
+import trimesh
+import unyt
+
+import marchingcorrectors as mc
+from marchingcorrectors import _options, _structs
+from test_numpy import DISTANCE, H, N, POSITIONS, V, quietly, sphere
+
+COUNT = len(POSITIONS)
+
+
+def caught(function, *arguments, **words):
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        function(*arguments, **words)
+    return found
+
+
+class Signatures(unittest.TestCase):
+    def functions(self):
+        sph = pyvista.PolyData(POSITIONS).sph
+        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives,
+                sph.isosurface, sph.free_surface, sph.probe, sph.derivatives]
+
+    def test_options_are_those_of_the_header(self):
+        """All but what only ranks need, and what is said in another way."""
+        numbers = {name for struct in ("mcor_options", "mcor_input") for name in _structs.KINDS[struct]}
+        others = {name for name in numbers if name.startswith("has_") or name.endswith("_count") or name in (
+            "count", "positions", "smoothing_length", "volume", "mass", "density", "scalar", "scalar_dot",
+            "whole_box", "progress")}
+        self.assertEqual(set(_options.Options.__annotations__), numbers - others,
+                         "add it to Options and WORDS of _options.py")
+        self.assertEqual(set(_options.WORDS), set(_options.Options.__annotations__))
+        for name, hint in _options.Options.__annotations__.items():
+            kind = _options.kind_of(name)
+            if kind in _structs.ENUMS:
+                words = _options.words_of(kind)
+                self.assertEqual(list(typing.get_args(hint)), words, name)
+                self.assertIn(_options.default_of(name), words, name)
+
+    def test_every_parameter_is_shown_and_explained(self):
+        for function in self.functions():
+            parameters = inspect.signature(function).parameters
+            self.assertGreater(len(parameters), 15, function)
+            text = inspect.getdoc(function) + ("" if "isosurface()" not in inspect.getdoc(function)
+                                               else inspect.getdoc(mc.isosurface))
+            heads = [re.findall(r"\w+", line.split(":")[0]) for line in text.split("\n") if ":" in line]
+            for name, parameter in parameters.items():
+                self.assertNotEqual(parameter.kind, parameter.VAR_KEYWORD, function)
+                self.assertTrue(any(name in words for words in heads), f"{function} does not explain {name}")
+            self.assertNotIn("MCOR", text)
+            self.assertNotIn("{options}", text)
+        self.assertEqual(inspect.signature(mc.isosurface).parameters["sph_kernel"].default, "cubic")
+        self.assertEqual(inspect.signature(mc.isosurface).parameters["precision"].default, "float32")
+        self.assertNotIn("capping", inspect.signature(mc.probe).parameters)
+
+    def test_shown_defaults_are_the_defaults(self):
+        """What the signature says, said again, changes nothing."""
+        shown = {name: parameter.default for name, parameter in inspect.signature(mc.isosurface).parameters.items()
+                 if name in _options.ISOSURFACE}
+        again = sphere(**shown)
+        self.assertEqual(again, sphere())
+        self.assertEqual(again.statistics["cells_used"], sphere().statistics["cells_used"])
+
+    def test_misspelt(self):
+        sph = pyvista.PolyData(POSITIONS).sph
+        for call, words, right in (
+                (sphere, {"smoothing_lenght": 1}, "'smoothing_length'"), (sphere, {"kernel": "cubic"}, "'sph_kernel'"),
+                (sphere, {"attribute": {}}, "'attributes'"), (sphere, {"vertex_treshold": 1}, "'vertex_threshold'"),
+                (sph.free_surface, {"smoothing_length": H, "fluids": 1}, "'fluid'"),
+                (sph.free_surface, {"estimate_smoothing": True}, "'estimate_smoothing_length'")):
+            with self.assertRaisesRegex(TypeError, rf"no option '{list(words)[-1]}'\. Did you mean {right}\?"):
+                call(**words)
+        with self.assertRaisesRegex(TypeError, r"probe\(\) has no option 'capping'"):
+            mc.probe(POSITIONS, POSITIONS, smoothing_length=H, capping=True)
+        with self.assertRaisesRegex(mc.InvalidArgument, "not 'wendlnd'. Did you mean 'wendland'?"):
+            sphere(sph_kernel="wendlnd")
+        for word in ("wendland_c2", "Wendland C2", "WENDLAND"):
+            self.assertEqual(sphere(sph_kernel=word), sphere(sph_kernel="wendland"))
+
+    def test_values_that_cannot_be(self):
+        for name in ("smoothing_length", "volume", "mass", "density"):
+            for value in (0, 0.0, -1, float("nan")):
+                words = {"volume": None, "mass": 1.0, name: value}
+                with self.assertRaisesRegex(mc.InvalidArgument,
+                                            rf"{name.replace('_', ' ')} is .*; it must be greater than 0"):
+                    sphere(**words)
+        zeros = np.full(COUNT, H)
+        zeros[11] = 0
+        with self.assertRaisesRegex(mc.InvalidData, "smoothing length.* 11 "):
+            sphere(smoothing_length=zeros)
+
+
+class Objects(unittest.TestCase):
+    def test_repr(self):
+        surface = sphere(attributes={"a": DISTANCE, "b": POSITIONS}, weight_sum=True)
+        self.assertEqual(repr(surface), f"<Surface: {len(surface.points)} points, {len(surface.triangles)} triangles; "
+                         "arrays: normals; weight_sum; attributes of a, b>")
+        found = mc.probe(POSITIONS, POSITIONS[:5] + 99, smoothing_length=H, attributes={"a": DISTANCE})
+        self.assertRegex(repr(found), "^<Samples: 5 points, 0 of them valid; arrays: weight_sum; values of a")
+        derived = mc.derivatives(POSITIONS, {"a": DISTANCE}, smoothing_length=H)
+        self.assertRegex(repr(derived), rf"^<Derivatives: {COUNT} particles, \d+ of them corrected")
+        for thing in (surface, found, derived, mc.Context()):
+            self.assertLess(len(repr(thing)), 200)
+
+    def test_equal(self):
+        one, same, other = sphere(attributes={"a": DISTANCE}), sphere(attributes={"a": DISTANCE}), sphere()
+        self.assertTrue(one == same and not one != same)
+        self.assertTrue(one != other and not one == other)
+        same.points[0] += 1
+        self.assertFalse(one == same)
+        self.assertFalse(one == "a surface")
+        where = mc.probe(POSITIONS, POSITIONS, smoothing_length=H)
+        self.assertEqual(where, mc.probe(POSITIONS, POSITIONS, smoothing_length=H))
+        self.assertEqual(pickle.loads(pickle.dumps(one)), one)
+
+    def test_context_is_not_copied(self):
+        """Both would give the same device back."""
+        with mc.Context() as context:
+            for make in (copy.copy, copy.deepcopy, pickle.dumps):
+                with self.assertRaisesRegex(TypeError, "cannot be copied or pickled"):
+                    make(context)
+            self.assertEqual(sphere(context=context), sphere())
+
+
+class Warned(unittest.TestCase):
+    def test_nothing(self):
+        self.assertEqual(caught(sphere), [])
+
+    def test_of_the_core(self):
+        for words, sentence in (({"iso": 99.0}, "Iso value 99 is outside of the range"),
+                                ({"smoothing_length": 0.5}, "neighbours within its support radius.*support radius"),
+                                ({"volume": V / 1000}, "node threshold 0.1")):
+            found = caught(sphere, **words)
+            self.assertEqual(len(found), 1, [str(w.message) for w in found])
+            self.assertIs(found[0].category, mc.InputWarning)
+            self.assertRegex(str(found[0].message), sentence)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", mc.InputWarning)
+            with self.assertRaises(mc.InputWarning):
+                sphere(iso=99.0)
+        self.assertGreater(len(sphere().triangles), 500)
+
+    def test_at_the_callers_line(self):
+        particles = pyvista.PolyData(POSITIONS)
+        particles["a"] = DISTANCE
+        for call in (lambda: mc.isosurface(POSITIONS, DISTANCE, 99.0, smoothing_length=H, volume=V),
+                     lambda: particles.sph.isosurface("a", 99.0, smoothing_length=H, volume=V)):
+            self.assertEqual([w.filename for w in caught(call)], [__file__])
+
+
+class Inputs(unittest.TestCase):
+    def test_data_frames(self):
+        frame = pandas.DataFrame(POSITIONS, columns=list("xyz"))
+        frame["distance"], frame["id"] = DISTANCE, np.arange(COUNT)
+        found = mc.isosurface(frame[["x", "y", "z"]], frame["distance"], 0.4, smoothing_length=H, volume=V,
+                              attributes=frame[["distance", "id"]])
+        self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "id": np.arange(COUNT)}))
+
+    def test_dlpack(self):
+        class Tensor:
+            """All that such a library must have."""
+
+            def __init__(self, array):
+                self.array = array
+
+            def __dlpack__(self, **words):
+                return self.array.__dlpack__(**words)
+
+            def __dlpack_device__(self):
+                return self.array.__dlpack_device__()
+
+        class Elsewhere(Tensor):
+            def __dlpack_device__(self):
+                return (2, 0)
+
+            def __dlpack__(self, **words):
+                raise BufferError("it is on a GPU")
+
+        found = mc.isosurface(Tensor(POSITIONS), Tensor(DISTANCE), 0.4, smoothing_length=H, volume=V)
+        self.assertEqual(found, sphere())
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar is no array in this computer's memory"):
+            mc.isosurface(POSITIONS, Elsewhere(DISTANCE), 0.4, smoothing_length=H)
+
+    def test_units(self):
+        """Metres beside centimetres, in two libraries."""
+        registry = pint.UnitRegistry()
+        for metre, centimetre, kilogram, gram, second in (
+                (registry.m, registry.cm, registry.kg, registry.g, registry.s),
+                (unyt.m, unyt.cm, unyt.kg, unyt.g, unyt.s)):
+            words = {"smoothing_length": 100 * H * centimetre, "attributes": {"a": DISTANCE * second}}
+            found = mc.isosurface(POSITIONS * metre, DISTANCE * metre, 40.0 * centimetre,
+                                  volume=1e6 * V * centimetre ** 3, **words)
+            np.testing.assert_allclose(found.points, sphere().points, atol=1e-6)
+            self.assertIs(type(found.points), np.ndarray)
+            found = mc.isosurface(POSITIONS * metre, DISTANCE * metre, [0.4 * metre], mass=1.0 * gram,
+                                  density=1.0 * kilogram / metre ** 3, **words)
+            np.testing.assert_allclose(found.points, sphere().points, atol=1e-6)
+            where = mc.probe(POSITIONS * metre, 100 * POSITIONS * centimetre, volume=V * metre ** 3, **words)
+            plain = mc.probe(POSITIONS, POSITIONS, volume=V, smoothing_length=H, attributes={"a": DISTANCE})
+            np.testing.assert_allclose(where.values["a"], plain.values["a"], atol=1e-6)
+            for wrong in ({"smoothing_length": H}, {"smoothing_length": H * second}, {"cube_size": 0.1},
+                          {"iso": 0.4 * second}, {"iso": 0.4}, {"volume": V}, {"box": (0, 1) * 3},
+                          {"mass": 1.0 * gram, "density": 1.0}, {"tolerance": 1e-6 * metre}):
+                with self.assertRaises(mc.InvalidArgument, msg=str(wrong)):
+                    mc.isosurface(POSITIONS * metre, DISTANCE * metre, **{"iso": 0.4 * metre, **words, **wrong})
+            with self.assertRaisesRegex(mc.InvalidArgument, "length has the unit .*, the array of positions has none"):
+                sphere(smoothing_length=H * metre)
+            with self.assertRaisesRegex(mc.InvalidArgument, "iso value"):
+                sphere(iso=0.4 * metre)
+        with self.assertRaisesRegex(mc.InvalidArgument, "cannot be converted"):
+            mc.free_surface(POSITIONS * unyt.m, smoothing_length=H * registry.m)
+
+    def test_period_of_three_lengths(self):
+        words = {"smoothing_length": H, "volume": V}
+        x = POSITIONS - POSITIONS.min(axis=0)
+        self.assertEqual(mc.free_surface(x, periodic=(1.4, 1.4, 0), **words),
+                         mc.free_surface(x, periodic=(0, 1.4, 0, 1.4, 0, 0), **words))
+        with self.assertRaisesRegex(mc.InvalidArgument, "6 numbers"):
+            mc.free_surface(x, periodic=(1, 2), **words)
+
+
+class Bars(unittest.TestCase):
+    def test_tqdm(self):
+        screen = io.StringIO()
+        with contextlib.redirect_stderr(screen):
+            found = sphere(progress=True)
+        self.assertEqual(found, sphere())
+        self.assertRegex(screen.getvalue(), r"output: 100%")
+
+    def test_of_the_caller(self):
+        from tqdm import tqdm
+
+        with tqdm(total=1.0, file=io.StringIO(), mininterval=0) as bar:
+            found = sphere(progress=lambda fraction, phase: bar.update(fraction - bar.n))
+            self.assertAlmostEqual(bar.n, 1.0)
+        self.assertEqual(found, sphere())
+
+    def test_without_tqdm(self):
+        script = ("import sys; sys.modules['tqdm'] = None; import test_numpy; test_numpy.sphere(progress=True)")
+        done = subprocess.run([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True,
+                              cwd=Path(__file__).parent)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"(?s)^ +\d+ % \w.*\n +\d+ % output *\n$")
+
+    def test_what_is_no_callback(self):
+        self.assertEqual(sphere(progress=False), sphere())
+        with self.assertRaisesRegex(mc.InvalidArgument, "progress is 'yes'; it must be True"):
+            sphere(progress="yes")
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.surface = sphere(weight_sum=True, attributes={"speed": DISTANCE, "where": POSITIONS,
+                                                           "id": np.arange(COUNT)})
+
+    def save(self, name, surface=None):
+        path = Path(self.folder.name) / name
+        found = caught((surface or self.surface).save, path)
+        return path, [str(w.message) for w in found]
+
+    def test_npz(self):
+        path, _ = self.save("a.npz")
+        with np.load(path) as arrays:
+            self.assertEqual(arrays["points"].tobytes(), self.surface.points.tobytes())
+            self.assertEqual(arrays["attributes/id"].tolist(), self.surface.attributes["id"].tolist())
+
+    def test_meshes(self):
+        for name in ("a.ply", "a.vtp", "a.vtk", "a.vtu", "a.xdmf"):
+            path, sentences = self.save(name)
+            mesh = meshio.read(path) if name == "a.xdmf" else pyvista.read(path)
+            points = mesh.points
+            np.testing.assert_allclose(points, self.surface.points, atol=1e-6, err_msg=name)
+            corners = mesh.cells_dict["triangle"] if name == "a.xdmf" else \
+                mesh.cells_dict[5] if name == "a.vtu" else mesh.faces.reshape(-1, 4)[:, 1:]
+            self.assertEqual(corners.tolist(), self.surface.triangles.tolist(), name)
+            data = mesh.point_data
+            if name != "a.ply":  # of which PyVista reads the triangles alone
+                np.testing.assert_allclose(data["speed"], self.surface.attributes["speed"], err_msg=name)
+                np.testing.assert_allclose(data["where"], self.surface.attributes["where"], err_msg=name)
+            self.assertEqual(sentences, [])
+
+    def test_ply_holds_all(self):
+        path, _ = self.save("a.ply")
+        mesh = meshio.read(path)
+        self.assertEqual(mesh.points.tobytes(), self.surface.points.tobytes())
+        self.assertEqual(mesh.cells_dict["triangle"].tolist(), self.surface.triangles.tolist())
+        np.testing.assert_array_equal(mesh.point_data["speed"], self.surface.attributes["speed"])
+        np.testing.assert_array_equal(mesh.point_data["where_1"], self.surface.attributes["where"][:, 1])
+        np.testing.assert_array_equal(mesh.point_data["id"], self.surface.attributes["id"])
+        np.testing.assert_array_equal(mesh.point_data["nz"], self.surface.normals[:, 2])
+        loaded = trimesh.load(path, process=False)
+        self.assertEqual(len(loaded.faces), len(self.surface.triangles))
+
+    def test_formats_without_arrays(self):
+        for name in ("a.stl", "a.obj"):
+            path, sentences = self.save(name)
+            self.assertRegex("".join(sentences), r"holds no arrays: WeightSum, id, speed, where are not in a\.")
+            self.assertEqual(len(trimesh.load(path).faces), len(self.surface.triangles))
+            self.assertEqual(self.save(name, sphere())[1], [])
+        with self.assertRaisesRegex(mc.InvalidArgument, "no ending"):
+            self.surface.save(Path(self.folder.name) / "a")
+
+    def test_other_libraries(self):
+        mesh = self.surface.to_trimesh()
+        self.assertEqual(mesh.faces.tolist(), self.surface.triangles.tolist())
+        self.assertEqual(mesh.vertices.tolist(), self.surface.points.tolist())
+        np.testing.assert_allclose(mesh.vertex_attributes["speed"], self.surface.attributes["speed"])
+        self.assertTrue(mc.free_surface(POSITIONS, smoothing_length=H).to_trimesh().is_watertight)
+        mesh = self.surface.to_meshio()
+        self.assertEqual(mesh.cells_dict["triangle"].tolist(), self.surface.triangles.tolist())
+        np.testing.assert_array_equal(mesh.point_data["WeightSum"], self.surface.weight_sum)
+
+    def test_empty(self):
+        words = {"attributes": {"a": DISTANCE, "v": POSITIONS, "id": np.arange(COUNT)}, "point_keys": True,
+                 "triangle_keys": True}
+        empty, full = quietly(sphere, iso=99.0, **words), sphere(**words)
+        mesh = empty.to_pyvista()
+        self.assertEqual((mesh.n_points, mesh.n_cells), (0, 0))
+        self.assertEqual(sorted(mesh.point_data.keys()), sorted(full.to_pyvista().point_data.keys()))
+        self.assertEqual(mesh.GetPointData().GetArray("v").GetNumberOfComponents(), 3)
+        self.assertEqual(full.to_pyvista().cell_data["TriangleKeys"].shape, (full.triangles.shape[0], 2))
+        self.assertEqual(len(empty.to_trimesh().faces), 0)
+        self.assertEqual(len(empty.to_meshio().points), 0)
+        for name in ("a.npz", "a.ply", "a.vtp"):
+            path, _ = self.save(name, empty)
+            if name != "a.npz":
+                self.assertEqual(pyvista.read(path).n_cells, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHResample
+ * @brief   the field of SPH particles on a slice, along a line or in a volume
+ *
+ * vtkSPHResample is vtkSPHProbe for those who have no points yet: the particles are its one input, and it
+ * makes the points:
+ *
+ *     SLICE (default)   quads of a plane, around what the box of the fluid's particles has of it
+ *     LINE              points from Point1 to Point2, with their distance from the first as arc_length
+ *     VOLUME            a vtkImageData around that box
+ *
+ * With FitBounds (the default) the slice goes through the middle of the fluid, the line along the longest
+ * side of its box, through the middle, and the volume is that box; all with 3 % of the longest side around.
+ *
+ * Where there is no fluid (less than WeightThreshold) arrays are NaN, see SetNaNOutside(), and a slice has
+ * no quads, see SetOnlyFluid(). Active scalars are velocities, else the first vector or scalar that varies.
+ *
+ * Blocks of composite data are one set of particles, always. Where the controller has many processes, each
+ * has a part of the volume; a slice or line is on the first one.
+ *
+ * @sa
+ * vtkSPHProbe vtkSPHAlgorithm vtkMarchingCorrectors vtkResampleToImage
+ */
+
+#ifndef vtkSPHResample_h
+#define vtkSPHResample_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHProbe.h"
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHResample : public vtkSPHProbe
+{
+public:
+  static vtkSPHResample* New();
+  vtkTypeMacro(vtkSPHResample, vtkSPHProbe);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum ShapeType
+  {
+    SLICE = 0,
+    LINE = 1,
+    VOLUME = 2
+  };
+
+  ///@{
+  /**
+   * What the points are, see ShapeType; SLICE by default.
+   */
+  vtkSetClampMacro(Shape, int, SLICE, VOLUME);
+  vtkGetMacro(Shape, int);
+  void SetShapeToSlice() { this->SetShape(SLICE); }
+  void SetShapeToLine() { this->SetShape(LINE); }
+  void SetShapeToVolume() { this->SetShape(VOLUME); }
+  ///@}
+
+  ///@{
+  /**
+   * Fit Origin, Point1 and Point2, or Bounds to the fluid's particles instead of taking what is set. On by
+   * default.
+   */
+  vtkSetMacro(FitBounds, vtkTypeBool);
+  vtkGetMacro(FitBounds, vtkTypeBool);
+  vtkBooleanMacro(FitBounds, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * The plane of a slice: a point of it (unit L), and its normal, (0, 0, 1) by default.
+   */
+  vtkSetVector3Macro(Origin, double);
+  vtkGetVector3Macro(Origin, double);
+  vtkSetVector3Macro(Normal, double);
+  vtkGetVector3Macro(Normal, double);
+  ///@}
+
+  ///@{
+  /**
+   * The ends of a line, unit L.
+   */
+  vtkSetVector3Macro(Point1, double);
+  vtkGetVector3Macro(Point1, double);
+  vtkSetVector3Macro(Point2, double);
+  vtkGetVector3Macro(Point2, double);
+  ///@}
+
+  ///@{
+  /**
+   * The bounds of a volume: x0, x1, y0, y1, z0, z1, unit L.
+   */
+  vtkSetVector6Macro(Bounds, double);
+  vtkGetVector6Macro(Bounds, double);
+  ///@}
+
+  ///@{
+  /**
+   * How many points a slice has along its longer side, or a line; 2 and more, 500 by default.
+   */
+  vtkSetClampMacro(Resolution, int, 2, 100000);
+  vtkGetMacro(Resolution, int);
+  ///@}
+
+  ///@{
+  /**
+   * How many points a volume has along x, y and z; 100 each by default.
+   */
+  vtkSetVector3Macro(Dimensions, int);
+  vtkGetVector3Macro(Dimensions, int);
+  ///@}
+
+  ///@{
+  /**
+   * Leave quads of a slice out that have a corner without fluid. On by default.
+   */
+  vtkSetMacro(OnlyFluid, vtkTypeBool);
+  vtkGetMacro(OnlyFluid, vtkTypeBool);
+  vtkBooleanMacro(OnlyFluid, vtkTypeBool);
+  ///@}
+
+protected:
+  vtkSPHResample();
+  ~vtkSPHResample() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  const char* GetOutputClassName(const char* inputClassName) override;
+  void Process(vtkDataObject* input, vtkDataObject* output) override;
+  bool TakesTogether() const override { return true; }
+
+  int Shape = SLICE;
+  vtkTypeBool FitBounds = 1;
+  double Origin[3] = { 0.0, 0.0, 0.0 };
+  double Normal[3] = { 0.0, 0.0, 1.0 };
+  double Point1[3] = { 0.0, 0.0, 0.0 };
+  double Point2[3] = { 1.0, 0.0, 0.0 };
+  double Bounds[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  int Resolution = 500;
+  int Dimensions[3] = { 100, 100, 100 };
+  vtkTypeBool OnlyFluid = 1;
+
+private:
+  vtkSPHResample(const vtkSPHResample&) = delete;
+  void operator=(const vtkSPHResample&) = delete;
+
+  bool FindBounds(double bounds[6]);
+  vtkSmartPointer<vtkDataSet> MakePoints(const double bounds[6]);
+
+  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // of a volume, asked of this process
+  bool HasPoints = true;                         // of a slice or a line
+};
+
+#endif

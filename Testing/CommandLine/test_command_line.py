@@ -148,6 +148,8 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--screenshot", "a.png", "--view", "0,0,0"], "--view needs three numbers, not all 0"),
             ([*good, *ISO, "--color-by", "Radius"], r"or a .ply file has use for --color-by"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
+            ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
+            ([*good, *ISO, "--resolution", "9"], "only --slice and --line have use for --resolution"),
             ([*good, "--slice", "0.1"], "--slice needs an axis and a place on it, as z=0.1"),
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different places"),

@@ -118,6 +118,8 @@ class Film(CommandLineTest):
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, "warning: .*film_0000.vtp .*moved 0.10.* times as far as 'Velocity'"
                          ".*--time-step mends that")
+        files.write_pvd(self.directory / "steps.pvd", enumerate(path.name for path in paths))
+        self.assertRegex(self.make("steps.pvd", "--times", "0.5").stderr, r"moved 0.10.*change those in the \.pvd file")
         self.good(*paths, "--time-step", "0.1", "--times", "0.05,0.2")
         self.assertEqual([t for t, _ in self.listed()], [0.05, 0.2])
 

@@ -102,11 +102,19 @@ void CheckPicture(const Job& job)
       { { !hasColors && !picture.ColorBy.empty(), "--color-by" },
         { !hasColors && !picture.ColorRange.empty(), "--color-range" } });
   }
-  else if (!EndsWith(picture.File, ".png"))
+  if (!job.IsProbe() && picture.ColorBy.empty() && !picture.ColorRange.empty())
+  {
+    throw UsageError("--color-range needs --color-by NAME");
+  }
+  if (picture.File.empty())
+  {
+    return;
+  }
+  if (!EndsWith(picture.File, ".png"))
   {
     throw UsageError("--screenshot writes a .png file, not '" + picture.File + "'");
   }
-  else if (job.IsFilm() && !HasStepNumber(picture.File))
+  if (job.IsFilm() && !HasStepNumber(picture.File))
   {
     throw UsageError(
       "a film has a picture of each step: --screenshot frame_%04d.png, not '" + picture.File + "'");
@@ -121,6 +129,9 @@ void Check(const Job& job)
     throw UsageError("needs INPUT and OUTPUT");
   }
   CheckPicture(job);
+  Exclude("only --slice and --line have use for ",
+    { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
+      "--resolution" } });
   if (job.IsProbe())
   {
     CheckProbe(job);

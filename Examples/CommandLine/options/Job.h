@@ -28,7 +28,7 @@ struct SliceOptions
   int Axis = -1;            ///< that a slice is normal to; below 0: there is none
   double Place = 0.0;       ///< on that axis
   std::vector<double> Line; ///< from, to: six numbers; empty: there is none
-  int Resolution = 512;     ///< points along the longest side
+  int Resolution = 0;       ///< points along the longest side; 0: 512
 };
 
 /// What the command line asks for: the filters, set up as far as that can be done without the input,

@@ -194,40 +194,73 @@ std::vector<std::string> WordsOf(View line)
   return words;
 }
 
-/// Counts stand behind words at the beginning of a line. The arrays of a field have lines with a name,
-/// two counts and a type.
+/// Counts stand behind words at the beginning of a line, and those of attributes in a line before them.
+/// The arrays of a field have lines with a name, two counts and a type.
+class LegacyChecker
+{
+public:
+  LegacyChecker(const std::string& file, View text)
+    : Sizes(file, 8.0 * static_cast<double>(text.size()))
+  {
+  }
+
+  void Check(const std::vector<std::string>& words)
+  {
+    static const std::set<std::string> counted = { "points", "vertices", "lines", "polygons",
+      "triangle_strips", "cells", "cell_types", "x_coordinates", "y_coordinates", "z_coordinates",
+      "field", "lookup_table" };
+    static const std::set<std::string> attributes = { "scalars", "vectors", "normals", "tensors",
+      "color_scalars", "texture_coordinates" };
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i < words.size(); ++i)
+    {
+      const std::vector<double> number = Numbers(words[i]);
+      numbers.insert(numbers.end(), number.begin(), number.end());
+    }
+    const std::string& first = words.front();
+    const bool isSection = first == "point_data" || first == "cell_data";
+    for (const double number : numbers)
+    {
+      if (isSection || first == "dimensions") // of an image, which may have no values
+      {
+        this->Sizes.Check(first, std::min(number, 0.0));
+        this->Section = isSection ? first : this->Section;
+        this->Elements = isSection ? number : this->Elements;
+      }
+      if (counted.count(first) || attributes.count(first))
+      {
+        this->Sizes.Check(first, number);
+      }
+    }
+    if (attributes.count(first))
+    {
+      this->Sizes.Check(this->Section, this->Elements, numbers.empty() ? 1.0 : numbers.back());
+    }
+    else if (words.size() == 4 && numbers.size() == 2 && Numbers(words[3]).empty())
+    {
+      this->Sizes.Check(first, numbers[0], std::max(numbers[1], 1.0));
+      this->Sizes.Check(first, numbers[1]);
+    }
+  }
+
+private:
+  const Checker Sizes;
+  std::string Section = "point_data"; ///< that the attributes are in
+  double Elements = 0.0;              ///< values of each
+};
+
 void CheckLegacy(const std::string& file, View text)
 {
-  static const std::set<std::string> keywords = { "points", "vertices", "lines", "polygons",
-    "triangle_strips", "cells", "cell_types", "point_data", "cell_data", "x_coordinates",
-    "y_coordinates", "z_coordinates", "field", "scalars", "color_scalars", "texture_coordinates",
-    "lookup_table", "dimensions" };
-  const Checker checker(file, 8.0 * static_cast<double>(text.size()));
-  double elements = 1.0;
+  LegacyChecker checker(file, text);
   for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1)
   {
     end = std::min(text.find('\n', begin), text.size());
     const View line = text.substr(begin, end - begin);
     const std::vector<std::string> words =
       MayDeclare(line) ? WordsOf(line) : std::vector<std::string>();
-    const bool isArray = words.size() == 4 && !Numbers(words[1]).empty() &&
-      !Numbers(words[2]).empty() && Numbers(words[3]).empty();
-    if (words.empty() || (!isArray && keywords.count(words[0]) == 0))
+    if (!words.empty())
     {
-      continue;
-    }
-    const bool isWide = words[0] == "scalars" || words[0] == "color_scalars";
-    double product = isWide ? elements : 1.0;
-    for (std::size_t i = 1; i < words.size(); ++i)
-    {
-      for (const double number : Numbers(words[i]))
-      {
-        const bool isSize = words[0] == "dimensions"; // of an image, which may have no values
-        checker.Check(
-          words[0], isSize ? std::min(number, 0.0) : number, isWide || isArray ? product : 1.0);
-        product = isArray ? number : product;
-        elements = words[0] == "point_data" || words[0] == "cell_data" ? number : elements;
-      }
+      checker.Check(words);
     }
   }
 }

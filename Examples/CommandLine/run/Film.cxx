@@ -312,7 +312,7 @@ private:
     }
     for (const std::string& warning : warnings)
     {
-      this->Said.Tell("warning: ", this->Label(i), WithOptions(warning));
+      this->Said.Tell("warning: ", this->Label(i), WithOptions(this->Options, warning));
     }
   }
 

@@ -39,6 +39,11 @@ vtkIdType CountValid(vtkDataSet* data)
   return std::count(begin, begin + mask->GetNumberOfValues(), 1);
 }
 
+int ResolutionOf(const SliceOptions& slice)
+{
+  return slice.Resolution > 0 ? slice.Resolution : 512;
+}
+
 vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bounds[6])
 {
   double longest = 0.0;
@@ -52,7 +57,7 @@ vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bo
       "= has no plane to show: all particles lie on one line along this axis");
   }
   auto image = vtkSmartPointer<vtkImageData>::New();
-  const double spacing = longest / (slice.Resolution - 1);
+  const double spacing = longest / (ResolutionOf(slice) - 1);
   double origin[3];
   int counts[3];
   for (int a = 0; a < 3; ++a)
@@ -72,16 +77,17 @@ vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bo
 vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
 {
   const std::vector<double>& ends = slice.Line;
+  const int count = ResolutionOf(slice);
   const double length = std::hypot(ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]);
   vtkNew<vtkPoints> points;
   vtkNew<vtkDoubleArray> way;
   vtkNew<vtkCellArray> cells;
   points->SetDataTypeToDouble();
   way->SetName("arc_length");
-  cells->InsertNextCell(slice.Resolution);
-  for (int i = 0; i < slice.Resolution; ++i)
+  cells->InsertNextCell(count);
+  for (int i = 0; i < count; ++i)
   {
-    const double t = static_cast<double>(i) / (slice.Resolution - 1);
+    const double t = static_cast<double>(i) / (count - 1);
     cells->InsertCellPoint(points->InsertNextPoint((1.0 - t) * ends[0] + t * ends[3],
       (1.0 - t) * ends[1] + t * ends[4], (1.0 - t) * ends[2] + t * ends[5]));
     way->InsertNextValue(t * length);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceRun.h"
 
+#include "CollectionFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -93,7 +94,7 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(const Job& job, vtkPointSet* parti
   const std::string error = filter->GetErrorMessage();
   if (!error.empty())
   {
-    throw std::runtime_error(WithOptions(error));
+    throw std::runtime_error(WithOptions(job, error));
   }
   auto derived = vtk::TakeSmartPointer(particles->NewInstance());
   derived->ShallowCopy(filter->GetOutput()); // the next step has the output itself
@@ -160,13 +161,15 @@ void PrintProgress(vtkObject* caller, unsigned long, void* data, void*)
 }
 
 //------------------------------------------------------------------------------
-std::string WithOptions(const std::string& sentence)
+std::string WithOptions(const Job& job, const std::string& sentence)
 {
-  static const std::pair<const char*, const char*> words[] = {
+  const bool hasTimes = !job.Inputs.empty() && IsCollectionFile(job.Inputs.front());
+  const std::pair<const char*, const char*> words[] = {
     { "Name the array, give a constant, or ask for an estimate.",
       "Give --smoothing-length NAME, VALUE or estimate." },
     { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh." },
-    { "the time scale mends that", "--time-step mends that" },
+    { "the time scale mends that",
+      hasTimes ? "change those in the .pvd file" : "--time-step mends that" },
   };
   std::string result = sentence;
   for (const auto& word : words)
@@ -232,7 +235,8 @@ double Update(
   const std::string error = filter->GetErrorMessage();
   if (!error.empty() || !messages->GetErrors().empty())
   {
-    throw std::runtime_error(WithOptions(error.empty() ? messages->GetErrors().front() : error));
+    throw std::runtime_error(
+      WithOptions(job, error.empty() ? messages->GetErrors().front() : error));
   }
   return elapsed.count();
 }

@@ -16,7 +16,7 @@ class vtkSPHAlgorithm;
 struct Job;
 
 /// A sentence of the filters, with the names of options where it has properties'.
-std::string WithOptions(const std::string& sentence);
+std::string WithOptions(const Job& job, const std::string& sentence);
 
 /// Whether standard error is a terminal whose user has not asked for silence.
 bool ShowsProgress(const Job& job);

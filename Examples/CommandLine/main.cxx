@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The command line program: particles from a file, surface to a file. See --help.
-#include "CommandLineOptions.h"
+#include "ColorScale.h"
+#include "Ending.h"
 #include "Film.h"
-#include "FilmRecord.h"
+#include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
+#include "Picture.h"
 #include "ProbeRun.h"
 #include "RankLaunch.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
-#include "Supervisor.h"
 #include "SurfaceFile.h"
-#include "SurfacePicture.h"
 #include "SurfaceRun.h"
 #if MCOR_HAS_RANKS
 #include "RankRun.h"
@@ -23,7 +23,6 @@
 
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
-#include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
@@ -32,7 +31,6 @@
 #include <exception>
 #include <functional>
 #include <iostream>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -60,72 +58,79 @@ void ListDevices()
 }
 
 /// No file is written over another, and all can be written: said before the work, not after it.
-void CheckFiles(const CommandLineOptions& options)
+void CheckFiles(const Job& job, MessageCapture* messages)
 {
   std::vector<std::string> outputs;
-  for (const std::string& file : { options.Output, options.StatisticsFile, options.PictureFile })
+  for (const std::string& file : { job.Output, job.StatisticsFile, job.Picture.File })
   {
     if (!file.empty())
     {
       outputs.push_back(file);
     }
   }
-  try
-  {
-    CheckOutputs(options.Inputs, outputs);
-  }
-  catch (const std::invalid_argument& error)
-  {
-    throw UsageError(error.what());
-  }
+  CheckOutputs(ListFiles(job.Inputs, messages), outputs);
 }
 
-void MakeSurface(const CommandLineOptions& options, MessageCapture* messages)
+/// The last of the runs, and what is known of all.
+Run RunAndTell(const Job& job, MessageCapture* messages,
+  std::vector<vtkSmartPointer<vtkFieldData>>& runs, std::vector<double>& wallSeconds)
 {
-  CheckFiles(options);
-  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Inputs.front(), messages);
-  vtkNew<vtkMarchingCorrectors> filter;
-  SetUpFilter(filter, options, particles);
-  std::string nothing;
-  ShowProgress(filter, options, &nothing);
-  std::vector<vtkSmartPointer<vtkFieldData>> runs;
-  std::vector<double> wallSeconds;
-  vtkSmartPointer<vtkPolyData> surface;
-  for (int i = 0; i < options.Repeat; ++i)
+  Run run;
+  for (int i = 0; i < job.Repeat; ++i)
   {
-    surface = nullptr;
-    Run run = Extract(filter, options, messages);
-    surface = run.Surface;
+    run.Surface = nullptr; // not two at once
+    run = Extract(job, messages);
     runs.emplace_back(run.Statistics);
     wallSeconds.push_back(run.WallSeconds);
-    if (!options.Quiet)
+    if (!job.Quiet)
     {
       std::cout << (i == 0 ? DescribeRun(runs.back()) : "") << DescribeSeconds(runs.back())
                 << std::flush;
     }
   }
+  return run;
+}
+
+void MakeSurface(const Job& job, MessageCapture* messages)
+{
+  CheckFiles(job, messages);
+  vtkSmartPointer<vtkPointSet> particles = ReadParticles(job.Inputs.front(), messages);
+  SetUpSurface(job, particles);
+  std::vector<vtkSmartPointer<vtkFieldData>> runs;
+  std::vector<double> wallSeconds;
+  const Run run = RunAndTell(job, messages, runs, wallSeconds);
+  vtkPolyData* surface = run.Surface;
+  const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
   std::vector<std::string> warnings = Warnings(surface, runs.back(), messages);
-  AddHintOfPeriod(options, particles, warnings);
+  AddHintOfPeriod(job, particles, warnings);
+  ColorScale colors(job.Picture);
+  colors.Include(surface);
+  const std::string lost = LostArrays(job.Output, surface, colors);
+  if (!lost.empty())
+  {
+    warnings.push_back(lost);
+  }
   for (const std::string& warning : warnings)
   {
     Say("warning: " + warning);
   }
-  const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
-  WriteSurface(options.Output, surface, messages);
-  if (!options.StatisticsFile.empty())
+  WriteOutput(job.Output, SurfaceBytes(job.Output, surface, colors, messages));
+  if (!job.StatisticsFile.empty())
   {
     std::cout.flush(); // the file may be /dev/stdout
-    WriteOutput(options.StatisticsFile,
-      StatisticsAsJson(options, runs, wallSeconds, warnings, peakResidentBytes));
+    WriteOutput(
+      job.StatisticsFile, StatisticsAsJson(job, runs, wallSeconds, warnings, peakResidentBytes));
   }
-  if (!options.PictureFile.empty())
+  if (!job.Picture.File.empty())
   {
-    WritePicture(options.PictureFile, surface, particles, messages);
+    Picture picture(job.Picture);
+    WriteOutput(
+      job.Picture.File, picture.Draw(job.Picture.File, surface, particles, colors, messages));
   }
 }
 
-/// From the part `first` of the work on. False if something failed, of which all was said.
-bool Execute(const CommandLineOptions& options, int first, FilmRecord* record)
+/// False if something failed, of which all was said.
+bool Execute(Job& job)
 {
   vtkNew<MessageCapture> messages;
   vtkOutputWindow::SetInstance(messages);
@@ -133,26 +138,48 @@ bool Execute(const CommandLineOptions& options, int first, FilmRecord* record)
 #if MCOR_HAS_RANKS
   if (LaunchedCount() > 1)
   {
-    return RunTogether(options, messages);
+    return RunTogether(job, messages);
   }
 #endif
-  if (record)
-  {
-    return MakeFilm(options, first, *record, messages);
-  }
-  if (options.ListDevices)
+  if (job.ListDevices)
   {
     ListDevices();
   }
-  else if (!options.Probe.empty())
+  else if (job.IsProbe())
   {
-    ProbePoints(options, messages);
+    ProbePoints(job, messages);
+  }
+  else if (job.IsFilm())
+  {
+    return MakeFilm(job, messages);
   }
   else
   {
-    MakeSurface(options, messages);
+    MakeSurface(job, messages);
   }
   return true;
+}
+
+bool ParseAndExecute(int argc, char* argv[])
+{
+  Job job;
+  ParseCommandLine(argc, argv, job);
+  if ((job.Help || job.Version) && LaunchedRank() > 0)
+  {
+    return true;
+  }
+  if (job.Help)
+  {
+    std::cout << CommandLineHelp();
+    return true;
+  }
+  if (job.Version)
+  {
+    std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
+              << ")\n";
+    return true;
+  }
+  return Execute(job);
 }
 
 /// Exit status and sentence of what `run` throws, or of standard output that cannot be written.
@@ -205,34 +232,6 @@ void OpenStandardStreams()
 int main(int argc, char* argv[])
 {
   OpenStandardStreams();
-  CommandLineOptions options;
-  std::unique_ptr<FilmRecord> record;
-  const int status = Status(
-    [&]
-    {
-      options = ParseCommandLine(argc, argv);
-      if ((options.Help || options.Version) && LaunchedRank() > 0)
-      {
-      }
-      else if (options.Help)
-      {
-        std::cout << CommandLineHelp();
-      }
-      else if (options.Version)
-      {
-        std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
-                  << ")\n";
-      }
-      else if (!options.ListDevices && IsFilm(options))
-      {
-        record.reset(new FilmRecord); // here, for all processes that take part
-      }
-      return true;
-    });
-  if (status != 0 || options.Help || options.Version)
-  {
-    return status;
-  }
-  return RunSupervised([&](int first)
-    { return Status([&] { return Execute(options, first, record.get()); }); });
+  PrepareForEnding();
+  return Finish(Status([&] { return ParseAndExecute(argc, argv); }));
 }

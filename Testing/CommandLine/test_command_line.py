@@ -9,10 +9,38 @@ import os
 import pathlib
 import resource
 import signal
+import struct
 import subprocess
+import xml.etree.ElementTree
+import zlib
 
 import particle_files as files
 from command_line_test import ISO, WITH_DISPLAY, CommandLineTest, main
+
+
+def read_png(path):
+    """Width, height and rows of (r, g, b)."""
+    data = path.read_bytes()
+    at, packed = 8, b""
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        body = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack_from(">IIBB", body)
+        packed += body if kind == b"IDAT" else b""
+        at += size + 12
+    assert (depth, color) == (8, 2)
+    raw, rows, before = zlib.decompress(packed), [], bytes(3 * width)
+    for y in range(height):
+        kind, *line = raw[y * (3 * width + 1):(y + 1) * (3 * width + 1)]
+        for x in range(3 * width):
+            left = line[x - 3] if x >= 3 else 0
+            up, corner = before[x], before[x - 3] if x >= 3 else 0
+            paeth = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            line[x] = (line[x] + (0, left, up, (left + up) // 2, paeth)[kind]) & 255
+        before = line
+        rows.append([tuple(line[x:x + 3]) for x in range(0, 3 * width, 3)])
+    return width, height, rows
 
 
 class Usage(CommandLineTest):
@@ -28,7 +56,7 @@ class Usage(CommandLineTest):
                 --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
                 --memory-limit --list-devices --stats --screenshot --repeat --quiet --help
                 --version --precision --support-radius --output-precision --box --periodic --capping --times
-                --time-step""".split():
+                --time-step --slice --line --resolution --color-by --color-range --up --view""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 
     def test_version(self):
@@ -46,7 +74,7 @@ class Usage(CommandLineTest):
         for arguments, sentence in [
             ([], "needs INPUT and OUTPUT"),
             ([self.input], "needs INPUT and OUTPUT"),
-            ([*good, "third", *ISO], "output of several steps is a .pvd file, not 'third'"),
+            ([*good, "third", *ISO], "output of several steps is a .pvd file, or .* not 'third'"),
             ([self.input, "surface.png", *ISO],
              "output is a .vtp, .stl, .ply or .obj file, or .pvd for a film, not 'surface.png'"),
             ([self.input, self.input, *ISO], "would overwrite the input"),
@@ -85,7 +113,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--stats", "-h"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats"], "--stats needs FILE.json"),
             ([*good, *ISO, "--stats", ""], "--stats needs FILE.json"),
-            ([*good, *ISO, "--", "--quiet"], "output of several steps is a .pvd file, not '--quiet'"),
+            ([*good, *ISO, "--", "--quiet"], "output of several steps is a .pvd file, or .* not '--quiet'"),
             ([*good, *ISO, "--h-scale", "1e999"], "--h-scale needs a finite number, not '1e999'"),
             ([*good, *ISO, "--h-scale", "1.0junk"], "--h-scale needs a finite number"),
             ([*good, *ISO, "--h-scale", "0x1p3"], "--h-scale needs a finite number"),
@@ -115,6 +143,19 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--box", "0,1,0,nan,0,1"], "--box needs a finite number, not 'nan'"),
             ([*good, *ISO, "--fluid", "Kind=x"], "--fluid needs a finite number, not 'x'"),
             ([*good, *ISO, "--screenshot", "a.jpg"], "--screenshot writes a .png file"),
+            ([*good, *ISO, "--up", "z"], "only a picture, --screenshot, has use for --up"),
+            ([*good, *ISO, "--screenshot", "a.png", "--up", "up"], "--up is one of x, y, z, -x, -y, -z, not 'up'"),
+            ([*good, *ISO, "--screenshot", "a.png", "--view", "0,0,0"], "--view needs three numbers, not all 0"),
+            ([*good, *ISO, "--color-by", "Radius"], r"or a .ply file has use for --color-by"),
+            ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
+            ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
+            ([*good, *ISO, "--resolution", "9"], "only --slice and --line have use for --resolution"),
+            ([*good, "--slice", "0.1"], "--slice needs an axis and a place on it, as z=0.1"),
+            ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
+            ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different places"),
+            ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "has points already; leave out --line"),
+            ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "a line is to be plotted"),
+            ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
         ]:
             with self.subTest(sentence):
                 self.refuse(self.run_program(*arguments), 2, sentence)
@@ -151,7 +192,8 @@ class BadData(CommandLineTest):
         self.refuse_with("no point array 'Nothing' for the fluid", *ISO, "--fluid", "Nothing=0")
 
     def test_no_smoothing_length(self):
-        self.refuse_changed("no smoothing length", {"SmoothingLength": None})
+        self.refuse_changed("no smoothing length.*Give --smoothing-length NAME, VALUE or estimate",
+                            {"SmoothingLength": None})
 
     def test_missing_attribute(self):
         self.refuse_with("no point array 'Colour' to carry", *ISO, "--attributes", "Kind,Colour")
@@ -216,23 +258,6 @@ class BadData(CommandLineTest):
         result = self.extract("--free-surface", env=environment)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(list(temporary.iterdir()), [])
-
-    def test_kept_kernels(self):
-        """A first surface compiles nothing where the build has done so for this machine."""
-        root = pathlib.Path(self.program).resolve().parent.parent
-        kept = next(root.glob("lib*/marching-correctors-kernels"), None)
-        if not kept:
-            self.skipTest("the build has kept no kernels")
-
-        def compiled(folder):
-            return {p.relative_to(folder) for pattern in ("*.ready", "**/*.so") for p in folder.glob(pattern)}
-
-        cache = self.directory / "cache"
-        cache.mkdir()
-        environment = {k: v for k, v in os.environ.items() if k != "MCOR_KERNEL_DIR"}
-        result = self.extract("--free-surface", env={**environment, "POCL_CACHE_DIR": str(cache)})
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertEqual(compiled(cache), compiled(kept))
 
     def test_no_platform(self):
         # The ICD loader of Debian then finds no driver at all.
@@ -302,7 +327,10 @@ class Options(CommandLineTest):
     def test_summary(self):
         result = self.extract(*ISO)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles")
+        self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles$")
+        trimmed = self.extract("--scalar", "Radius", "--iso", "0.55")
+        self.assertRegex(trimmed.stdout,
+                         r"(?m)^surface     .* triangles \(trimmed from \d+, some of which it cut in two\)$")
         self.assertRegex(result.stdout, r"(?m)^cells       \d+ of the virtual grid, .* with surface$")
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 
@@ -385,6 +413,61 @@ class Options(CommandLineTest):
                                       "Velocity", *arguments)
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             self.assertIn(f"points      5, {valid} of them valid", result.stdout)
+
+    def test_slice(self):
+        """A plane through the particles, as fine as is said."""
+        output = self.directory / "slice.vti"
+        result = self.run_program(self.input, output, "--slice", "z=0.1", "--resolution", "19", "--derive", "Velocity",
+                                  "--attributes", "Radius,Divergence")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertRegex(result.stdout, r"points      361, 361 of them valid")
+        image = xml.etree.ElementTree.parse(output).getroot().find("ImageData")
+        self.assertEqual(image.get("WholeExtent").split(), ["0", "18", "0", "18", "0", "0"])
+        numbers = [float(v) for v in (image.get("Origin") + " " + image.get("Spacing")).split()]
+        for found, expected in zip(numbers, [-0.45, -0.45, 0.1, 0.05, 0.05, 0.05]):
+            self.assertAlmostEqual(found, expected, places=6)
+        for name in ("Radius", "Weight", "vtkValidPointMask", "Divergence"):
+            self.assertIn(f'Name="{name}"', output.read_text())
+        result = self.run_program(self.input, self.directory / "slice.vtk", "--slice=x=-7")
+        self.assertIn("points      262144, 0 of them valid", result.stdout)
+
+    def test_line(self):
+        """As many points as at the same places of a file, and their distance from the beginning."""
+        output = self.directory / "line.vtp"
+        result = self.run_program(self.input, output, "--line=-0.6,0,0,0.6,0,0", "--resolution", "13")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        files.write_vtp(self.directory / "points.vtp", [(-0.6 + 0.1 * i, 0.0, 0.0) for i in range(13)], {})
+        points = self.run_program(self.input, self.directory / "out.vtp", "--probe", "points.vtp")
+        self.assertEqual(result.stdout.split("\n")[0], points.stdout.split("\n")[0])
+        text = output.read_text()
+        self.assertIn('NumberOfLines="1"', text)
+        self.assertRegex(text, r'Name="arc_length"[^>]*RangeMin="0"[^>]*RangeMax="1.2')
+
+    def write_image(self, extent, name="image.vti"):
+        path = self.directory / name
+        path.write_text('<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">'
+                        f'<ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="1 1 1"><Piece Extent="{extent}">'
+                        '</Piece></ImageData></VTKFile>')
+        return path
+
+    def test_sizes_of_probes(self):
+        """What cannot be is said at once, and names the file."""
+        output = self.directory / "out.vti"
+        for extent, sentence in [("0 99999 0 99999 0 99999", "has 1000000000000000 points; at most 2147483647"),
+                                 ("0 -5 0 4 0 4", "cannot be read: (Whole)?Extent is -4; it may be damaged"),
+                                 ("0 -1 0 -1 0 -1", "holds no points")]:
+            with self.subTest(extent):
+                result = self.run_program(self.input, output, "--probe", self.write_image(extent))
+                self.one_sentence(result, 1, "image.vti " + sentence)
+        for dimensions, sentence in [("100000 100000 100000", "has 1000000000000000 points"),
+                                     ("-5 4 4", "cannot be read: dimensions is -5")]:
+            with self.subTest(dimensions):
+                (self.directory / "image.vtk").write_text(
+                    "# vtk DataFile Version 3.0\nimage\nASCII\nDATASET STRUCTURED_POINTS\n"
+                    f"DIMENSIONS {dimensions}\nORIGIN 0 0 0\nSPACING 1 1 1\n")
+                result = self.run_program(self.input, self.directory / "out.vtk", "--probe", "image.vtk")
+                self.one_sentence(result, 1, "image.vtk " + sentence)
+        self.assertFalse(output.exists())
 
     def test_wrong_probes(self):
         self.write_points()
@@ -766,6 +849,46 @@ class Picture(CommandLineTest):
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
         # A picture of nothing but the background compresses to less.
         self.assertGreater(len(data), 20000)
+
+    def picture(self, *arguments):
+        """Width, height and rows of (r, g, b) of what the program draws."""
+        path = self.directory / "p.png"
+        result = subprocess.run([WITH_DISPLAY, self.program, self.input, *arguments, "--screenshot", path, "--quiet"],
+                                cwd=self.directory, capture_output=True, text=True, timeout=1200)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return read_png(path)
+
+    def test_fit(self):
+        """All of the outline is there, from every side: the picture's border is white, and not far inside."""
+        for arguments in ([], ["--up", "z"], ["--up", "-x", "--view", "3,1,1"], ["--view", "0,1,0"],
+                          ["--color-by", "Radius"]):
+            with self.subTest(arguments):
+                width, height, rows = self.picture("s.vtp", *ISO, *arguments)
+                self.assertEqual((width, height), (1280, 800))
+                white = (255, 255, 255)
+                border = rows[0] + rows[-1] + [row[0] for row in rows] + [row[-1] for row in rows]
+                self.assertEqual(set(border), {white})
+                drawn = [y for y, row in enumerate(rows) if any(pixel != white for pixel in row[:1000])]
+                columns = [x for x in range(1000) if any(row[x] != white for row in rows)]
+                self.assertTrue(drawn[0] < 60 or columns[0] < 60, (drawn[0], columns[0]))
+
+    def test_colors(self):
+        """--color-by has many colours and a bar; a plain surface has shades of one blue."""
+        def hues(rows, columns):
+            return {(r > b, g > b, g > r) for row in rows for r, g, b in row[columns] if max(r, g, b) - min(r, g, b) > 60}
+        plain = self.picture("s.vtp", *ISO)[2]
+        self.assertEqual(len(hues(plain, slice(0, 1280))), 1)
+        colored = self.picture("s.vtp", "--free-surface", "--color-by", "Velocity")[2]
+        self.assertGreater(len(hues(colored, slice(0, 1100))), 2)
+        self.assertGreater(len(hues(colored, slice(1130, 1165))), 2)
+
+    def test_slice(self):
+        """Seen straight on: yellow is outside, violet inside, white where there is no fluid."""
+        rows = self.picture("s.vti", "--slice", "z=0", "--color-by", "Radius", "--resolution", "101")[2]
+        self.assertGreater(rows[400][556][2], rows[400][556][0])  # the middle, violet
+        drawn = [x for x in range(1100) if max(rows[400][x]) - min(rows[400][x]) > 60]
+        self.assertGreater(rows[400][drawn[-1] - 3][1], rows[400][556][1] + 60)
+        self.assertEqual(rows[5][556], (255, 255, 255))
 
     def test_no_display(self):
         environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}

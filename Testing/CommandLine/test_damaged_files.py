@@ -94,14 +94,14 @@ class DamagedFiles(CommandLineTest):
                     self.refuse(result, 1, "[a-z]")
         self.assertLessEqual({0, 1}, statuses)
 
-    def test_crash(self):
-        """Files that crash the readers of VTK 9.1 and 9.3."""
+    def test_counts_that_are_wrong(self):
+        """Without a check, these crash the readers of VTK 9.1 and 9.3."""
         for name in ("inline.vtp", "appended.vtu"):
             with self.subTest(name):
                 data = self.forms[name].replace(b'NumberOfPoints="27"', b'NumberOfPoints="-1"')
-                self.refuse(self.run_with(name, data), 1, f"{name} (cannot be read|holds no points)")
+                self.cannot_read(self.run_with(name, data), name, "NumberOfPoints is -1; it may be damaged")
         data = self.forms["binary.vtk"].replace(b"POINT_DATA 27", b"POINT_DATA 2700000")
-        self.cannot_read(self.run_with("binary.vtk", data), "binary.vtk", "")
+        self.cannot_read(self.run_with("binary.vtk", data), "binary.vtk", "point_data is 2700000, more than")
 
     def test_huge_numbers(self):
         """No memory is asked for that a file of some kilobytes cannot need."""
@@ -113,21 +113,18 @@ class DamagedFiles(CommandLineTest):
             with self.subTest(name):
                 self.assertIn(good, self.forms[name])
                 result = self.run_with(name, self.forms[name].replace(good, bad))
-                self.cannot_read(result, name, "")
+                self.cannot_read(result, name, "more than a file of its size can hold; it may be damaged$")
 
-    def test_any_end_of_the_reader(self):
-        """Whatever the reader does: VTK's XML library is replaced by one that ends the process."""
-        for reader, why in (("exit", "the program was ended in the middle of it"),
-                            ("abort", r"the program crashed there \(Aborted\)"),
-                            ("kill", "the program was killed, as is done where memory runs out"),
-                            ("fault", r"the program crashed there \(Segmentation fault\)"),
-                            ("recursion", r"the program crashed there \(Segmentation fault\)"),
-                            ("loop", "it took too much processor time")):
+    def test_crash_of_the_reader(self):
+        """Whatever it does: VTK's XML library is replaced by one that goes astray."""
+        for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
+                            ("recursion", "Segmentation fault")):
             with self.subTest(reader):
                 result = self.extract("--free-surface", env=self.misbehaving(reader=reader))
                 if result.returncode == 0:
                     self.skipTest("this VTK has an XML library of its own")
-                self.cannot_read(result, "particles.vtp", why + "; the file may be damaged$")
+                self.refuse(result, 1, "the reader of VTK failed on .*particles.vtp: the program crashed there "
+                            rf"\({why}\); the file may be damaged$")
 
     def test_wrong_sizes(self):
         """An array of fewer entries than points never reaches the filter."""

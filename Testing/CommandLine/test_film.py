@@ -13,7 +13,7 @@ import time
 import xml.etree.ElementTree
 
 import particle_files as files
-from command_line_test import CommandLineTest, main
+from command_line_test import WITH_DISPLAY, CommandLineTest, main
 
 FREE = ["--free-surface"]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -116,7 +116,10 @@ class Film(CommandLineTest):
         paths = self.write_steps(3)
         result = self.make(*paths, "--times", "0.5")
         self.assertEqual(result.returncode, 0)
-        self.assertRegex(result.stderr, "warning: .*film_0000.vtp .*moved 0.10.* times as far as 'Velocity'")
+        self.assertRegex(result.stderr, "warning: .*film_0000.vtp .*moved 0.10.* times as far as 'Velocity'"
+                         ".*--time-step mends that")
+        files.write_pvd(self.directory / "steps.pvd", enumerate(path.name for path in paths))
+        self.assertRegex(self.make("steps.pvd", "--times", "0.5").stderr, r"moved 0.10.*change those in the \.pvd file")
         self.good(*paths, "--time-step", "0.1", "--times", "0.05,0.2")
         self.assertEqual([t for t, _ in self.listed()], [0.05, 0.2])
 
@@ -167,6 +170,33 @@ class Film(CommandLineTest):
         self.assertEqual(step["statistics"]["fluid_particles"], 1000)
         self.assertEqual(self.listed()[0][1].read_bytes(), whole)
 
+    def test_other_formats(self):
+        """With the step's number in the name: no list, and files of one's own are replaced."""
+        self.write_steps(3)
+        for ending, begin in ((".ply", b"ply\n"), (".obj", b"# by"), (".stl", b"binary"), (".vtp", b"<?xml")):
+            with self.subTest(ending):
+                (self.directory / f"drop_01{ending}").write_text("old")
+                result = self.run_program("steps.pvd", f"drop_%02d{ending}", *FREE, "--no-attributes", "--quiet")
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+                for i in range(3):
+                    self.assertTrue((self.directory / f"drop_{i:02}{ending}").read_bytes().startswith(begin))
+        self.assertFalse(self.film.exists())
+        result = self.run_program("steps.pvd", "drop_%03d.vtp", *FREE)  # these are the steps themselves
+        self.one_sentence(result, 2, "drop_000.vtp would overwrite the input")
+
+    def test_pictures(self):
+        """One of each step."""
+        self.write_steps(2)
+        result = subprocess.run([WITH_DISPLAY, self.program, "steps.pvd", self.film, *FREE, "--quiet", "--screenshot",
+                                 "frame_%d.png", "--color-by", "Velocity", "--up", "z"], cwd=self.directory,
+                                capture_output=True, text=True, timeout=1200)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        pictures = [(self.directory / f"frame_{i}.png").read_bytes() for i in range(2)]
+        self.assertNotEqual(*pictures)
+        for picture in pictures:
+            self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
+            self.assertGreater(len(picture), 20000)
+
     # What fails
 
     def test_failing_step(self):
@@ -182,8 +212,8 @@ class Film(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 2), result.stderr)
         self.assertEqual([t for t, _ in self.listed()], [0.1, 0.3, 0.35])
 
-    def test_crashing_steps(self):
-        """VTK's reader crashes over two of the files; each costs its own step alone."""
+    def test_damaged_steps(self):
+        """Two of the files would crash VTK's reader, if they came as far; each costs its own step alone."""
         points, arrays = files.drop_at(0.1, n=3)
         crash = self.directory / "crash.vtk"
         files.write_legacy(crash, points, {n: v for n, v in arrays.items() if n != "Velocity"})
@@ -193,26 +223,27 @@ class Film(CommandLineTest):
         result = self.make(*paths, crash, "--stats", "s.json", "--quiet")
         self.assertEqual(result.returncode, 1)
         self.assertEqual(result.stderr.count("\n"), 2, result.stderr)
-        self.assertEqual(len(re.findall(r"crash.vtk cannot be read", result.stderr)), 2)
+        self.assertRegex(result.stderr, r"film_0001.vtp \(time 1\): .*crash.vtk cannot be read: .*\n"
+                                        r"marching-correctors: 1 more step: .*crash.vtk cannot be read: ")
         self.assertEqual([t for t, _ in self.listed()], [0, 2, 3, 4])
         steps = json.loads((self.directory / "s.json").read_text())["steps"]
         self.assertEqual([s["time"] for s in steps], [0, 1, 2, 3, 4, 5])
         self.assertEqual(["error" in s for s in steps], [False, True, False, False, False, True])
 
-    def test_any_end_of_the_reader(self):
-        """Each step's reading ends the process: all are tried, none is listed."""
+    def test_crash_of_the_reader(self):
+        """A sentence that names the file; what was made before is listed."""
         paths = self.write_steps(3)
-        result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault"))
+        result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault", reader_call=2))
         if result.returncode == 0:
             self.skipTest("this VTK has an XML library of its own")
-        self.assertEqual(result.returncode, 1)
-        self.assertEqual(re.findall(r"drop_00\d", result.stderr), ["drop_000", "drop_001", "drop_002"])
-        self.assertFalse(self.film.exists())
+        self.one_sentence(result, 1, "the reader of VTK failed on .*drop_001.vtp: the program crashed there")
+        self.assertEqual([p.name for _, p in self.listed()], ["film_0000.vtp"])
 
     def test_all_fail(self):
         paths = self.write_steps(2)
         result = self.run_program(*paths, self.film, "--scalar", "Nothing", "--iso", "1", "--quiet")
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 2))
+        self.assertRegex(result.stderr, r"film_0000.vtp \(time 0\): .*'Nothing'.*\n.*: 1 more step: .*'Nothing'")
         self.assertFalse(self.film.exists())
         self.assertEqual(self.surfaces(), [])
 
@@ -271,19 +302,19 @@ class Film(CommandLineTest):
         pvd = self.directory / "steps.pvd"
         paths = self.write_steps(2)
         for arguments, sentence in [
-            ([*paths, "film.vtp"], "output of several steps is a .pvd file, not 'film.vtp'"),
+            ([*paths, "film.vtp"], "output of several steps is a .pvd file, or .* with %04d in its name, not 'film.vtp'"),
             ([pvd, "film.vtp"], "output of several steps is a .pvd file"),
             ([pvd, pvd, "film.pvd"], "a .pvd file is the only input"),
             ([paths[0], pvd, "film.pvd"], "a .pvd file is the only input"),
-            ([self.input, "surface.vtp", "--times", "1"], "--times is for films"),
-            ([self.input, "surface.vtp", "--time-step", "2"], "--time-step is for films"),
+            ([self.input, "surface.vtp", "--times", "1"], "only films, .* have use for --times"),
+            ([self.input, "surface.vtp", "--time-step", "2"], "only films, .* have use for --time-step"),
             ([pvd, "film.pvd", "--time-step", "2"], "a .pvd file has times"),
             ([*paths, "film.pvd", "--time-step", "0"], "--time-step must be greater than 0"),
             ([pvd, "film.pvd", "--times", "0.05,x"], "--times needs a finite number, not 'x'"),
             ([pvd, "film.pvd", "--times", "0.05,0.3"], "0.3 is outside of the steps' times, 0 to 0.1"),
             ([pvd, "film.pvd", "--times=-0.1"], "-0.1 is outside"),
             ([pvd, "film.pvd", "--repeat", "2"], "--repeat is for one surface"),
-            ([pvd, "film.pvd", "--screenshot", "a.png"], "--screenshot is for one surface"),
+            ([pvd, "film.pvd", "--screenshot", "a.png"], "a film has a picture of each step: --screenshot frame_%04d.png"),
         ]:
             with self.subTest(sentence):
                 self.one_sentence(self.run_program(*arguments, *FREE), 2, sentence)
@@ -361,7 +392,48 @@ class Formats(CommandLineTest):
         lines = self.extract_as(".obj").decode().splitlines()
         kinds = [line.split(" ", 1)[0] for line in lines]
         self.assertEqual([kinds.count(k) for k in ("v", "vn", "f")], [points, points, triangles])
+        self.assertTrue(all(re.fullmatch(r"f (\d+)//\1 (\d+)//\2 (\d+)//\3", x) for x in lines if x[0] == "f"))
         self.assertLess(abs(box_of(self.output)[0][0] + box_of(self.output)[0][1]), 1e-3)
+
+    def test_obj_digits(self):
+        """Nine: every float comes back."""
+        self.points = [(1e-3 * x + 1.0, y, z) for x, y, z in self.points]
+        files.write_vtp(self.input, self.points, self.arrays)
+        self.extract_as(".obj", "--output-precision", "single")
+        found = [tuple(map(float, line.split()[1:])) for line in self.output.read_text().splitlines() if line[:2] == "v "]
+        data = self.extract_as(".ply", "--output-precision", "single")
+        start = data.index(b"end_header\n") + len(b"end_header\n")
+        self.assertGreater(len(found), 100)
+        for i, place in enumerate(found):
+            self.assertEqual(struct.pack("=3f", *place), data[start + 24 * i:start + 24 * i + 12])
+
+    def test_colors(self):
+        """The array of --color-by is in a .ply file as colours; what others leave out is said."""
+        points, triangles = self.counts()
+        self.output = self.directory / "surface.ply"
+        result = self.extract("--free-surface", "--quiet", "--color-by", "Velocity", "--color-range", "0.46,0.7")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        head, body = self.output.read_bytes().split(b"end_header\n", 1)
+        self.assertIn(b"property uchar red\nproperty uchar green\nproperty uchar blue\n", head)
+        self.assertEqual(len(body), 27 * points + 13 * triangles)
+        speeds = []
+        for i in range(points):
+            x, y, z, *_, red, green, blue = struct.unpack_from("=6f3B", body, 27 * i)
+            speeds.append(((x * x + y * y + z * z) ** 0.5, green))
+        speeds.sort()  # the speed is about the distance from the centre; the colours grow in green with it
+        self.assertLess(speeds[0][1], 60)
+        self.assertEqual(speeds[-1][1], 231)  # the last colour, beyond the range
+        for ending, hint in ((".ply", "--color-by NAME makes colours of one"), (".obj", "--no-attributes"),
+                             (".stl", ".vtp keeps all")):
+            self.output = self.directory / ("surface" + ending)
+            self.one_sentence(self.extract("--free-surface", "--quiet"), 0,
+                              f"warning: {ending} files hold no arrays, so these are left out: .*Velocity.*{hint}")
+            plain = self.extract("--free-surface", "--quiet", "--no-attributes")
+            self.assertEqual((plain.returncode, plain.stderr), (0, ""))
+        self.output = self.directory / "surface2.ply"
+        result = self.extract("--free-surface", "--quiet", "--color-by", "Nothing")
+        self.one_sentence(result, 1, "no array 'Nothing' to colour by; there are .*Velocity")
+        self.assertFalse(self.output.exists())
 
     def test_empty(self):
         for ending in (".stl", ".ply", ".obj"):
@@ -372,7 +444,8 @@ class Formats(CommandLineTest):
         for ending in (".stl", ".ply", ".obj"):
             self.output = self.directory / ("surface" + ending)
             self.output.write_text("old")
-            result = self.extract("--free-surface", "--quiet", env=self.misbehaving(failing_call="rename"))
+            result = self.extract("--free-surface", "--quiet", "--no-attributes",
+                                  env=self.misbehaving(failing_call="rename"))
             self.one_sentence(result, 1, f"surface{ending} could not be written: Input/output error")
             self.assertEqual(self.output.read_text(), "old")
 

@@ -3,7 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program under mpirun: what processes make together, and what they say where one of them fails.
 
-    test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS
+    test_program.py PROGRAM MPIRUN FOLDER_OF_DATA RANKS PRELOAD
+
+PRELOAD is ../CommandLine/misbehave.c.
 """
 
 import filecmp
@@ -22,7 +24,7 @@ from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
-PROGRAM, MPIRUN, DATA, RANKS = sys.argv[1:5]
+PROGRAM, MPIRUN, DATA, RANKS, PRELOAD = sys.argv[1:6]
 PARTICLES = os.path.join(DATA, "double_dam_break_small.vtp")
 BOUND = 240  # seconds in which a job ends, whatever happens
 
@@ -178,6 +180,63 @@ class Program(unittest.TestCase):
         self.check_fails(done, "piece_1.vtp", "end is missing")
         self.assertFalse(os.path.exists(self.path("out.pvtp")))
 
+    def run_failing(self, *arguments):
+        """The second process cannot write, as on a disk that is full."""
+        script = ('test "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" != 1 || export LD_PRELOAD="$0" MCOR_FAILING_CALL=fsync; '
+                  'exec "$@"')
+        return subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", script, PRELOAD, PROGRAM, *arguments],
+                              env={**os.environ, "MCOR_FAILING_FOLDER": self.folder.name},
+                              capture_output=True, text=True, timeout=BOUND, check=False)
+
+    def test_full_disk(self):
+        """Where one process cannot write its piece, all files are as they were, and nothing is left behind."""
+        how = [PARTICLES, self.path("out.pvtp"), "--free-surface", "--stats", self.path("s.json")]
+        names = ["out.pvtp", "s.json", *(f"out_{i}.vtp" for i in range(int(RANKS)))]
+        done = self.run_ranks(*how)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder.name)), sorted(names))
+        for old in (True, False):
+            for name in names:
+                os.remove(self.path(name))
+            for name in names if old else []:
+                with open(self.path(name), "w", encoding="utf-8") as stream:
+                    stream.write("old")
+            done = self.run_failing(*how)
+            self.check_fails(done, "out_1.vtp could not be written: Input/output error")
+            self.assertEqual(sorted(os.listdir(self.folder.name)), sorted(names) if old else [])
+            for name in names if old else []:
+                with open(self.path(name), encoding="utf-8") as stream:
+                    self.assertEqual(stream.read(), "old", name)
+
+    def test_files_of_others(self):
+        """No process writes over a piece that is read, nor over one of the surface."""
+        pieces = write_pieces(PARTICLES, self.folder.name, 2)
+        before = {name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}
+        self.assertIn("piece_1.vtp", before)
+        how = ["--free-surface"]
+        for arguments, words in [
+            ([self.path("piece.pvtp")], "piece_0.vtp would overwrite the input"),
+            ([self.path("o.pvtp"), "--stats", self.path("piece_1.vtp")], "piece_1.vtp would overwrite the input"),
+            ([self.path("piece_1.vtp")], "piece_1.vtp would overwrite the input"),
+            ([self.path("o.pvtp"), "--stats", self.path("o_1.vtp")], "o_1.vtp would be written twice"),
+            ([self.path("o.vti"), "--slice", "z=0", "--stats", self.path("o.vti")], "leave out --stats"),
+        ]:
+            done = self.run_ranks(pieces, *arguments, *([] if "--slice" in arguments else how))
+            self.check_fails(done, words)
+            self.assertEqual({name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}, before)
+
+    def test_slice(self):
+        """Fitted to the particles of all processes."""
+        for output, run in (("alone.vti", self.run_alone), ("ranks.vti", self.run_ranks)):
+            pieces = PARTICLES if run == self.run_alone else write_pieces(PARTICLES, self.folder.name, 3)
+            done = run(pieces, self.path(output), "--slice", "y=0.1", "--resolution", "100")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        alone, ranks = (self.image_arrays(self.path(name)) for name in ("alone.vti", "ranks.vti"))
+        self.assertEqual(set(alone), set(ranks))
+        for name, values in alone.items():
+            self.assertEqual(values.tobytes(), ranks[name].tobytes(), name)
+        self.assertGreater(np.count_nonzero(alone["vtkValidPointMask"]), 100)
+
     def test_missing_array(self):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--scalar", "Nope", "--iso", "1"), "Nope")
 
@@ -214,4 +273,4 @@ class Program(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=sys.argv[:1] + sys.argv[6:], verbosity=2)

@@ -6,6 +6,11 @@
 #include <string>
 #include <vector>
 
+inline bool EndsWith(const std::string& text, const std::string& end)
+{
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
 /// A file format: the ending of its names, and the function that reads or writes it.
 template <typename FunctionT>
 struct FileFormat
@@ -21,9 +26,7 @@ const FileFormat<FunctionT>* FindFormat(
 {
   for (const FileFormat<FunctionT>& format : formats)
   {
-    const std::string ending = format.Ending;
-    if (file.size() > ending.size() &&
-      file.compare(file.size() - ending.size(), ending.size(), ending) == 0)
+    if (EndsWith(file, format.Ending))
     {
       return &format;
     }

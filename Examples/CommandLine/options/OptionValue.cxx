@@ -54,47 +54,36 @@ double ToThreshold(const std::string& option, const std::string& text)
 }
 
 //------------------------------------------------------------------------------
-int ToCount(const std::string& option, const std::string& text, int smallest)
+int ToCount(const std::string& option, const std::string& text, int smallest, int largest)
 {
   int value = 0;
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || value < smallest)
+  if (result.ec != std::errc() || result.ptr != end || value < smallest || value > largest)
   {
-    const bool tooLarge = result.ec == std::errc::result_out_of_range && text[0] != '-';
+    const bool tooLarge =
+      value > largest || (result.ec == std::errc::result_out_of_range && text[0] != '-');
     throw UsageError(option + " needs a whole number " +
-      (tooLarge ? "up to " + std::to_string(std::numeric_limits<int>::max())
-                : "from " + std::to_string(smallest)) +
+      (tooLarge ? "up to " + std::to_string(largest) : "from " + std::to_string(smallest)) +
       ", not '" + text + "'");
   }
   return value;
 }
 
 //------------------------------------------------------------------------------
-int ToLevel(const std::string& option, const std::string& text)
+int ToChoice(const std::string& option, const std::string& text,
+  const std::vector<std::pair<const char*, int>>& choices)
 {
-  const int level = ToCount(option, text, 0);
-  if (level > 24)
+  std::string list;
+  for (const auto& choice : choices)
   {
-    throw UsageError(option + " needs a whole number up to 24, not '" + text + "'");
-  }
-  return level;
-}
-
-//------------------------------------------------------------------------------
-std::string ToChoice(
-  const std::string& option, const std::string& text, const std::vector<std::string>& choices)
-{
-  if (std::find(choices.begin(), choices.end(), text) == choices.end())
-  {
-    std::string list;
-    for (const std::string& choice : choices)
+    if (text == choice.first)
     {
-      list += (list.empty() ? "" : ", ") + choice;
+      return choice.second;
     }
-    throw UsageError(option + " is one of " + list + ", not '" + text + "'");
+    list += (list.empty() ? "" : ", ") + std::string(choice.first);
   }
-  return text;
+  throw UsageError(option + " is one of " + list + ", not '" + text + "'");
 }
 
 //------------------------------------------------------------------------------
@@ -181,6 +170,51 @@ std::vector<double> ToPeriod(const std::string& option, const std::string& text)
     }
   }
   return period;
+}
+
+//------------------------------------------------------------------------------
+void ToSlice(const std::string& option, const std::string& text, int& axis, double& place)
+{
+  const std::size_t found = std::string("xyz").find(text.substr(0, 1));
+  if (text.size() < 3 || text[1] != '=' || found == std::string::npos)
+  {
+    throw UsageError(option + " needs an axis and a place on it, as z=0.1, not '" + text + "'");
+  }
+  axis = static_cast<int>(found);
+  place = ToNumber(option, text.substr(2));
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> ToLine(const std::string& option, const std::string& text)
+{
+  const std::vector<double> line = ToNumbers(option, text);
+  if (line.size() != 6 || std::equal(line.begin(), line.begin() + 3, line.begin() + 3))
+  {
+    throw UsageError(option + " needs two different places, X,Y,Z,X,Y,Z, not '" + text + "'");
+  }
+  return line;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> ToRange(const std::string& option, const std::string& text)
+{
+  const std::vector<double> range = ToNumbers(option, text);
+  if (range.size() != 2 || !(range[0] < range[1]))
+  {
+    throw UsageError(option + " needs two numbers, the lower one first, not '" + text + "'");
+  }
+  return range;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> ToDirection(const std::string& option, const std::string& text)
+{
+  const std::vector<double> direction = ToNumbers(option, text);
+  if (direction.size() != 3 || std::count(direction.begin(), direction.end(), 0.0) == 3)
+  {
+    throw UsageError(option + " needs three numbers, not all 0, not '" + text + "'");
+  }
+  return direction;
 }
 
 //------------------------------------------------------------------------------

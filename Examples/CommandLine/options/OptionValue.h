@@ -3,8 +3,10 @@
 #ifndef OptionValue_h
 #define OptionValue_h
 
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Wrong usage; what() is one sentence.
@@ -22,10 +24,11 @@ bool ParseNumber(const std::string& text, double& value);
 double ToNumber(const std::string& option, const std::string& text);
 double ToPositive(const std::string& option, const std::string& text);
 double ToThreshold(const std::string& option, const std::string& text); ///< 0 or greater
-int ToCount(const std::string& option, const std::string& text, int smallest);
-int ToLevel(const std::string& option, const std::string& text); ///< highest one of adaptive cubes
-std::string ToChoice(
-  const std::string& option, const std::string& text, const std::vector<std::string>& choices);
+int ToCount(const std::string& option, const std::string& text, int smallest,
+  int largest = std::numeric_limits<int>::max());
+/// The number of this word.
+int ToChoice(const std::string& option, const std::string& text,
+  const std::vector<std::pair<const char*, int>>& choices);
 /// An array name, or a constant, which must then be greater than 0.
 std::string ToQuantity(const std::string& option, const std::string& text);
 std::vector<double> ToNumbers(const std::string& option, const std::string& text);
@@ -34,6 +37,14 @@ double ToShare(const std::string& option, const std::string& text); ///< of wall
 std::vector<double> ToBox(const std::string& option, const std::string& text);
 /// Three lengths, or six bounds.
 std::vector<double> ToPeriod(const std::string& option, const std::string& text);
+/// The axis, 0 to 2, and the place on it: z=0.1.
+void ToSlice(const std::string& option, const std::string& text, int& axis, double& place);
+/// From and to, which are not the same.
+std::vector<double> ToLine(const std::string& option, const std::string& text);
+/// The lower one first.
+std::vector<double> ToRange(const std::string& option, const std::string& text);
+/// Three numbers, not all of them 0.
+std::vector<double> ToDirection(const std::string& option, const std::string& text);
 std::vector<std::string> ToNames(const std::string& option, const std::string& text);
 ///@}
 

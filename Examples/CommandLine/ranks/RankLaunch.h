@@ -11,5 +11,4 @@ int LaunchedCount();
 /// The number of this process, 0 where it was started alone.
 int LaunchedRank();
 
-
 #endif

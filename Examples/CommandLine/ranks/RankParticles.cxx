@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankParticles.h"
 
-#include "CommandLineOptions.h"
+#include "Job.h"
 #include "ParticleFile.h"
 #include "PeriodOfData.h"
 #include "RankSession.h"
@@ -66,19 +66,18 @@ vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
 }
 
 //------------------------------------------------------------------------------
-void ResolvePeriod(CommandLineOptions& options, RankSession& session, vtkPointSet* particles)
+void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles)
 {
-  if (options.DetectPeriod)
+  if (job.DetectPeriod)
   {
     std::string problem;
     const vtkSPHPeriod found =
       vtkSPHFindPeriodTogether(session.GetController(), particles->GetFieldData(), problem);
-    session.Together([&] { options.Periodic = CheckedPeriod(found, problem); });
-    options.DetectPeriod = false;
+    session.Together([&] { job.Periodic = CheckedPeriod(found, problem); });
+    job.DetectPeriod = false;
   }
-  if (options.Periodic.size() == 3)
+  if (job.Periodic.size() == 3)
   {
-    options.Periodic =
-      vtkSPHBoundsOfPeriodTogether(session.GetController(), options.Periodic, particles);
+    job.Periodic = vtkSPHBoundsOfPeriodTogether(session.GetController(), job.Periodic, particles);
   }
 }

@@ -10,7 +10,7 @@
 class MessageCapture;
 class RankSession;
 class vtkPointSet;
-struct CommandLineOptions;
+struct Job;
 
 /// Each process's part of a file, with the same arrays in all of them; a single file is the first one's.
 /// Throws std::runtime_error on all of them alike.
@@ -18,6 +18,6 @@ vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
   RankSession& session, const std::string& file, MessageCapture* messages);
 
 /// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
-void ResolvePeriod(CommandLineOptions& options, RankSession& session, vtkPointSet* particles);
+void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles);
 
 #endif

@@ -2,45 +2,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankProbe.h"
 
-#include "CommandLineOptions.h"
 #include "DataSetFile.h"
+#include "Job.h"
 #include "ParticleFile.h"
 #include "ProbeRun.h"
 #include "RankParticles.h"
 #include "RankSession.h"
 
-#include "vtkNew.h"
+#include "vtkMPIController.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHProbe.h"
 
-//------------------------------------------------------------------------------
-void ShareProbe(CommandLineOptions options, RankSession& session, MessageCapture* messages)
+namespace
 {
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New();
+
+/// Of the particles of all processes.
+void FindBounds(const RankSession& session, vtkPointSet* particles, double bounds[6])
+{
+  double lowest[6], own[6]; // and the highest, negative
+  particles->GetBounds(own);
+  for (int i = 0; i < 6; ++i)
+  {
+    own[i] *= i % 2 ? -1.0 : 1.0;
+    own[i] = particles->GetNumberOfPoints() > 0 ? own[i] : VTK_DOUBLE_MAX;
+  }
+  session.GetController()->AllReduce(own, lowest, 6, vtkCommunicator::MIN_OP);
+  for (int i = 0; i < 6; ++i)
+  {
+    bounds[i] = lowest[i] * (i % 2 ? -1.0 : 1.0);
+  }
+}
+
+}
+
+//------------------------------------------------------------------------------
+void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
+{
+  vtkSmartPointer<vtkDataSet> points;
   session.Together(
     [&]
     {
       if (session.IsFirst())
       {
-        points = ReadDataSet(options.Probe, messages);
-        CheckDataSetFile(options.Output, points);
+        points = ReadPoints(job, messages);
       }
     });
   const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesTogether(session, options.Inputs.front(), messages);
-  ResolvePeriod(options, session, particles);
-  vtkNew<vtkSPHProbe> probe;
+    ReadParticlesTogether(session, job.Inputs.front(), messages);
+  ResolvePeriod(job, session, particles);
+  double bounds[6];
+  FindBounds(session, particles, bounds);
   double seconds = 0.0;
-  session.Together([&] { SetUpProbe(probe, options, points, particles); });
-  session.Together([&] { seconds = RunProbe(probe, options, messages); });
+  session.Together(
+    [&]
+    {
+      if (!points && session.IsFirst())
+      {
+        points = MakePoints(job, bounds);
+      }
+      points = points ? points : vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkPolyData>::New());
+      SetUpProbe(job, points, particles);
+    });
+  session.Together([&] { seconds = RunProbe(job, messages); });
   session.Together(
     [&]
     {
       if (session.IsFirst())
       {
-        ReportProbe(probe, options, seconds, messages);
-        WriteDataSet(options.Output, vtkDataSet::SafeDownCast(probe->GetOutput()), messages);
+        ReportProbe(job, seconds, messages);
+        WriteDataSet(job.Output, vtkDataSet::SafeDownCast(job.Probe->GetOutput()), messages);
       }
     });
 }

@@ -5,10 +5,10 @@
 
 class MessageCapture;
 class RankSession;
-struct CommandLineOptions;
+struct Job;
 
 /// A probe that all processes share; the first one reads the points and writes the result. Throws
 /// std::runtime_error on all of them alike.
-void ShareProbe(CommandLineOptions options, RankSession& session, MessageCapture* messages);
+void ShareProbe(Job& job, RankSession& session, MessageCapture* messages);
 
 #endif

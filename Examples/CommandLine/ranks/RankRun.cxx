@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankRun.h"
 
-#include "CommandLineOptions.h"
+#include "ColorScale.h"
+#include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
+#include "ParticleFile.h"
 #include "ProbeRun.h"
 #include "RankOutput.h"
 #include "RankParticles.h"
@@ -17,7 +19,6 @@
 
 #include "vtkFieldData.h"
 #include "vtkMPIController.h"
-#include "vtkMarchingCorrectors.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -25,70 +26,65 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
-#include <memory>
 #include <stdexcept>
 
 namespace
 {
 
-void CheckUse(const CommandLineOptions& options, const RankSession& session)
+void CheckUse(const Job& job, const RankSession& session, MessageCapture* messages)
 {
-  if (IsFilm(options) || !options.PictureFile.empty() || options.Repeat > 1)
+  if (job.IsFilm() || !job.Picture.File.empty() || job.Repeat > 1)
   {
     throw std::runtime_error("several processes share a surface or a probe, but no film, "
                              "--screenshot or --repeat; run these without mpirun");
   }
-  if (session.IsFirst() && !options.Probe.empty())
+  if (job.IsProbe())
   {
-    CheckProbeFiles(options);
-  }
-  else if (session.IsFirst())
-  {
-    std::vector<std::string> outputs = { options.Output };
-    if (!options.StatisticsFile.empty())
+    if (session.IsFirst())
     {
-      outputs.push_back(options.StatisticsFile);
+      CheckProbeFiles(job, messages);
     }
-    CheckOutputs(options.Inputs, outputs);
-  }
-  if (IsInPieces(options.Output))
-  {
-    CheckOutputs(options.Inputs, { PieceName(options.Output, session.GetRank()) });
-  }
-}
-
-void WriteResult(const CommandLineOptions& options, RankSession& session, vtkPolyData* surface,
-  MessageCapture* messages)
-{
-  if (IsInPieces(options.Output))
-  {
-    session.Together(
-      [&] { WriteSurface(PieceName(options.Output, session.GetRank()), surface, messages); });
-    session.Together(
-      [&]
-      {
-        if (session.IsFirst())
-        {
-          WriteOutput(options.Output, ListPieces(options.Output, session.GetCount(), surface));
-        }
-      });
     return;
   }
-  const vtkSmartPointer<vtkPolyData> whole = MergeOnFirst(session.GetController(), surface);
-  session.Together(
-    [&]
+  std::vector<std::string> outputs;
+  for (int rank = 0; IsInPieces(job.Output) && rank < session.GetCount(); ++rank)
+  {
+    if (session.IsFirst() || rank == session.GetRank())
     {
-      if (session.IsFirst())
-      {
-        WriteSurface(options.Output, whole, messages);
-      }
-    });
+      outputs.push_back(PieceName(job.Output, rank));
+    }
+  }
+  for (const std::string& file : { job.Output, job.StatisticsFile })
+  {
+    if (session.IsFirst() && !file.empty())
+    {
+      outputs.push_back(file);
+    }
+  }
+  CheckOutputs(ListFiles(job.Inputs, messages), outputs);
 }
 
-void Report(
-  const CommandLineOptions& options, const Run& run, const std::vector<std::string>& warnings)
+/// Puts what this process writes beside its places.
+void WriteSurface(const Job& job, const RankSession& session, vtkPolyData* own, vtkPolyData* whole,
+  const ColorScale& colors, MessageCapture* messages, OutputFiles& files)
 {
-  if (!options.Quiet)
+  if (IsInPieces(job.Output))
+  {
+    const std::string piece = PieceName(job.Output, session.GetRank());
+    files.Write(piece, SurfaceBytes(piece, own, colors, messages));
+  }
+  if (!session.IsFirst())
+  {
+    return;
+  }
+  files.Write(job.Output,
+    whole ? SurfaceBytes(job.Output, whole, colors, messages)
+          : ListPieces(job.Output, session.GetCount(), own));
+}
+
+void Report(const Job& job, const Run& run, const std::vector<std::string>& warnings)
+{
+  if (!job.Quiet)
   {
     std::cout << DescribeRun(run.Statistics) << DescribeSeconds(run.Statistics) << std::flush;
   }
@@ -98,48 +94,85 @@ void Report(
   }
 }
 
-void ShareSurface(CommandLineOptions options, RankSession& session, MessageCapture* messages)
+/// The filters share their runs for as long as it lives; they were made before MPI began.
+class Shared
 {
-  vtkNew<vtkMarchingCorrectors> filter;
-  std::unique_ptr<Run> run;
-  const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesTogether(session, options.Inputs.front(), messages);
-  ResolvePeriod(options, session, particles);
-  session.Together([&] { SetUpFilter(filter, options, particles); });
-  session.Together([&] { run.reset(new Run(Extract(filter, options, messages))); });
-  vtkDataArray* triangles = run->Statistics->GetArray("Triangles");
-  const std::vector<std::string> warnings = triangles && triangles->GetComponent(0, 0) > 0
-    ? messages->GetWarnings()
-    : Warnings(run->Surface, run->Statistics, messages);
-  if (session.IsFirst())
+public:
+  Shared(const Job& job, const RankSession& session)
+    : Sharing(job)
   {
-    Report(options, *run, warnings);
+    this->Set(session.GetController());
   }
+  ~Shared() { this->Set(nullptr); }
+  Shared(const Shared&) = delete;
+  void operator=(const Shared&) = delete;
+
+private:
+  void Set(vtkMultiProcessController* controller) const
+  {
+    for (vtkSPHAlgorithm* filter : this->Sharing.All())
+    {
+      filter->SetController(controller);
+    }
+  }
+
+  const Job& Sharing;
+};
+
+void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
+{
+  Run run;
+  const vtkSmartPointer<vtkPointSet> particles =
+    ReadParticlesTogether(session, job.Inputs.front(), messages);
+  ResolvePeriod(job, session, particles);
+  session.Together([&] { SetUpSurface(job, particles); });
+  session.Together([&] { run = Extract(job, messages); });
+  vtkDataArray* triangles = run.Statistics->GetArray("Triangles");
+  std::vector<std::string> warnings = triangles && triangles->GetComponent(0, 0) > 0
+    ? messages->GetWarnings()
+    : Warnings(run.Surface, run.Statistics, messages);
   const double peakResidentBytes = PeakResidentBytes();
-  WriteResult(options, session, run->Surface, messages);
+  vtkSmartPointer<vtkPolyData> whole;
+  if (!IsInPieces(job.Output))
+  {
+    whole = MergeOnFirst(session.GetController(), run.Surface);
+  }
+  ColorScale colors(job.Picture);
+  OutputFiles files;
   session.Together(
     [&]
     {
-      if (session.IsFirst() && !options.StatisticsFile.empty())
+      if (whole)
       {
-        std::cout.flush();
-        WriteOutput(options.StatisticsFile,
+        colors.Include(whole);
+        const std::string lost = LostArrays(job.Output, whole, colors);
+        warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
+      }
+      WriteSurface(job, session, run.Surface, whole, colors, messages, files);
+      if (session.IsFirst() && !job.StatisticsFile.empty())
+      {
+        files.Write(job.StatisticsFile,
           StatisticsAsJson(
-            options, { run->Statistics.Get() }, { run->WallSeconds }, warnings, peakResidentBytes));
+            job, { run.Statistics }, { run.WallSeconds }, warnings, peakResidentBytes));
       }
     });
+  if (session.IsFirst())
+  {
+    Report(job, run, warnings);
+  }
+  session.Together([&] { files.Commit(); }); // only where all have written all
 }
 }
 
 //------------------------------------------------------------------------------
-bool RunTogether(const CommandLineOptions& options, MessageCapture* messages)
+bool RunTogether(Job& job, MessageCapture* messages)
 {
   RankSession session;
+  const Shared shared(job, session);
   try
   {
-    session.Together([&] { CheckUse(options, session); });
-    options.Probe.empty() ? ShareSurface(options, session, messages)
-                          : ShareProbe(options, session, messages);
+    session.Together([&] { CheckUse(job, session, messages); });
+    job.IsProbe() ? ShareProbe(job, session, messages) : ShareSurface(job, session, messages);
   }
   catch (const std::exception& error)
   {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollectionFile.h"
 
-#include "CommandLineOptions.h"
+#include "Ending.h"
+#include "FileFormat.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
-#include "ReadingLimits.h"
 #include "SafeText.h"
 
 #include "vtkSmartPointer.h"
@@ -49,7 +49,8 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(
   {
     Fail(file, std::strerror(errno));
   }
-  const ReadingLimits limits(file);
+  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
+  const Silence silence;
   messages->Clear();
   vtkSmartPointer<vtkXMLDataElement> root;
   root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
@@ -76,9 +77,7 @@ std::string Resolved(const std::string& list, const std::string& file)
 //------------------------------------------------------------------------------
 bool IsCollectionFile(const std::string& file)
 {
-  const std::string ending = ".pvd";
-  return file.size() > ending.size() &&
-    file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+  return EndsWith(file, ".pvd");
 }
 
 //------------------------------------------------------------------------------

@@ -3,11 +3,12 @@
 #include "ParticleFile.h"
 
 #include "CollectionFile.h"
+#include "DeclaredSizes.h"
+#include "Ending.h"
 #include "FileFormat.h"
 #include "MessageCapture.h"
 #include "ParticleParts.h"
 #include "PeriodOfData.h"
-#include "ReadingLimits.h"
 #include "SafeText.h"
 
 #include "vtkAbstractArray.h"
@@ -187,6 +188,9 @@ const std::vector<FileFormat<Reader>> DataFormats = {
   { ".vtk", ReadLegacy },
 };
 
+/// What numbers of points and particles are counted in.
+const vtkIdType MostPoints = VTK_INT_MAX;
+
 /// VTK's readers seek in the file, so it must be a regular one.
 void CheckReadable(
   const std::string& file, const std::vector<FileFormat<Reader>>& formats = Formats)
@@ -212,10 +216,12 @@ void CheckReadable(
 
 /// VTK's reader at work. Its exceptions are those of the standard library where it asks for memory
 /// by sizes that a damaged file gave it.
-vtkSmartPointer<vtkDataObject> ReadWithinLimits(
+vtkSmartPointer<vtkDataObject> ReadWithCare(
   const std::string& file, const std::vector<FileFormat<Reader>>& formats = Formats)
 {
-  const ReadingLimits limits(file);
+  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
+  const Silence silence;
+  CheckDeclaredSizes(file);
   try
   {
     return FindFormat(formats, file)->Process(file);
@@ -226,9 +232,8 @@ vtkSmartPointer<vtkDataObject> ReadWithinLimits(
   catch (const std::length_error&)
   {
   }
-  throw std::runtime_error(file +
-    " cannot be read: it asks for more memory than there is or than a file of its size can need; "
-    "it may be damaged");
+  throw std::runtime_error(
+    file + " cannot be read: it asks for more memory than there is; it may be damaged");
 }
 
 /// Names go into sentences and into the surface's file, where not all bytes may stand that a legacy
@@ -282,7 +287,7 @@ vtkSmartPointer<vtkPointSet> ReadFile(const std::string& file, MessageCapture* m
 {
   CheckReadable(file);
   messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadWithinLimits(file);
+  vtkSmartPointer<vtkDataObject> data = ReadWithCare(file);
   // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
   if (!messages->GetErrors().empty())
   {
@@ -374,6 +379,26 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages)
+{
+  std::vector<std::string> all = files;
+  for (const std::string& file : files)
+  {
+    try
+    {
+      const std::vector<std::string> parts =
+        IsList(file) ? ListParts(file, messages) : std::vector<std::string>();
+      all.insert(all.end(), parts.begin(), parts.end());
+    }
+    catch (const std::runtime_error&)
+    {
+      // It is said where it is read.
+    }
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticlesPart(
   const std::string& file, int rank, int count, MessageCapture* messages)
 {
@@ -396,12 +421,17 @@ vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture*
 {
   CheckReadable(file, DataFormats);
   messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadWithinLimits(file, DataFormats);
+  vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, DataFormats);
   if (!messages->GetErrors().empty())
   {
     throw std::runtime_error(file + " cannot be read: " + messages->GetErrors().front());
   }
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
+  if (set && set->GetNumberOfPoints() > MostPoints)
+  {
+    throw std::runtime_error(file + " has " + std::to_string(set->GetNumberOfPoints()) +
+      " points; at most " + std::to_string(MostPoints) + " can be probed at once");
+  }
   if (!set || set->GetNumberOfPoints() == 0)
   {
     throw std::runtime_error(file + " holds no points");

@@ -16,14 +16,17 @@ class vtkPointSet;
 std::string ParticleFileEndings();
 
 /// Reads particles and their arrays. Throws std::runtime_error with one sentence if the file cannot
-/// be read, is damaged, or holds no points; where VTK's reader crashes over it, the process that
-/// supervises this one says so. Names of arrays are made fit to print.
+/// be read, is damaged, or holds no points; where VTK's reader crashes over it, the program ends with a
+/// sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages);
 
 /// The same for files that each hold a part of the particles. Arrays that are not in all of them are
 /// left out, and so are particles that a part marks as another one's (vtkGhostType).
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages);
+
+/// These files, and those that they list as pieces: all that is read, as far as lists can be.
+std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages);
 
 /// Of `count` processes, the part that this one reads: every so manieth piece of a file that lists
 /// pieces; another file is the first one's. May have no points.

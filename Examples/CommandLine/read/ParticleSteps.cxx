@@ -3,7 +3,7 @@
 #include "ParticleSteps.h"
 
 #include "CollectionFile.h"
-#include "CommandLineOptions.h"
+#include "Job.h"
 #include "ParticleFile.h"
 
 #include "vtkInformation.h"
@@ -14,7 +14,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -30,7 +29,7 @@ ParticleSteps::ParticleSteps()
 ParticleSteps::~ParticleSteps() = default;
 
 //------------------------------------------------------------------------------
-void ParticleSteps::SetSteps(const std::vector<Step>& steps, MessageCapture* messages)
+void ParticleSteps::SetSteps(const std::vector<Step>* steps, MessageCapture* messages)
 {
   this->Steps = steps;
   this->Messages = messages;
@@ -42,7 +41,7 @@ int ParticleSteps::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   std::vector<double> times;
-  for (const Step& step : this->Steps)
+  for (const Step& step : *this->Steps)
   {
     times.push_back(step.Time);
   }
@@ -60,10 +59,9 @@ int ParticleSteps::RequestData(
   vtkInformation* info = outputVector->GetInformationObject(0);
   const double time = info->Has(Pipeline::UPDATE_TIME_STEP())
     ? info->Get(Pipeline::UPDATE_TIME_STEP())
-    : this->Steps.front().Time;
-  const auto step = std::min_element(this->Steps.begin(), this->Steps.end(),
-    [&](const Step& a, const Step& b)
-    { return std::abs(a.Time - time) < std::abs(b.Time - time); });
+    : this->Steps->front().Time;
+  auto step = FindStep(*this->Steps, time); // one of the times that were offered
+  step = step == this->Steps->end() ? step - 1 : step;
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   output->Initialize(); // the step before it, so that there are never three
   try
@@ -80,19 +78,26 @@ int ParticleSteps::RequestData(
 }
 
 //------------------------------------------------------------------------------
-std::vector<ParticleSteps::Step> ListSteps(
-  const CommandLineOptions& options, MessageCapture* messages)
+std::vector<ParticleSteps::Step>::const_iterator FindStep(
+  const std::vector<ParticleSteps::Step>& steps, double time)
+{
+  return std::lower_bound(steps.begin(), steps.end(), time,
+    [](const ParticleSteps::Step& step, double t) { return step.Time < t; });
+}
+
+//------------------------------------------------------------------------------
+std::vector<ParticleSteps::Step> ListSteps(const Job& job, MessageCapture* messages)
 {
   std::vector<ParticleSteps::Step> steps;
-  if (!IsCollectionFile(options.Inputs.front()))
+  if (!IsCollectionFile(job.Inputs.front()))
   {
-    for (const std::string& input : options.Inputs)
+    for (const std::string& input : job.Inputs)
     {
-      steps.push_back({ static_cast<double>(steps.size()) * options.TimeStep, { input } });
+      steps.push_back({ static_cast<double>(steps.size()) * job.TimeStep, { input } });
     }
     return steps;
   }
-  for (const CollectionEntry& entry : ReadCollection(options.Inputs.front(), messages))
+  for (const CollectionEntry& entry : ReadCollection(job.Inputs.front(), messages))
   {
     if (steps.empty() || steps.back().Time != entry.Time)
     {

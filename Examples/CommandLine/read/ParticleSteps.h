@@ -9,7 +9,7 @@
 #include <vector>
 
 class MessageCapture;
-struct CommandLineOptions;
+struct Job;
 
 /// The stored steps of a film, for VTK's pipeline: reads the particles of the time that is asked for.
 class ParticleSteps : public vtkPolyDataAlgorithm
@@ -24,8 +24,8 @@ public:
   static ParticleSteps* New();
   vtkTypeMacro(ParticleSteps, vtkPolyDataAlgorithm);
 
-  /// In the order of time; the messages must outlive this.
-  void SetSteps(const std::vector<Step>& steps, MessageCapture* messages);
+  /// In the order of time; steps and messages must outlive this.
+  void SetSteps(const std::vector<Step>* steps, MessageCapture* messages);
 
   /// Why the last step could not be read, one sentence; empty if it could.
   const std::string& GetError() const { return this->Error; }
@@ -44,13 +44,16 @@ private:
   ParticleSteps(const ParticleSteps&) = delete;
   void operator=(const ParticleSteps&) = delete;
 
-  std::vector<Step> Steps;
+  const std::vector<Step>* Steps = nullptr;
   MessageCapture* Messages = nullptr;
   std::string Error;
 };
 
+/// The first step that is not before this time; there may be none.
+std::vector<ParticleSteps::Step>::const_iterator FindStep(
+  const std::vector<ParticleSteps::Step>& steps, double time);
+
 /// The steps that the options name. Throws std::runtime_error with one sentence.
-std::vector<ParticleSteps::Step> ListSteps(
-  const CommandLineOptions& options, MessageCapture* messages);
+std::vector<ParticleSteps::Step> ListSteps(const Job& job, MessageCapture* messages);
 
 #endif

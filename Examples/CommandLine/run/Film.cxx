@@ -3,38 +3,42 @@
 #include "Film.h"
 
 #include "CollectionFile.h"
-#include "CommandLineOptions.h"
-#include "FilmRecord.h"
+#include "ColorScale.h"
+#include "Ending.h"
+#include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
+#include "ParticleFile.h"
 #include "ParticleSteps.h"
+#include "Picture.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
-#include "Supervisor.h"
+#include "StepName.h"
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
 
-#include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
-#include "vtkSPHDerivatives.h"
 #include "vtkSPHTemporalInterpolator.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <map>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
-
-#include <unistd.h>
 
 namespace
 {
 
 namespace fs = std::filesystem;
+using Steps = std::vector<ParticleSteps::Step>;
+using Clock = std::chrono::steady_clock;
 
 std::string Text(double value)
 {
@@ -44,11 +48,10 @@ std::string Text(double value)
 }
 
 /// The stored times, or those that were asked for.
-std::vector<double> ListTimes(
-  const CommandLineOptions& options, const std::vector<ParticleSteps::Step>& steps)
+std::vector<double> ListTimes(const Job& job, const Steps& steps)
 {
-  std::vector<double> times = options.Times;
-  for (std::size_t i = 0; options.Times.empty() && i < steps.size(); ++i)
+  std::vector<double> times = job.Times;
+  for (std::size_t i = 0; job.Times.empty() && i < steps.size(); ++i)
   {
     times.push_back(steps[i].Time);
   }
@@ -56,11 +59,12 @@ std::vector<double> ListTimes(
   for (double& time : times)
   {
     // 3 * 0.1 is meant to be 0.3.
-    const auto nearest = std::min_element(steps.begin(), steps.end(),
-      [&](const ParticleSteps::Step& a, const ParticleSteps::Step& b)
-      { return std::abs(a.Time - time) < std::abs(b.Time - time); });
-    const bool isStored = std::abs(nearest->Time - time) <= 1e-12 * (end - begin);
-    time = isStored ? nearest->Time : time;
+    const double tolerance = 1e-12 * (end - begin);
+    const auto next = FindStep(steps, time - tolerance);
+    if (next != steps.end() && next->Time <= time + tolerance)
+    {
+      time = next->Time;
+    }
     if (time < begin || time > end)
     {
       throw UsageError("--times: " + Text(time) + " is outside of the steps' times, " +
@@ -71,52 +75,56 @@ std::vector<double> ListTimes(
   return times;
 }
 
-/// "film.pvd" -> "film_0000.vtp", ...
+/// "film.pvd" -> "film_0000.vtp", ...; "film_%04d.ply" -> "film_0000.ply", ...
 std::vector<std::string> ListSurfaces(const std::string& output, std::size_t count)
 {
-  const std::string stem = output.substr(0, output.size() - std::string(".pvd").size());
-  const int width = std::max(4, static_cast<int>(std::to_string(count - 1).size()));
+  std::string stem, name = output;
+  if (IsCollectionFile(output))
+  {
+    const std::size_t width = std::max<std::size_t>(4, std::to_string(count - 1).size());
+    stem = output.substr(0, output.size() - std::string(".pvd").size());
+    name = "_%0" + std::to_string(width) + "d.vtp";
+  }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < count; ++i)
   {
-    std::ostringstream name;
-    name << stem << "_" << std::setw(width) << std::setfill('0') << i << ".vtp";
-    names.push_back(name.str());
+    names.push_back(stem + NameOfStep(name, i));
   }
   return names;
 }
 
-/// No file is written over another, and none over one that is no step of an older film: nobody named
-/// these files.
-void CheckFiles(const CommandLineOptions& options, const std::vector<ParticleSteps::Step>& steps,
-  const std::vector<std::string>& surfaces)
+/// No file is written over another, and, beside a .pvd file, none over one that is no step of an older
+/// film: nobody named these.
+void CheckFiles(const Job& job, const Steps& steps, const std::vector<std::string>& surfaces,
+  MessageCapture* messages)
 {
-  if (Printable(options.Output) != options.Output)
+  if (Printable(job.Output) != job.Output)
   {
-    throw UsageError(options.Output + " has characters in its name that a .pvd file cannot hold");
+    throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
   }
-  std::vector<std::string> inputs = options.Inputs, outputs = surfaces;
+  std::vector<std::string> inputs = job.Inputs, outputs = surfaces;
   for (const ParticleSteps::Step& step : steps)
   {
     inputs.insert(inputs.end(), step.Files.begin(), step.Files.end());
   }
-  outputs.push_back(options.Output);
-  if (!options.StatisticsFile.empty())
+  for (std::size_t i = 0; !job.Picture.File.empty() && i < surfaces.size(); ++i)
   {
-    outputs.push_back(options.StatisticsFile);
+    outputs.push_back(NameOfStep(job.Picture.File, i));
   }
-  try
+  if (!job.StatisticsFile.empty())
   {
-    CheckOutputs(inputs, outputs);
+    outputs.push_back(job.StatisticsFile);
   }
-  catch (const std::invalid_argument& error)
+  if (IsCollectionFile(job.Output))
   {
-    throw UsageError(error.what());
+    outputs.push_back(job.Output);
   }
+  CheckOutputs(ListFiles(inputs, messages), outputs);
   for (const std::string& surface : surfaces)
   {
     std::error_code error;
-    if (fs::exists(fs::symlink_status(surface, error)) && !IsFilmSurface(surface))
+    if (IsCollectionFile(job.Output) && fs::exists(fs::symlink_status(surface, error)) &&
+      !IsFilmSurface(surface))
     {
       throw UsageError(surface +
         " is there already, and is no step of a film; choose another name "
@@ -125,57 +133,70 @@ void CheckFiles(const CommandLineOptions& options, const std::vector<ParticleSte
   }
 }
 
+/// Says each sentence of many steps once, with the first step's name, and at the end how often it came.
+class Sentences
+{
+public:
+  void Tell(const std::string& kind, const std::string& step, const std::string& sentence)
+  {
+    if (++this->Counts[kind + sentence] == 1)
+    {
+      Say(kind + step + ": " + sentence);
+    }
+  }
+
+  void TellCounts() const
+  {
+    for (const auto& [sentence, count] : this->Counts)
+    {
+      if (count > 1)
+      {
+        Say(std::to_string(count - 1) + (count == 2 ? " more step: " : " more steps: ") + sentence);
+      }
+    }
+  }
+
+private:
+  std::map<std::string, int> Counts;
+};
+
 class Film
 {
 public:
-  Film(const CommandLineOptions& options, FilmRecord& record, MessageCapture* messages)
-    : Options(options)
-    , Record(record)
+  Film(const Job& job, MessageCapture* messages)
+    : Options(job)
     , Messages(messages)
-    , Steps(ListSteps(options, messages))
-    , Times(ListTimes(options, this->Steps))
-    , Surfaces(ListSurfaces(options.Output, this->Times.size()))
-    , Made(record.Read())
+    , Stored(ListSteps(job, messages))
+    , Times(ListTimes(job, this->Stored))
+    , Surfaces(ListSurfaces(job.Output, this->Times.size()))
+    , Colors(job.Picture)
   {
-    ShowProgress(this->Filter, this->Options, &this->Progress);
+    CheckFiles(job, this->Stored, this->Surfaces, messages);
+    if (!job.Picture.File.empty())
+    {
+      this->Drawn.reset(new Picture(job.Picture));
+    }
   }
 
-  bool Make(int first)
+  bool Make()
   {
-    if (first == 0)
-    {
-      CheckFiles(this->Options, this->Steps, this->Surfaces);
-    }
-    else
-    {
-      this->Fail(static_cast<std::size_t>(first - 1), LastEnd());
-    }
     this->Connect();
-    for (std::size_t i = static_cast<std::size_t>(first); i < this->Times.size(); ++i)
+    bool isGood = true;
+    for (std::size_t i = 0; i < this->Times.size(); ++i)
     {
-      BeginPart(static_cast<int>(i));
       const Activity making(this->Label(i) + ": the run failed",
         "the OpenCL driver may be at fault, or memory ran out");
-      try
-      {
-        this->MakeStep(i);
-      }
-      catch (const std::runtime_error& error)
-      {
-        this->EndProgress();
-        Say(this->Label(i) + ": " + error.what());
-        this->Fail(i, error.what());
-        this->Connect(); // nothing is left of what failed halfway
-      }
+      isGood = this->TryStep(i) && isGood;
     }
-    BeginPart(-1);
+    this->List(true);
+    this->Said.TellCounts();
     if (!this->Options.StatisticsFile.empty())
     {
       std::cout.flush(); // the file may be /dev/stdout
-      WriteOutput(this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made));
+      WriteOutput(
+        this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Setting));
     }
-    return std::all_of(this->Made.begin(), this->Made.end(),
-      [](const FilmStep& step) { return step.Error.empty(); });
+    return isGood;
   }
 
 private:
@@ -184,19 +205,38 @@ private:
     return this->Surfaces[i] + " (time " + Text(this->Times[i]) + ")";
   }
 
-  void EndProgress() const
+  bool TryStep(std::size_t i)
   {
+    std::string sentence = "host memory ran out";
+    try
+    {
+      this->MakeStep(i);
+      return true;
+    }
+    catch (const std::bad_alloc&)
+    {
+    }
+    catch (const std::exception& error)
+    {
+      sentence = error.what();
+    }
     if (ShowsProgress(this->Options))
     {
       std::fputs("\r\033[K", stderr);
     }
+    this->Said.Tell("", this->Label(i), sentence);
+    FilmStep step = this->Describe(i);
+    step.Error = sentence;
+    this->Add(step, StepAsJson(step, nullptr, 0.0));
+    this->Connect(); // nothing is left of what failed halfway
+    return false;
   }
 
   void Connect()
   {
     vtkNew<ParticleSteps> source;
     vtkNew<vtkSPHTemporalInterpolator> interpolator;
-    source->SetSteps(this->Steps, this->Messages);
+    source->SetSteps(&this->Stored, this->Messages);
     interpolator->SetInputConnection(source->GetOutputPort());
     this->Source = source;
     this->Interpolator = interpolator;
@@ -208,33 +248,21 @@ private:
     FilmStep step;
     step.Time = this->Times[i];
     step.Output = this->Surfaces[i];
-    for (std::size_t k = 0; k < this->Steps.size(); ++k)
+    const auto next = FindStep(this->Stored, step.Time);
+    for (auto used = next->Time == step.Time ? next : next - 1; used <= next; ++used)
     {
-      const bool isThis = this->Steps[k].Time == step.Time;
-      const bool isBefore = k + 1 < this->Steps.size() &&
-        this->Steps[k].Time<step.Time&& this->Steps[k + 1].Time> step.Time;
-      const bool isAfter =
-        k > 0 && this->Steps[k].Time > step.Time && this->Steps[k - 1].Time < step.Time;
-      if (isThis || isBefore || isAfter)
-      {
-        step.Inputs.insert(
-          step.Inputs.end(), this->Steps[k].Files.begin(), this->Steps[k].Files.end());
-      }
+      step.Inputs.insert(step.Inputs.end(), used->Files.begin(), used->Files.end());
     }
     return step;
   }
 
-  void Fail(std::size_t i, const std::string& sentence)
+  /// What was made of a step. The statistics of many are kept where somebody wants them only.
+  void Add(FilmStep step, const std::string& statistics)
   {
-    FilmStep step = this->Describe(i);
-    step.Error = sentence;
-    step.Statistics = StepAsJson(step, nullptr, 0.0);
-    this->Add(step);
-  }
-
-  void Add(const FilmStep& step)
-  {
-    this->Record.Add(step);
+    if (!this->Options.StatisticsFile.empty())
+    {
+      step.Statistics = statistics;
+    }
     this->Made.push_back(step);
   }
 
@@ -257,13 +285,12 @@ private:
 
   void MakeStep(std::size_t i)
   {
-    this->Progress = "step " + std::to_string(i + 1) + " of " + std::to_string(this->Times.size()) +
-      ", time " + Text(this->Times[i]) + ": ";
+    const std::string progress = "step " + std::to_string(i + 1) + " of " +
+      std::to_string(this->Times.size()) + ", time " + Text(this->Times[i]) + ": ";
     std::vector<std::string> warnings;
     const vtkSmartPointer<vtkPointSet> particles = this->ParticlesAt(this->Times[i], warnings);
-    SetUpFilter(this->Filter, this->Options, particles, this->Derivatives);
-    this->Filter->KeepDeviceDataOn(); // the next step takes the buffers of this one
-    const Run run = Extract(this->Filter, this->Options, this->Messages);
+    SetUpSurface(this->Options, particles);
+    const Run run = Extract(this->Options, this->Messages, progress);
     for (const std::string& warning : Warnings(run.Surface, run.Statistics, this->Messages))
     {
       warnings.push_back(warning);
@@ -272,12 +299,11 @@ private:
     {
       AddHintOfPeriod(this->Options, particles, warnings);
     }
-    WriteFilmSurface(this->Surfaces[i], run.Surface, this->Messages);
-    FilmStep step = this->Describe(i);
-    step.Statistics = StepAsJson(step, run.Statistics, run.WallSeconds);
-    step.Setting = SettingAsJson(this->Options, run.Statistics);
-    this->Add(step);
-    this->List();
+    this->Write(i, run.Surface, particles, warnings);
+    this->Setting = SettingAsJson(this->Options, run.Statistics);
+    const FilmStep step = this->Describe(i);
+    this->Add(step, StepAsJson(step, run.Statistics, run.WallSeconds));
+    this->List(false);
     if (!this->Options.Quiet)
     {
       std::cout << Printable(this->Label(i)) << ": " << run.Surface->GetNumberOfPoints()
@@ -286,13 +312,45 @@ private:
     }
     for (const std::string& warning : warnings)
     {
-      Say("warning: " + this->Label(i) + ": " + warning);
+      this->Said.Tell("warning: ", this->Label(i), WithOptions(this->Options, warning));
     }
   }
 
-  /// All surfaces so far: the film can be looked at while it grows, and where the program is ended.
-  void List() const
+  /// The step's surface and picture, both or none.
+  void Write(
+    std::size_t i, vtkPolyData* surface, vtkPointSet* particles, std::vector<std::string>& warnings)
   {
+    const std::string& file = this->Surfaces[i];
+    this->Colors.Include(surface);
+    OutputFiles files;
+    files.Write(file,
+      IsCollectionFile(this->Options.Output)
+        ? FilmSurfaceBytes(file, surface, this->Messages)
+        : SurfaceBytes(file, surface, this->Colors, this->Messages));
+    if (this->Drawn)
+    {
+      const std::string frame = NameOfStep(this->Options.Picture.File, i);
+      files.Write(
+        frame, this->Drawn->Draw(frame, surface, particles, this->Colors, this->Messages));
+    }
+    files.Commit();
+    const std::string lost = LostArrays(file, surface, this->Colors);
+    if (!lost.empty())
+    {
+      warnings.push_back(lost);
+    }
+  }
+
+  /// All surfaces so far: the film can be looked at while it grows, and where the program is ended. The
+  /// list of a long film is not written after each step, but as often as it takes a twentieth of the time.
+  void List(bool isLast)
+  {
+    const auto begin = Clock::now();
+    if (!IsCollectionFile(this->Options.Output) || this->Made.size() == this->Listed ||
+      (!isLast && begin < this->NextList))
+    {
+      return;
+    }
     std::vector<CollectionEntry> entries;
     for (const FilmStep& step : this->Made)
     {
@@ -301,19 +359,26 @@ private:
         entries.push_back({ step.Time, step.Output });
       }
     }
-    WriteOutput(this->Options.Output, CollectionText(entries));
+    if (!entries.empty())
+    {
+      WriteOutput(this->Options.Output, CollectionText(entries));
+    }
+    this->Listed = this->Made.size();
+    this->NextList = Clock::now() + 19 * (Clock::now() - begin);
   }
 
-  const CommandLineOptions& Options;
-  FilmRecord& Record;
+  const Job& Options;
   MessageCapture* const Messages;
-  const std::vector<ParticleSteps::Step> Steps;
+  const Steps Stored;
   const std::vector<double> Times;
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
-  std::string Progress;
-  vtkNew<vtkMarchingCorrectors> Filter;  // for all steps, with its program and its buffers
-  vtkNew<vtkSPHDerivatives> Derivatives; // its device and buffers, too, are those of all steps
+  std::string Setting;    ///< of the last one that went well
+  std::size_t Listed = 0; ///< how many of them the list knows of
+  Clock::time_point NextList;
+  Sentences Said;
+  ColorScale Colors;
+  std::unique_ptr<Picture> Drawn; ///< where pictures are asked for
   vtkSmartPointer<ParticleSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
@@ -321,8 +386,8 @@ private:
 }
 
 //------------------------------------------------------------------------------
-bool MakeFilm(
-  const CommandLineOptions& options, int first, FilmRecord& record, MessageCapture* messages)
+bool MakeFilm(const Job& job, MessageCapture* messages)
 {
-  return Film(options, record, messages).Make(first);
+  job.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one
+  return Film(job, messages).Make();
 }

@@ -3,14 +3,11 @@
 #ifndef Film_h
 #define Film_h
 
-class FilmRecord;
 class MessageCapture;
-struct CommandLineOptions;
+struct Job;
 
-/// One surface for each time of a film, and the .pvd file that lists them, from the step `first` on;
-/// those before it are in the record. A step that fails is named and the others done: then this is
-/// false. Throws where there can be no film at all.
-bool MakeFilm(
-  const CommandLineOptions& options, int first, FilmRecord& record, MessageCapture* messages);
+/// One surface for each time of a film, and the .pvd file that lists them. A step that fails is named and
+/// the others done: then this is false. Throws where there can be no film at all.
+bool MakeFilm(const Job& job, MessageCapture* messages);
 
 #endif

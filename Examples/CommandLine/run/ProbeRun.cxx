@@ -2,42 +2,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProbeRun.h"
 
-#include "CommandLineOptions.h"
+#include "ColorScale.h"
 #include "DataSetFile.h"
+#include "Job.h"
 #include "MessageCapture.h"
-#include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
+#include "Picture.h"
 #include "SafeText.h"
 #include "SurfaceRun.h"
 
+#include "vtkCellArray.h"
 #include "vtkCharArray.h"
-#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkSPHProbe.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkThreshold.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
+#include <cmath>
 #include <iostream>
 #include <stdexcept>
 
 namespace
 {
-
-void CheckFiles(const CommandLineOptions& options)
-{
-  try
-  {
-    CheckProbeFiles(options);
-  }
-  catch (const std::invalid_argument& error)
-  {
-    throw UsageError(error.what());
-  }
-}
 
 vtkIdType CountValid(vtkDataSet* data)
 {
@@ -46,57 +39,169 @@ vtkIdType CountValid(vtkDataSet* data)
   return std::count(begin, begin + mask->GetNumberOfValues(), 1);
 }
 
+int ResolutionOf(const SliceOptions& slice)
+{
+  return slice.Resolution > 0 ? slice.Resolution : 512;
 }
 
-//------------------------------------------------------------------------------
-void CheckProbeFiles(const CommandLineOptions& options)
+vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bounds[6])
 {
-  CheckOutputs({ options.Inputs.front(), options.Probe }, { options.Output });
-}
-
-//------------------------------------------------------------------------------
-void SetUpProbe(
-  vtkSPHProbe* probe, const CommandLineOptions& options, vtkDataSet* points, vtkPointSet* particles)
-{
-  probe->SetInputData(points);
-  probe->SetSourceData(SetUpParticles(probe, options, particles));
-  probe->SetInterpolateAttributes(options.Attributes);
-  probe->SetShepardNormalization(options.Field == "shepard");
-  probe->SetWeightThreshold(options.NodeThreshold);
-  probe->SetComputeGradients(options.Gradients);
-}
-
-//------------------------------------------------------------------------------
-double RunProbe(vtkSPHProbe* probe, const CommandLineOptions& options, MessageCapture* messages)
-{
-  std::string nothing;
-  ShowProgress(probe, options, &nothing);
-  messages->Clear();
-  const auto start = std::chrono::steady_clock::now();
-  probe->Update();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (ShowsProgress(options))
+  double longest = 0.0;
+  for (int a = 0; a < 3; ++a)
   {
-    std::fputs("\r\033[K", stderr);
+    longest = std::max(longest, a == slice.Axis ? 0.0 : bounds[2 * a + 1] - bounds[2 * a]);
   }
-  const std::string error = probe->GetErrorMessage();
-  if (!error.empty() || !messages->GetErrors().empty())
+  if (!(longest > 0.0))
   {
-    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
+    throw std::runtime_error(std::string("--slice ") + "xyz"[slice.Axis] +
+      "= has no plane to show: all particles lie on one line along this axis");
   }
-  return elapsed.count();
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  const double spacing = longest / (ResolutionOf(slice) - 1);
+  double origin[3];
+  int counts[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool isNormal = a == slice.Axis;
+    origin[a] = isNormal ? slice.Place : bounds[2 * a];
+    const double length = isNormal ? 0.0 : bounds[2 * a + 1] - bounds[2 * a];
+    counts[a] = 1 + static_cast<int>(std::ceil(length / spacing - 1e-9));
+  }
+  image->SetOrigin(origin);
+  image->SetSpacing(spacing, spacing, spacing);
+  image->SetDimensions(counts);
+  return image;
+}
+
+/// With the way from its beginning, to plot by.
+vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
+{
+  const std::vector<double>& ends = slice.Line;
+  const int count = ResolutionOf(slice);
+  const double length = std::hypot(ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkDoubleArray> way;
+  vtkNew<vtkCellArray> cells;
+  points->SetDataTypeToDouble();
+  way->SetName("arc_length");
+  cells->InsertNextCell(count);
+  for (int i = 0; i < count; ++i)
+  {
+    const double t = static_cast<double>(i) / (count - 1);
+    cells->InsertCellPoint(points->InsertNextPoint((1.0 - t) * ends[0] + t * ends[3],
+      (1.0 - t) * ends[1] + t * ends[4], (1.0 - t) * ends[2] + t * ends[5]));
+    way->InsertNextValue(t * length);
+  }
+  auto line = vtkSmartPointer<vtkPolyData>::New();
+  line->SetPoints(points);
+  line->SetLines(cells);
+  line->GetPointData()->AddArray(way);
+  return line;
+}
+
+/// What is valid: elsewhere arrays are 0, which would look like values.
+vtkSmartPointer<vtkDataSet> ValidPart(vtkDataSet* data)
+{
+  vtkNew<vtkThreshold> threshold;
+  threshold->SetInputData(data);
+  threshold->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "vtkValidPointMask");
+  threshold->SetLowerThreshold(0.5);
+  threshold->SetUpperThreshold(2.0);
+  threshold->Update();
+  return vtkSmartPointer<vtkDataSet>(threshold->GetOutput());
+}
+
+/// The first vector, or the first array that is not everywhere the same.
+std::string ArrayToShow(vtkDataSet* data)
+{
+  std::string found;
+  for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetPointData()->GetArray(i);
+    if (array && array->GetNumberOfComponents() == 3)
+    {
+      return array->GetName();
+    }
+    double range[2] = { 0.0, 0.0 };
+    if (array && array->GetNumberOfComponents() == 1)
+    {
+      array->GetFiniteRange(range);
+    }
+    found = found.empty() && range[0] < range[1] ? array->GetName() : found;
+  }
+  return found.empty() ? "Weight" : found;
+}
+
+/// A .png file of the result.
+void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
+{
+  const vtkSmartPointer<vtkDataSet> shown = ValidPart(result);
+  ColorScale colors(job.Picture);
+  colors.SetName(job.Picture.ColorBy.empty() ? ArrayToShow(shown) : job.Picture.ColorBy);
+  colors.Include(shown);
+  Picture picture(job.Picture);
+  WriteOutput(job.Picture.File,
+    picture.Draw(job.Picture.File, shown, result, colors, messages, job.Slice.Axis));
+}
+
 }
 
 //------------------------------------------------------------------------------
-void ReportProbe(
-  vtkSPHProbe* probe, const CommandLineOptions& options, double seconds, MessageCapture* messages)
+void CheckProbeFiles(const Job& job, MessageCapture* messages)
+{
+  std::vector<std::string> inputs = ListFiles(job.Inputs, messages), outputs = { job.Output };
+  if (!job.ProbeFile.empty())
+  {
+    inputs.push_back(job.ProbeFile);
+  }
+  if (!job.Picture.File.empty())
+  {
+    outputs.push_back(job.Picture.File);
+  }
+  CheckOutputs(inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)
+{
+  vtkSmartPointer<vtkDataSet> points;
+  if (!job.ProbeFile.empty())
+  {
+    points = ReadDataSet(job.ProbeFile, messages);
+    CheckDataSetFile(job.Output, points);
+  }
+  return points;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, const double bounds[6])
+{
+  return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
+}
+
+//------------------------------------------------------------------------------
+void SetUpProbe(const Job& job, vtkDataSet* points, vtkPointSet* particles)
+{
+  job.Probe->SetInputData(points);
+  job.Probe->SetSourceData(SetUpParticles(job.Probe, job, particles));
+}
+
+//------------------------------------------------------------------------------
+double RunProbe(const Job& job, MessageCapture* messages)
+{
+  return Update(job.Probe, job, messages);
+}
+
+//------------------------------------------------------------------------------
+void ReportProbe(const Job& job, double seconds, MessageCapture* messages)
 {
   for (const std::string& warning : messages->GetWarnings())
   {
     Say("warning: " + warning);
   }
-  auto* output = vtkDataSet::SafeDownCast(probe->GetOutput());
-  if (!options.Quiet)
+  auto* output = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
+  if (!job.Quiet)
   {
     std::cout << "points      " << output->GetNumberOfPoints() << ", " << CountValid(output)
               << " of them valid\nseconds     " << seconds << "\n";
@@ -104,14 +209,18 @@ void ReportProbe(
 }
 
 //------------------------------------------------------------------------------
-void ProbePoints(const CommandLineOptions& options, MessageCapture* messages)
+void ProbePoints(const Job& job, MessageCapture* messages)
 {
-  CheckFiles(options);
-  vtkSmartPointer<vtkDataSet> points = ReadDataSet(options.Probe, messages);
-  CheckDataSetFile(options.Output, points);
-  vtkSmartPointer<vtkPointSet> particles = ReadParticles(options.Inputs.front(), messages);
-  vtkNew<vtkSPHProbe> probe;
-  SetUpProbe(probe, options, points, particles);
-  ReportProbe(probe, options, RunProbe(probe, options, messages), messages);
-  WriteDataSet(options.Output, vtkDataSet::SafeDownCast(probe->GetOutput()), messages);
+  CheckProbeFiles(job, messages);
+  vtkSmartPointer<vtkDataSet> points = ReadPoints(job, messages);
+  vtkSmartPointer<vtkPointSet> particles = ReadParticles(job.Inputs.front(), messages);
+  points = points ? points : MakePoints(job, particles->GetBounds());
+  SetUpProbe(job, points, particles);
+  ReportProbe(job, RunProbe(job, messages), messages);
+  auto* result = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
+  WriteDataSet(job.Output, result, messages);
+  if (!job.Picture.File.empty())
+  {
+    WritePicture(job, result, messages);
+  }
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RunStatistics.h"
 
-#include "CommandLineOptions.h"
+#include "Job.h"
 #include "JsonText.h"
 
 #include "vtkDataArray.h"
@@ -10,7 +10,6 @@
 #include "vtkStringArray.h"
 #include "vtkVersion.h"
 
-#include <algorithm>
 #include <cctype>
 #include <iomanip>
 #include <sstream>
@@ -129,6 +128,14 @@ std::string DescribeCorrection(vtkFieldData* run)
     Format(run, "IterationsMax") + "; largest remaining error " + Format(run, "ResidualMax");
 }
 
+/// There may be more triangles than before: what a cut leaves of one is one or two.
+std::string DescribeTrimming(vtkFieldData* run)
+{
+  return Number(run, "Triangles") == Number(run, "TrianglesBeforeTrimming")
+    ? ""
+    : " (trimmed from " + Format(run, "TrianglesBeforeTrimming") + ", some of which it cut in two)";
+}
+
 /// "SeedCellsNotIntersected" -> "seed_cells_not_intersected", "search grid" -> "search_grid"
 std::string Key(const std::string& name)
 {
@@ -192,22 +199,26 @@ void WriteSeconds(JsonText& json, vtkFieldData* run)
   json.End();
 }
 
-void WriteSetting(JsonText& json, const CommandLineOptions& options, vtkFieldData* run)
+void WriteSetting(JsonText& json, const Job& job, vtkFieldData* run)
 {
   json.Value("device", Text(run, "Device"));
   json.Value("platform", Text(run, "Platform"));
   WriteGroup(json, run, "arrays", ArrayNames);
   WriteGroup(json, run, "parameters", ParameterNames);
-  if (!options.FluidArray.empty())
+  vtkMarchingCorrectors* filter = job.Surface;
+  const std::string fluid = filter->GetFluidArrayName();
+  if (!fluid.empty())
   {
+    static const char* const names[] = { "weight", "ignore", "wall", "auto" }; // by the filter's numbers
     json.Begin("fluid");
-    json.Value("array", options.FluidArray);
-    json.Value("value", options.FluidValue);
-    json.Value("solids", options.Solids);
-    if (options.Solids == "wall" || (options.Solids == "auto" && !options.FreeSurface))
+    json.Value("array", fluid);
+    json.Value("value", filter->GetFluidValue());
+    json.Value("solids", std::string(names[filter->GetSolids()]));
+    if (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL ||
+      (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_AUTO && !filter->GetFreeSurface()))
     {
       vtkDataArray* used = run->GetArray("WallShare");
-      json.Value("wall_share", used ? used->GetComponent(0, 0) : options.WallShare);
+      json.Value("wall_share", used ? used->GetComponent(0, 0) : filter->GetWallShare());
     }
     json.End();
   }
@@ -257,23 +268,23 @@ std::string DescribeRun(vtkFieldData* run)
        << " without surface), " << Format(run, "CellsUsed") << " with surface\n"
        << "correction  " << DescribeCorrection(run) << "\n"
        << "surface     " << Format(run, "Points") << " points, " << Format(run, "Triangles")
-       << " triangles (" << Format(run, "TrianglesBeforeTrimming") << " before trimming)\n";
+       << " triangles" << DescribeTrimming(run) << "\n";
   return text.str();
 }
 
 //------------------------------------------------------------------------------
-std::string StatisticsAsJson(const CommandLineOptions& options,
-  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds,
-  const std::vector<std::string>& warnings, double peakResidentBytes)
+std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
+  const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
+  double peakResidentBytes)
 {
   vtkFieldData* last = runs.back();
   JsonText json;
   json.Begin("");
   json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
   json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
-  json.Value("input", options.Inputs.front());
-  json.Value("output", options.Output);
-  WriteSetting(json, options, last);
+  json.Value("input", job.Inputs.front());
+  json.Value("output", job.Output);
+  WriteSetting(json, job, last);
   WriteGroup(json, last, "statistics", StatisticNames);
   WriteSeconds(json, last);
   json.Value("wall_seconds", wallSeconds.back());
@@ -322,27 +333,26 @@ std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSecon
 }
 
 //------------------------------------------------------------------------------
-std::string SettingAsJson(const CommandLineOptions& options, vtkFieldData* run)
+std::string SettingAsJson(const Job& job, vtkFieldData* run)
 {
   JsonText json(1);
-  WriteSetting(json, options, run);
+  WriteSetting(json, job, run);
   return json.Get();
 }
 
 //------------------------------------------------------------------------------
-std::string FilmAsJson(const CommandLineOptions& options, const std::vector<FilmStep>& steps)
+std::string FilmAsJson(
+  const Job& job, const std::vector<FilmStep>& steps, const std::string& setting)
 {
   JsonText json;
   json.Begin("");
   json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
   json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
-  WriteList(json, "inputs", options.Inputs);
-  json.Value("output", options.Output);
-  const auto last = std::find_if(
-    steps.rbegin(), steps.rend(), [](const FilmStep& step) { return !step.Setting.empty(); });
-  if (last != steps.rend())
+  WriteList(json, "inputs", job.Inputs);
+  json.Value("output", job.Output);
+  if (!setting.empty())
   {
-    json.Raw(last->Setting);
+    json.Raw(setting);
   }
   json.BeginList("steps");
   for (const FilmStep& step : steps)

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-struct CommandLineOptions;
+struct Job;
 class vtkFieldData;
 
 /// What a run's field data says, as a few lines to read; empty if the run had no particles to use.
@@ -19,9 +19,9 @@ std::string DescribeSeconds(vtkFieldData* run);
 
 /// The statistics of the last of `runs` as JSON, with the seconds of each. wallSeconds has one
 /// entry per run: the time of the filter as a whole, with what VTK adds to the phases.
-std::string StatisticsAsJson(const CommandLineOptions& options,
-  const std::vector<vtkSmartPointer<vtkFieldData>>& runs, const std::vector<double>& wallSeconds,
-  const std::vector<std::string>& warnings, double peakResidentBytes);
+std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
+  const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
+  double peakResidentBytes);
 
 /// What is said of one step of a film.
 struct FilmStep
@@ -31,16 +31,17 @@ struct FilmStep
   std::string Output;
   std::string Error;      ///< one sentence; empty: the surface was written
   std::string Statistics; ///< as StepAsJson() gives it
-  std::string Setting;    ///< as SettingAsJson() gives it; empty where there was none
 };
 
 /// Of a step whose surface was written (run is not null), or that failed.
 std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds);
 
 /// Device, arrays and parameters of a run.
-std::string SettingAsJson(const CommandLineOptions& options, vtkFieldData* run);
+std::string SettingAsJson(const Job& job, vtkFieldData* run);
 
-std::string FilmAsJson(const CommandLineOptions& options, const std::vector<FilmStep>& steps);
+/// `setting` is as SettingAsJson() gives it, or empty.
+std::string FilmAsJson(
+  const Job& job, const std::vector<FilmStep>& steps, const std::string& setting);
 
 /// The most memory that this process has had so far; 0 where the system does not tell.
 double PeakResidentBytes();

@@ -2,25 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceRun.h"
 
-#include "CommandLineOptions.h"
+#include "CollectionFile.h"
+#include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
 
 #include "vtkCallbackCommand.h"
-#include "vtkMarchingCorrectors.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkSPHDerivatives.h"
 #include "vtkSPHPeriod.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <unistd.h>
 
@@ -33,155 +35,59 @@ bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
 }
 
-void SetParticles(
-  vtkSPHAlgorithm* filter, const CommandLineOptions& options, vtkPointSet* particles)
+/// What of the settings depends on the input: whether a text is a number or the name of an array, and
+/// where a period lies.
+void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   double value = 0.0;
-  if (options.SmoothingLength == "estimate" && !particles->GetPointData()->HasArray("estimate"))
+  if (job.SmoothingLength == "estimate" && !particles->GetPointData()->HasArray("estimate"))
   {
     filter->EstimateSmoothingLengthOn();
   }
-  else if (IsConstant(options.SmoothingLength, particles, value))
+  else if (IsConstant(job.SmoothingLength, particles, value))
   {
     filter->SetSmoothingLength(value);
   }
   else
   {
-    filter->SetSmoothingLengthArrayName(options.SmoothingLength.c_str());
+    filter->SetSmoothingLengthArrayName(job.SmoothingLength.c_str());
   }
-  if (options.ParticleDistance > 0.0)
+  if (job.ParticleDistance > 0.0)
   {
-    filter->SetSmoothingLength(options.CoefH * std::sqrt(3.0) * options.ParticleDistance);
+    filter->SetSmoothingLength(job.CoefH * std::sqrt(3.0) * job.ParticleDistance);
   }
-  filter->SetSmoothingLengthIsSupportRadius(options.SupportRadius);
-  filter->SetVolumeArrayName(options.Volume.c_str());
-  if (IsConstant(options.Mass, particles, value))
+  if (IsConstant(job.Mass, particles, value))
   {
     filter->SetMass(value);
   }
   else
   {
-    filter->SetMassArrayName(options.Mass.c_str());
+    filter->SetMassArrayName(job.Mass.c_str());
   }
-  if (IsConstant(options.Density, particles, value))
+  if (IsConstant(job.Density, particles, value))
   {
     filter->SetDensity(value);
   }
   else
   {
-    filter->SetDensityArrayName(options.Density.c_str());
+    filter->SetDensityArrayName(job.Density.c_str());
   }
-  filter->SetFluidArrayName(options.FluidArray.c_str());
-  filter->SetFluidValue(options.FluidValue);
-  filter->SetIgnoreSolids(options.Solids == "ignore");
-  filter->SetKernelByName(options.Kernel.c_str());
-  filter->SetHScaleFactor(options.HScale);
-}
-
-void SetSolids(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
-{
-  filter->SetSolids(options.Solids == "wall" ? vtkMarchingCorrectors::SOLIDS_WALL
-      : options.Solids == "ignore"           ? vtkMarchingCorrectors::SOLIDS_IGNORE
-      : options.Solids == "weight"           ? vtkMarchingCorrectors::SOLIDS_WEIGHT
-                                             : vtkMarchingCorrectors::SOLIDS_AUTO);
-  filter->SetWallShare(options.WallShare);
-}
-
-void SetDevice(vtkSPHAlgorithm* filter, const CommandLineOptions& options)
-{
-  filter->SetPrecision(options.Precision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
-                                                     : vtkAlgorithm::SINGLE_PRECISION);
-  filter->SetDevice(options.Device.c_str());
-  filter->SetDeviceMemoryLimit(options.MemoryLimit);
-  filter->KeepDeviceDataOff();
-}
-
-void SetContour(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
-{
-  const int count = static_cast<int>(options.IsoValues.size());
-  filter->SetFreeSurface(options.FreeSurface);
-  if (options.FreeSurface)
-  {
-    if (count > 0)
-    {
-      filter->SetNumberOfFreeSurfaceValues(count);
-    }
-    for (int i = 0; i < count; ++i)
-    {
-      filter->SetFreeSurfaceValue(i, options.IsoValues[static_cast<std::size_t>(i)]);
-    }
-    return;
-  }
-  filter->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, options.Scalar.c_str());
-  filter->SetScalarComponent(
-    options.Magnitude ? static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) : options.Component);
-  filter->SetNumberOfContours(count);
-  for (int i = 0; i < count; ++i)
-  {
-    filter->SetValue(i, options.IsoValues[static_cast<std::size_t>(i)]);
-  }
-}
-
-void SetMethod(vtkMarchingCorrectors* filter, const CommandLineOptions& options)
-{
-  filter->SetShepardNormalization(options.Field == "shepard");
-  filter->SetSeedMode(
-    options.Seeds == "pairs" ? vtkMarchingCorrectors::PAIRS : vtkMarchingCorrectors::COMPLETE);
-  filter->SetTopology(options.Topology == "field" ? vtkMarchingCorrectors::TOPOLOGY_FIELD
-                                                  : vtkMarchingCorrectors::TOPOLOGY_TABLE);
-  filter->SetCubeSizeFactor(options.CubeFactor);
-  filter->SetCubeSize(options.CubeSize);
-  filter->SetCubeSizeMode(
-    options.Cubes == "adaptive" ? vtkMarchingCorrectors::ADAPTIVE : vtkMarchingCorrectors::UNIFORM);
-  filter->SetCubeLevelLimit(options.MaxLevel);
-  filter->SetPartition(options.Partition == "work" ? vtkMarchingCorrectors::BY_WORK
-                                                   : vtkMarchingCorrectors::BY_PARTICLES);
-  filter->SetUseBox(!options.Box.empty());
-  if (!options.Box.empty())
-  {
-    filter->SetBox(options.Box.data());
-  }
-  filter->SetPreview(options.Preview);
-  filter->SetNodeThreshold(options.NodeThreshold);
-  const bool eigenvalue = options.Boundary == "eigenvalue";
-  filter->SetBoundaryDetection(
-    eigenvalue ? vtkMarchingCorrectors::EIGENVALUE : vtkMarchingCorrectors::WEIGHT_SUM);
-  filter->SetVertexThreshold(options.VertexThreshold >= 0.0 ? options.VertexThreshold
-      : eigenvalue                                          ? 0.3
-                                                            : 0.5);
-  filter->SetComputeWeightSum(options.WeightSum);
-  filter->SetComputeBoundaryEigenvalue(options.BoundaryEigenvalue);
-  filter->SetComputeGradients(options.Gradients);
-  filter->SetOutputPointsPrecision(options.OutputPrecision == "single"
-      ? vtkAlgorithm::SINGLE_PRECISION
-      : options.OutputPrecision == "double" ? vtkAlgorithm::DOUBLE_PRECISION
-                                            : vtkAlgorithm::DEFAULT_PRECISION);
-}
-
-void SetPeriod(vtkSPHAlgorithm* filter, const CommandLineOptions& options, vtkPointSet* particles)
-{
-  const std::vector<double> period =
-    options.DetectPeriod ? DetectPeriod(particles) : options.Periodic;
+  const std::vector<double> period = job.DetectPeriod ? DetectPeriod(particles) : job.Periodic;
   if (!period.empty())
   {
     filter->SetPeriodicBounds(vtkSPHBoundsOfPeriod(period, particles->GetBounds()).data());
   }
 }
 
-/// The particles with the arrays that are made of one of theirs, if that is asked for, by the filter.
-vtkSmartPointer<vtkPointSet> AddDerivedArrays(
-  const CommandLineOptions& options, vtkPointSet* particles, vtkSPHDerivatives* filter)
+/// The particles with the arrays that are made of one of theirs, if that is asked for.
+vtkSmartPointer<vtkPointSet> AddDerivedArrays(const Job& job, vtkPointSet* particles)
 {
-  if (options.Derive.empty())
+  if (job.Derive.empty())
   {
     return particles;
   }
-  SetParticles(filter, options, particles);
-  SetPeriod(filter, options, particles);
-  SetDevice(filter, options);
-  filter->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, options.Derive.c_str());
+  vtkSPHDerivatives* filter = job.Derivatives;
+  SetParticles(filter, job, particles);
   filter->ComputeStrainRateOn();
   filter->ReplaceArraysOn(); // the next step is to find them under their names
   filter->SetInputData(particles);
@@ -189,7 +95,7 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(
   const std::string error = filter->GetErrorMessage();
   if (!error.empty())
   {
-    throw std::runtime_error(error);
+    throw std::runtime_error(WithOptions(job, error));
   }
   auto derived = vtk::TakeSmartPointer(particles->NewInstance());
   derived->ShallowCopy(filter->GetOutput()); // the next step has the output itself
@@ -197,10 +103,9 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(
 }
 
 /// All arrays, or those that are named.
-void SetAttributes(
-  vtkSPHAlgorithm* filter, const CommandLineOptions& options, vtkPointSet* particles)
+void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
-  const std::vector<std::string>& names = options.AttributeNames;
+  const std::vector<std::string>& names = job.AttributeNames;
   vtkPointData* data = particles->GetPointData();
   filter->ClearExcludedArrays(); // of the step before
   for (const std::string& name : names)
@@ -257,77 +162,97 @@ void PrintProgress(vtkObject* caller, unsigned long, void* data, void*)
 }
 
 //------------------------------------------------------------------------------
-bool ShowsProgress(const CommandLineOptions& options)
+std::string WithOptions(const Job& job, const std::string& sentence)
 {
-  return !options.Quiet && isatty(STDERR_FILENO);
-}
-
-//------------------------------------------------------------------------------
-void ShowProgress(vtkAlgorithm* filter, const CommandLineOptions& options, std::string* before)
-{
-  if (ShowsProgress(options))
+  const bool hasTimes = !job.Inputs.empty() && IsCollectionFile(job.Inputs.front());
+  const std::pair<const char*, const char*> words[] = {
+    { "Name the array, give a constant, or ask for an estimate.",
+      "Give --smoothing-length NAME, VALUE or estimate." },
+    { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh." },
+    { "the time scale mends that",
+      hasTimes ? "change those in the .pvd file" : "--time-step mends that" },
+  };
+  std::string result = sentence;
+  for (const auto& word : words)
   {
-    vtkNew<vtkCallbackCommand> observer;
-    observer->SetCallback(PrintProgress);
-    observer->SetClientData(before);
-    filter->AddObserver(vtkCommand::ProgressEvent, observer);
+    const std::size_t at = result.find(word.first);
+    if (at != std::string::npos)
+    {
+      result.replace(at, std::strlen(word.first), word.second);
+    }
   }
+  return result;
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPointSet> SetUpParticles(vtkSPHAlgorithm* filter,
-  const CommandLineOptions& options, vtkPointSet* input, vtkSPHDerivatives* derivatives)
+bool ShowsProgress(const Job& job)
 {
-  vtkNew<vtkSPHDerivatives> own;
-  vtkSmartPointer<vtkPointSet> particles =
-    AddDerivedArrays(options, input, derivatives ? derivatives : own.Get());
-  SetParticles(filter, options, particles);
-  SetPeriod(filter, options, input);
-  SetDevice(filter, options);
-  SetAttributes(filter, options, particles);
+  return !job.Quiet && isatty(STDERR_FILENO);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> SetUpParticles(
+  vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
+{
+  vtkSmartPointer<vtkPointSet> particles = AddDerivedArrays(job, input);
+  SetParticles(filter, job, particles);
+  SetAttributes(filter, job, particles);
   return particles;
 }
 
 //------------------------------------------------------------------------------
-void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& options,
-  vtkPointSet* input, vtkSPHDerivatives* derivatives)
+void SetUpSurface(const Job& job, vtkPointSet* input)
 {
-  vtkSmartPointer<vtkPointSet> particles = SetUpParticles(filter, options, input, derivatives);
+  vtkSmartPointer<vtkPointSet> particles = SetUpParticles(job.Surface, job, input);
   vtkNew<vtkPolyData> bare; // VTK would give the surface the particles' field data
   bare->SetPoints(particles->GetPoints());
   bare->GetPointData()->ShallowCopy(particles->GetPointData());
-  filter->SetInputData(bare);
-  filter->SetCapping(options.Capping);
-  filter->SetInterpolateAttributes(options.Attributes);
-  SetSolids(filter, options);
-  SetContour(filter, options);
-  SetMethod(filter, options);
+  job.Surface->SetInputData(bare);
 }
 
 //------------------------------------------------------------------------------
-Run Extract(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages)
+double Update(
+  vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages, const std::string& before)
 {
+  std::string words = before;
+  unsigned long observed = 0;
+  if (ShowsProgress(job))
+  {
+    vtkNew<vtkCallbackCommand> observer;
+    observer->SetCallback(PrintProgress);
+    observer->SetClientData(&words);
+    observed = filter->AddObserver(vtkCommand::ProgressEvent, observer);
+  }
   messages->Clear();
   filter->Modified();
   const auto start = std::chrono::steady_clock::now();
   filter->Update();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (ShowsProgress(options))
+  if (ShowsProgress(job))
   {
+    filter->RemoveObserver(observed);
     std::fputs("\r\033[K", stderr);
   }
   const std::string error = filter->GetErrorMessage();
   if (!error.empty() || !messages->GetErrors().empty())
   {
-    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
+    throw std::runtime_error(
+      WithOptions(job, error.empty() ? messages->GetErrors().front() : error));
   }
+  return elapsed.count();
+}
+
+//------------------------------------------------------------------------------
+Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
+{
+  vtkMarchingCorrectors* filter = job.Surface;
   Run run;
+  run.WallSeconds = Update(filter, job, messages, before);
   run.Surface = vtkSmartPointer<vtkPolyData>::New();
   run.Surface->ShallowCopy(filter->GetOutput());
   filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
+  run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
-  run.WallSeconds = elapsed.count();
   return run;
 }
 
@@ -349,11 +274,9 @@ std::vector<std::string> Warnings(
 }
 
 //------------------------------------------------------------------------------
-void AddHintOfPeriod(
-  const CommandLineOptions& options, vtkPointSet* particles, std::vector<std::string>& warnings)
+void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings)
 {
-  const std::string hint =
-    options.Periodic.empty() && !options.DetectPeriod ? HintOfPeriod(particles) : "";
+  const std::string hint = job.Periodic.empty() && !job.DetectPeriod ? HintOfPeriod(particles) : "";
   if (!hint.empty())
   {
     warnings.push_back(hint);

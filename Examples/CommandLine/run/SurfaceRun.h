@@ -4,7 +4,6 @@
 #define SurfaceRun_h
 
 #include "vtkFieldData.h"
-#include "vtkNew.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
@@ -12,46 +11,44 @@
 #include <vector>
 
 class MessageCapture;
-class vtkAlgorithm;
-class vtkMarchingCorrectors;
 class vtkPointSet;
 class vtkSPHAlgorithm;
-class vtkSPHDerivatives;
-struct CommandLineOptions;
+struct Job;
+
+/// A sentence of the filters, with the names of options where it has properties'.
+std::string WithOptions(const Job& job, const std::string& sentence);
 
 /// Whether standard error is a terminal whose user has not asked for silence.
-bool ShowsProgress(const CommandLineOptions& options);
+bool ShowsProgress(const Job& job);
 
-/// Shows the filter's progress there. `before` is printed before it; it may change between runs.
-void ShowProgress(vtkAlgorithm* filter, const CommandLineOptions& options, std::string* before);
+/// What of the settings depends on the input, for one of the job's filters. Returns the particles, with
+/// the arrays derived from theirs. Throws std::runtime_error with one sentence where an array is lacking.
+vtkSmartPointer<vtkPointSet> SetUpParticles(
+  vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
 
-/// What describes the particles, the arrays to carry and the device, as the options say. Returns the
-/// particles, with the arrays derived from theirs by the last one, or by a new one. Throws as SetUpFilter().
-vtkSmartPointer<vtkPointSet> SetUpParticles(vtkSPHAlgorithm* filter,
-  const CommandLineOptions& options, vtkPointSet* input, vtkSPHDerivatives* derivatives = nullptr);
-
-/// The filter's particles, with the arrays derived from theirs, and properties as the options say. Throws std::runtime_error with one
-/// sentence where the particles lack an array that is to be carried.
-void SetUpFilter(vtkMarchingCorrectors* filter, const CommandLineOptions& options,
-  vtkPointSet* input, vtkSPHDerivatives* derivatives = nullptr);
+/// The same for the surface, which gets the particles as its input.
+void SetUpSurface(const Job& job, vtkPointSet* input);
 
 struct Run
 {
   vtkSmartPointer<vtkPolyData> Surface;
-  vtkNew<vtkFieldData> Statistics; // of the surface, and of what the run cost
+  vtkSmartPointer<vtkFieldData> Statistics; // of the surface, and of what the run cost
   double WallSeconds = 0.0;
 };
 
-/// One run. Throws std::runtime_error with the filter's sentence.
-Run Extract(
-  vtkMarchingCorrectors* filter, const CommandLineOptions& options, MessageCapture* messages);
+/// One run of a filter, which shows its progress behind the words `before`; returns its seconds. Throws
+/// std::runtime_error with the filter's sentence.
+double Update(vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages,
+  const std::string& before = "");
+
+/// One run of the surface. Throws as Update().
+Run Extract(const Job& job, MessageCapture* messages, const std::string& before = "");
 
 /// What the user should know of a run that went well, one sentence each.
 std::vector<std::string> Warnings(
   vtkPolyData* surface, vtkFieldData* statistics, MessageCapture* messages);
 
 /// Where --periodic is not given, and the particles' field data may tell of a period: that.
-void AddHintOfPeriod(
-  const CommandLineOptions& options, vtkPointSet* particles, std::vector<std::string>& warnings);
+void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings);
 
 #endif

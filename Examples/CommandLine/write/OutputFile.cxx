@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputFile.h"
 
-#include "Supervisor.h"
+#include "Ending.h"
+#include "OptionValue.h"
 
-#include <cctype>
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -141,38 +140,23 @@ Target Find(const std::string& name)
   return target;
 }
 
-/// The same for all names of one file; of one that does not exist yet, its place. Devices such as
-/// /dev/null or a terminal are nobody's own.
+/// The same for all names of one file; of one that does not exist yet, its folder and its name there.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
-bool Identify(const Target& target, Identity& identity)
+Identity Identify(const struct stat& status, const std::string& name = "")
 {
-  struct stat status = target.Status;
-  const std::string folder = FolderOf(target.Path);
-  if (!target.Exists && stat(folder.c_str(), &status) != 0)
+  return Identity(status.st_dev, status.st_ino, name);
+}
+
+Identity Identify(const Target& target)
+{
+  struct stat folder = {};
+  if (target.Exists)
   {
-    return false;
+    return Identify(target.Status);
   }
-  const std::string name = target.Exists ? "" : fs::path(target.Path).filename().string();
-  identity = Identity(status.st_dev, status.st_ino, name);
-  return !target.Exists || !S_ISCHR(status.st_mode);
-}
-
-bool IsSame(const Target& a, const Target& b)
-{
-  Identity first, second;
-  return Identify(a, first) && Identify(b, second) && first == second;
-}
-
-/// What exists under this name, or is open as this descriptor, without any check.
-Target Other(const std::string& name, int descriptor)
-{
-  Target target;
-  target.Name = name;
-  target.Path = name;
-  target.Exists =
-    (descriptor < 0 ? stat(name.c_str(), &target.Status) : fstat(descriptor, &target.Status)) == 0;
-  return target;
+  stat(FolderOf(target.Path).c_str(), &folder);
+  return Identify(folder, fs::path(target.Path).filename().string());
 }
 
 void WriteAll(int descriptor, const std::string& bytes, const std::string& file)
@@ -194,11 +178,15 @@ void WriteAll(int descriptor, const std::string& bytes, const std::string& file)
   }
 }
 
+/// To a device, a FIFO or an open descriptor.
 void WriteStraight(const Target& target, const std::string& bytes)
 {
-  const bool isOpen = target.Descriptor >= 0;
-  const int descriptor =
-    isOpen ? target.Descriptor : open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  if (target.Descriptor >= 0)
+  {
+    WriteAll(target.Descriptor, bytes, target.Name);
+    return;
+  }
+  const int descriptor = open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
   if (descriptor < 0)
   {
     FailWithError(target.Name);
@@ -209,154 +197,156 @@ void WriteStraight(const Target& target, const std::string& bytes)
   }
   catch (const std::runtime_error&)
   {
-    if (!isOpen)
-    {
-      close(descriptor);
-    }
+    close(descriptor);
     throw;
   }
-  if (!isOpen && close(descriptor) != 0)
+  if (close(descriptor) != 0)
   {
     FailWithError(target.Name);
   }
 }
 
-/// A new file beside the target, with a name that nobody could know before; it goes away with the
-/// object, or with the process, unless it takes the target's place.
-class Replacement
+/// As those of the file that is replaced; for a new one, as the umask says.
+void SetAttributes(int descriptor, const Target& target)
+{
+  const struct stat& old = target.Status;
+  const mode_t mask = umask(0);
+  umask(mask);
+  mode_t mode = target.Exists ? old.st_mode & 07777 : 0666 & ~mask;
+  if (target.Exists)
+  {
+    // Another owner or group must not gain what the old one was allowed.
+    const bool sameGroup = fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) == 0;
+    const bool sameOwner = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0;
+    mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));
+  }
+  if (fchmod(descriptor, mode) != 0)
+  {
+    FailWithError(target.Name);
+  }
+}
+
+/// What a name for a file beside the target begins with.
+std::string NameBeside(const Target& target)
+{
+  const std::size_t longest = 200; // of 255 bytes
+  const std::string name = fs::path(target.Path).filename().string().substr(0, longest);
+  return FolderOf(target.Path) + "/." + name + ".";
+}
+
+}
+
+/// A file on its way.
+class OutputFiles::Replacement
 {
 public:
-  explicit Replacement(const Target& target)
+  Replacement(const Target& target, const std::string& bytes)
     : Place(target)
   {
-    const std::size_t longest = 200; // of 255 bytes
-    const std::string name = fs::path(target.Path).filename().string().substr(0, longest);
-    this->Path = FolderOf(target.Path) + "/." + name + ".XXXXXX";
-    const SignalPause pause;
-    this->Descriptor = mkstemp(&this->Path[0]);
-    if (this->Descriptor < 0)
+    if (!target.IsReplaced())
+    {
+      this->Bytes = bytes;
+      return;
+    }
+    this->File.reset(new TemporaryFile(NameBeside(target)));
+    const int descriptor = this->File->GetDescriptor();
+    if (descriptor < 0)
     {
       FailWithError(target.Name);
     }
-    SetTemporaryFile(this->Path);
-  }
-
-  ~Replacement()
-  {
-    if (this->Descriptor >= 0)
+    WriteAll(descriptor, bytes, target.Name);
+    SetAttributes(descriptor, target);
+    // Some file systems have no fsync, and some tell only then that the disk is full.
+    if ((fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) || !this->File->Close())
     {
-      close(this->Descriptor);
+      FailWithError(target.Name);
     }
-    if (!this->Done)
-    {
-      std::remove(this->Path.c_str());
-    }
-    SetTemporaryFile("");
   }
-
-  Replacement(const Replacement&) = delete;
-  void operator=(const Replacement&) = delete;
-
-  void Write(const std::string& bytes) { WriteAll(this->Descriptor, bytes, this->Place.Name); }
 
   void TakePlace()
   {
-    this->SetAttributes();
-    // Some file systems have no fsync, and some tell only then that the disk is full.
-    const bool synced = fsync(this->Descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
-    const int descriptor = this->Descriptor;
-    this->Descriptor = -1;
-    if (!synced)
+    if (!this->File)
     {
-      const int error = errno;
-      close(descriptor);
-      errno = error;
-      FailWithError(this->Place.Name);
+      WriteStraight(this->Place, this->Bytes);
     }
-    const SignalPause pause;
-    if (close(descriptor) != 0 || std::rename(this->Path.c_str(), this->Place.Path.c_str()) != 0)
+    else if (!this->File->TakePlaceOf(this->Place.Path))
     {
       FailWithError(this->Place.Name);
     }
-    this->Done = true;
   }
 
 private:
-  /// As those of the file that is replaced; for a new one, as the umask says.
-  void SetAttributes()
-  {
-    const struct stat& old = this->Place.Status;
-    const mode_t mask = umask(0);
-    umask(mask);
-    mode_t mode = this->Place.Exists ? old.st_mode & 07777 : 0666 & ~mask;
-    if (this->Place.Exists)
-    {
-      // Another owner or group must not gain what the old one was allowed.
-      const bool sameGroup = fchown(this->Descriptor, static_cast<uid_t>(-1), old.st_gid) == 0;
-      const bool sameOwner = fchown(this->Descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0;
-      mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));
-    }
-    if (fchmod(this->Descriptor, mode) != 0)
-    {
-      FailWithError(this->Place.Name);
-    }
-  }
-
   const Target Place;
-  std::string Path;
-  int Descriptor = -1;
-  bool Done = false;
+  std::string Bytes;
+  std::unique_ptr<TemporaryFile> File;
 };
-
-}
 
 //------------------------------------------------------------------------------
 void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
 {
-  std::set<Identity> sources, found;
-  Identity identity;
+  std::set<Identity> sources, streams, found;
+  struct stat status = {};
   for (const std::string& input : inputs)
   {
-    const Target source = Other(input, -1);
-    if (source.Exists && Identify(source, identity))
+    if (stat(input.c_str(), &status) == 0)
     {
-      sources.insert(identity);
+      sources.insert(Identify(status));
+    }
+  }
+  for (const int stream : { STDOUT_FILENO, STDERR_FILENO })
+  {
+    if (fstat(stream, &status) == 0)
+    {
+      streams.insert(Identify(status));
     }
   }
   for (const std::string& output : outputs)
   {
     const Target target = Find(output);
-    if (Identify(target, identity))
+    const Identity identity = Identify(target);
+    if (target.Exists && S_ISCHR(target.Status.st_mode))
     {
-      if (sources.count(identity))
-      {
-        throw std::invalid_argument(output + " would overwrite the input");
-      }
-      if (!found.insert(identity).second)
-      {
-        throw std::invalid_argument(output + " would be written twice");
-      }
+      continue; // nobody's own: /dev/null, a terminal
     }
-    for (const int stream : { STDOUT_FILENO, STDERR_FILENO })
+    if (sources.count(identity))
     {
-      if (target.Exists && target.IsReplaced() && IsSame(target, Other("", stream)))
-      {
-        throw std::invalid_argument(output + " would be written twice: what is printed goes there");
-      }
+      throw UsageError(output + " would overwrite the input");
+    }
+    if (!found.insert(identity).second)
+    {
+      throw UsageError(output + " would be written twice");
+    }
+    if (target.IsReplaced() && streams.count(identity))
+    {
+      throw UsageError(output + " would be written twice: what is printed goes there");
     }
   }
 }
 
 //------------------------------------------------------------------------------
+OutputFiles::OutputFiles() = default;
+OutputFiles::~OutputFiles() = default;
+
+//------------------------------------------------------------------------------
+void OutputFiles::Write(const std::string& file, const std::string& bytes)
+{
+  this->Files.emplace_back(new Replacement(Find(file), bytes));
+}
+
+//------------------------------------------------------------------------------
+void OutputFiles::Commit()
+{
+  for (const std::unique_ptr<Replacement>& file : this->Files)
+  {
+    file->TakePlace();
+  }
+  this->Files.clear();
+}
+
+//------------------------------------------------------------------------------
 void WriteOutput(const std::string& file, const std::string& bytes)
 {
-  const Target target = Find(file);
-  if (!target.IsReplaced())
-  {
-    WriteStraight(target, bytes);
-    return;
-  }
-  Replacement replacement(target);
-  replacement.Write(bytes);
-  replacement.TakePlace();
+  OutputFiles one;
+  one.Write(file, bytes);
+  one.Commit();
 }

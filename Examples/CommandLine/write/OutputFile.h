@@ -3,19 +3,37 @@
 #ifndef OutputFile_h
 #define OutputFile_h
 
+#include <memory>
 #include <string>
 #include <vector>
 
-/// Says before the work what would prevent writing after it. Throws std::invalid_argument if an
+/// Says before the work what would prevent writing after it. Throws UsageError if an
 /// output is the same file as an input or another output, by whatever name or link;
 /// std::runtime_error if one cannot be written.
 void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Writes a file, completely or not at all: under a fresh name beside it first, which then takes its
-/// place. A symbolic link is followed, and the file that it leads to replaced; mode, owner and group
-/// stay as they were. Other hard links of a replaced file keep what was in it. What is no regular
-/// file (a device, a FIFO, /dev/stdout) is written to straight. Throws std::runtime_error with one
-/// sentence.
+/// Outputs that belong together. Each is written under a fresh name beside its target; Commit() lets
+/// them take their places. Without it, and where the program is ended, all is as it was. A symbolic link
+/// is followed, and the file that it leads to replaced; mode, owner and group stay as they were. Other
+/// hard links of a replaced file keep what was in it. What is no regular file (a device, a FIFO,
+/// /dev/stdout) is written to by Commit(). All throw std::runtime_error with one sentence.
+class OutputFiles
+{
+public:
+  OutputFiles();
+  ~OutputFiles();
+  OutputFiles(const OutputFiles&) = delete;
+  void operator=(const OutputFiles&) = delete;
+
+  void Write(const std::string& file, const std::string& bytes);
+  void Commit();
+
+private:
+  class Replacement;
+  std::vector<std::unique_ptr<Replacement>> Files;
+};
+
+/// One file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
 #endif

@@ -2,25 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceFile.h"
 
+#include "ColorScale.h"
+#include "Ending.h"
 #include "FileFormat.h"
+#include "Job.h"
 #include "MessageCapture.h"
-#include "OutputFile.h"
 #include "SafeText.h"
-#include "ScratchFile.h"
-#include "Supervisor.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
-#include "vtkOBJWriter.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkSTLWriter.h"
+#include "vtkTriangle.h"
 #include "vtkXMLPolyDataWriter.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -29,6 +31,8 @@
 
 namespace
 {
+
+namespace fs = std::filesystem;
 
 /// Gives the point arrays other names; attributes stay what they are.
 void ReplaceNames(
@@ -43,7 +47,7 @@ void ReplaceNames(
 }
 
 /// In memory: on a full disk the writer of VTK 9.1 crashes.
-bool WriteXml(vtkPolyData* surface, std::string& bytes)
+bool WriteXml(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(surface);
@@ -67,98 +71,161 @@ bool WriteXml(vtkPolyData* surface, std::string& bytes)
   return good;
 }
 
-/// For writers that know files alone.
-template <typename WriterT>
-bool WriteByFile(WriterT* writer, vtkPolyData* surface, std::string& bytes)
-{
-  const ScratchFile file;
-  writer->SetInputData(surface);
-  writer->SetFileName(file.GetName().c_str());
-  const bool good = writer->Write() != 0;
-  bytes = file.Read();
-  return good;
-}
-
-/// Triangles with normals of their own.
-bool WriteStl(vtkPolyData* surface, std::string& bytes)
-{
-  vtkNew<vtkSTLWriter> writer;
-  writer->SetFileTypeToBinary();
-  return WriteByFile(writer.Get(), surface, bytes);
-}
-
-bool WriteObj(vtkPolyData* surface, std::string& bytes)
-{
-  vtkNew<vtkOBJWriter> writer;
-  return WriteByFile(writer.Get(), surface, bytes);
-}
-
 template <typename T>
 void Append(std::string& bytes, T value)
 {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// Not by VTK's writer, which leaves the normals out.
-bool WritePly(vtkPolyData* surface, std::string& bytes)
+/// The least significant byte first, on every machine.
+template <typename T>
+void AppendLittle(std::string& bytes, T value)
+{
+  const std::uint16_t one = 1;
+  Append(bytes, value);
+  if (*reinterpret_cast<const unsigned char*>(&one) != 1)
+  {
+    std::reverse(bytes.end() - sizeof(value), bytes.end());
+  }
+}
+
+template <typename T>
+void AppendVector(std::string& bytes, const double (&vector)[3])
+{
+  for (const double value : vector)
+  {
+    Append(bytes, static_cast<T>(value));
+  }
+}
+
+/// Calls use(corners) for each triangle.
+template <typename F>
+void ForTriangles(vtkPolyData* surface, const F& use)
+{
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType i = 0; i < surface->GetNumberOfPolys(); ++i)
+  {
+    surface->GetPolys()->GetCellAtId(i, corners);
+    use(corners->GetPointer(0));
+  }
+}
+
+/// Binary, little endian: triangles with normals of their own. Not by VTK's writer, nor is .obj: they write
+/// to files alone.
+bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
+{
+  bytes = "binary STL by marching-correctors";
+  bytes.resize(80, ' ');
+  AppendLittle(bytes, static_cast<std::uint32_t>(surface->GetNumberOfPolys()));
+  ForTriangles(surface,
+    [&](const vtkIdType* corners)
+    {
+      double points[3][3], normal[3];
+      for (int k = 0; k < 3; ++k)
+      {
+        surface->GetPoint(corners[k], points[k]);
+      }
+      vtkTriangle::ComputeNormal(points[0], points[1], points[2], normal);
+      for (const auto& vector : { normal, points[0], points[1], points[2] })
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          AppendLittle(bytes, static_cast<float>(vector[c]));
+        }
+      }
+      AppendLittle(bytes, std::uint16_t(0));
+    });
+  return true;
+}
+
+/// Nine digits give every float back.
+void AppendLine(std::string& text, const char* word, const double (&vector)[3])
+{
+  char line[96];
+  std::snprintf(line, sizeof(line), "%s %.9g %.9g %.9g\n", word, vector[0], vector[1], vector[2]);
+  text += line;
+}
+
+bool WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
+  bytes = "# by marching-correctors\n";
+  double vector[3];
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    surface->GetPoint(i, vector);
+    AppendLine(bytes, "v", vector);
+  }
+  for (vtkIdType i = 0; normals && i < surface->GetNumberOfPoints(); ++i)
+  {
+    normals->GetTuple(i, vector);
+    AppendLine(bytes, "vn", vector);
+  }
+  ForTriangles(surface,
+    [&](const vtkIdType* corners)
+    {
+      bytes += "f";
+      for (int k = 0; k < 3; ++k)
+      {
+        const std::string number = std::to_string(corners[k] + 1);
+        bytes += " " + number + (normals ? "//" + number : "");
+      }
+      bytes += "\n";
+    });
+  return true;
+}
+
+/// Not by VTK's writer, which leaves the normals out.
+bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
+{
+  vtkDataArray* normals = surface->GetPointData()->GetNormals();
+  vtkDataArray* colored = scale.ArrayOf(surface);
+  const std::vector<unsigned char> colors =
+    colored ? scale.Map(colored) : std::vector<unsigned char>();
   const std::uint16_t one = 1;
   const bool isLittle = *reinterpret_cast<const unsigned char*>(&one) == 1;
   std::ostringstream head;
   head << "ply\nformat binary_" << (isLittle ? "little" : "big")
        << "_endian 1.0\ncomment by marching-correctors\nelement vertex "
-       << surface->GetNumberOfPoints();
-  for (const char* name : { "x", "y", "z", "nx", "ny", "nz" })
-  {
-    head << (normals || name[0] != 'n' ? std::string("\nproperty float ") + name : "");
-  }
+       << surface->GetNumberOfPoints() << "\nproperty float x\nproperty float y\nproperty float z";
+  head << (normals ? "\nproperty float nx\nproperty float ny\nproperty float nz" : "");
+  head << (colored ? "\nproperty uchar red\nproperty uchar green\nproperty uchar blue" : "");
   head << "\nelement face " << surface->GetNumberOfPolys()
        << "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes = head.str();
+  double vector[3];
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
-    for (int c = 0; c < 3; ++c)
+    surface->GetPoint(i, vector);
+    AppendVector<float>(bytes, vector);
+    if (normals)
     {
-      Append(bytes, static_cast<float>(surface->GetPoint(i)[c]));
+      normals->GetTuple(i, vector);
+      AppendVector<float>(bytes, vector);
     }
-    for (int c = 0; normals && c < 3; ++c)
+    for (std::size_t c = 0; colored && c < 3; ++c)
     {
-      Append(bytes, static_cast<float>(normals->GetComponent(i, c)));
-    }
-  }
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPolys(); ++i)
-  {
-    surface->GetPolys()->GetCellAtId(i, corners);
-    Append(bytes, static_cast<std::uint8_t>(3));
-    for (vtkIdType k = 0; k < 3; ++k)
-    {
-      Append(bytes, static_cast<std::int32_t>(corners->GetId(k)));
+      Append(bytes, colors[3 * static_cast<std::size_t>(i) + c]);
     }
   }
+  ForTriangles(surface,
+    [&](const vtkIdType* corners)
+    {
+      Append(bytes, static_cast<std::uint8_t>(3));
+      for (int k = 0; k < 3; ++k)
+      {
+        Append(bytes, static_cast<std::int32_t>(corners[k]));
+      }
+    });
   return true;
 }
 
 /// Every format that is written; all that is known of one stands here.
-using Writer = std::function<bool(vtkPolyData*, std::string& bytes)>;
+using Writer = std::function<bool(vtkPolyData*, const ColorScale&, std::string& bytes)>;
 const std::vector<FileFormat<Writer>> Formats = { { ".vtp", WriteXml }, { ".stl", WriteStl },
   { ".ply", WritePly }, { ".obj", WriteObj } };
 
 const char* const FilmMark = "<!-- a step of a film by marching-correctors -->";
-
-/// The bytes of the file. Throws std::runtime_error with one sentence.
-std::string BytesOf(const std::string& file, vtkPolyData* surface, MessageCapture* messages)
-{
-  messages->Clear();
-  std::string bytes;
-  if (!FindFormat(Formats, file)->Process(surface, bytes) || !messages->GetErrors().empty())
-  {
-    throw std::runtime_error(file + " could not be written" +
-      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
-  }
-  return bytes;
-}
 
 }
 
@@ -175,19 +242,27 @@ std::string SurfaceFileEndings()
 }
 
 //------------------------------------------------------------------------------
-void WriteSurface(const std::string& file, vtkPolyData* surface, MessageCapture* messages)
+std::string SurfaceBytes(
+  const std::string& file, vtkPolyData* surface, const ColorScale& colors, MessageCapture* messages)
 {
   const Activity writing(file + " could not be written", "memory may have run out");
-  WriteOutput(file, BytesOf(file, surface, messages));
+  messages->Clear();
+  std::string bytes;
+  if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
+  {
+    throw std::runtime_error(file + " could not be written" +
+      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+  }
+  return bytes;
 }
 
 //------------------------------------------------------------------------------
-void WriteFilmSurface(const std::string& file, vtkPolyData* surface, MessageCapture* messages)
+std::string FilmSurfaceBytes(
+  const std::string& file, vtkPolyData* surface, MessageCapture* messages)
 {
-  const Activity writing(file + " could not be written", "memory may have run out");
-  std::string bytes = BytesOf(file, surface, messages);
+  std::string bytes = SurfaceBytes(file, surface, ColorScale(PictureOptions()), messages);
   bytes.insert(bytes.find("?>") + 2, std::string("\n") + FilmMark);
-  WriteOutput(file, bytes);
+  return bytes;
 }
 
 //------------------------------------------------------------------------------
@@ -197,4 +272,28 @@ bool IsFilmSurface(const std::string& file)
   std::string head(256, '\0');
   stream.read(&head[0], static_cast<std::streamsize>(head.size()));
   return head.find(FilmMark) != std::string::npos;
+}
+
+//------------------------------------------------------------------------------
+std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors)
+{
+  const bool isPly = EndsWith(file, ".ply");
+  std::string names;
+  vtkPointData* arrays = surface->GetPointData();
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    const bool isHeld = array == arrays->GetNormals() || array == arrays->GetScalars() ||
+      (isPly && array == colors.ArrayOf(surface));
+    names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
+  }
+  if (EndsWith(file, ".vtp") || names.empty() || (isPly && !colors.GetName().empty()))
+  {
+    return "";
+  }
+  return fs::path(file).extension().string() +
+    " files hold no arrays, so these are left out: " + names +
+    (isPly ? "; --color-by NAME makes colours of one"
+           : "; .vtp keeps all, .ply has colours by --color-by") +
+    ", --no-attributes makes none";
 }

@@ -5,6 +5,7 @@
 
 #include <string>
 
+class ColorScale;
 class MessageCapture;
 class vtkPolyData;
 
@@ -14,14 +15,19 @@ bool IsSurfaceFile(const std::string& file);
 /// ".vtp, .stl, ... or .obj": the endings of these formats, for sentences and the help.
 std::string SurfaceFileEndings();
 
-/// Writes a surface in the format of its ending, completely or not at all. .stl, .ply and .obj have
-/// triangles and normals, and no other arrays. Throws std::runtime_error with one sentence.
-void WriteSurface(const std::string& file, vtkPolyData* surface, MessageCapture* messages);
+/// The bytes of a surface in the format of the file's ending. .stl, .ply and .obj have triangles and
+/// normals, .ply also colours, and no other arrays. Throws std::runtime_error with one sentence.
+std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
+  MessageCapture* messages);
 
-/// The same for a step of a film, always as .vtp. It bears a mark.
-void WriteFilmSurface(const std::string& file, vtkPolyData* surface, MessageCapture* messages);
+/// The same for a step of a film as .vtp, with a mark.
+std::string FilmSurfaceBytes(
+  const std::string& file, vtkPolyData* surface, MessageCapture* messages);
 
 /// Whether it has this mark, so that another film may replace it.
 bool IsFilmSurface(const std::string& file);
+
+/// A sentence about the arrays that a file in this format does not hold; empty if it has all.
+std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
 #endif

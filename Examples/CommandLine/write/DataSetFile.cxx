@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DataSetFile.h"
 
+#include "Ending.h"
 #include "FileFormat.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "SafeText.h"
-#include "Supervisor.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"

@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Job.h"
+
+#include "CollectionFile.h"
+#include "FileFormat.h"
+#include "OptionTable.h"
+#include "OptionValue.h"
+#include "ParticleFile.h"
+#include "RankLaunch.h"
+#include "StepName.h"
+#include "SurfaceFile.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace
+{
+
+/// Names the first option that was given of those that do not go here.
+void Exclude(
+  const std::string& sentence, std::initializer_list<std::pair<bool, const char*>> others)
+{
+  for (const auto& other : others)
+  {
+    if (other.first)
+    {
+      throw UsageError(sentence + other.second);
+    }
+  }
+}
+
+/// What a probe has no use for.
+void CheckProbe(const Job& job)
+{
+  const std::string name = !job.ProbeFile.empty() ? "--probe"
+    : job.Slice.Axis >= 0                         ? "--slice"
+                                                  : "--line";
+  if (job.Inputs.size() > 1 || IsCollectionFile(job.Inputs.front()) || !job.Times.empty() ||
+    job.TimeStep != 1.0)
+  {
+    throw UsageError(name + " takes one INPUT of one time");
+  }
+  Exclude(name + " makes no surface; leave out ",
+    { { !job.Scalar.empty(), "--scalar" }, { job.HasIsoValues, "--iso" },
+      { job.Surface->GetFreeSurface() != 0, "--free-surface" },
+      { !job.StatisticsFile.empty(), "--stats" }, { job.Repeat > 1, "--repeat" } });
+  Exclude(name + " has points already; leave out ",
+    { { name != "--slice" && job.Slice.Axis >= 0, "--slice" },
+      { name != "--line" && !job.Slice.Line.empty(), "--line" } });
+  Exclude("a line is to be plotted; --line goes without ",
+    { { name == "--line" && !job.Picture.File.empty(), "--screenshot" } });
+  if (name != "--probe" && !EndsWith(job.Output, name == "--slice" ? ".vti" : ".vtp") &&
+    !EndsWith(job.Output, ".vtk"))
+  {
+    throw UsageError("the output of " + name + " is a " + (name == "--slice" ? ".vti" : ".vtp") +
+      " or .vtk file, not '" + job.Output + "'");
+  }
+}
+
+/// What the film's options are for, and what it has no use for.
+void CheckFilm(const Job& job)
+{
+  const bool isListed = IsCollectionFile(job.Inputs.front());
+  if (!job.IsFilm())
+  {
+    Exclude("only films, whose output is a .pvd file or has %04d in its name, have use for ",
+      { { !job.Times.empty(), "--times" }, { job.TimeStep != 1.0, "--time-step" } });
+    return;
+  }
+  if (!IsCollectionFile(job.Output) && !(HasStepNumber(job.Output) && IsSurfaceFile(job.Output)))
+  {
+    throw UsageError("the output of several steps is a .pvd file, or a " + SurfaceFileEndings() +
+      " file with %04d in its name, not '" + job.Output + "'");
+  }
+  if (job.Inputs.size() > 1 && std::any_of(job.Inputs.begin(), job.Inputs.end(), IsCollectionFile))
+  {
+    throw UsageError("a .pvd file is the only input; it lists the steps");
+  }
+  if (isListed && job.TimeStep != 1.0)
+  {
+    throw UsageError("--time-step is for a list of particle files; a .pvd file has times");
+  }
+  if (job.Repeat > 1)
+  {
+    throw UsageError("--repeat is for one surface, not for a film");
+  }
+}
+
+void CheckPicture(const Job& job)
+{
+  const PictureOptions& picture = job.Picture;
+  if (picture.File.empty())
+  {
+    Exclude("only a picture, --screenshot, has use for ",
+      { { !picture.View.empty(), "--view" }, { picture.Up != "y", "--up" } });
+    const bool hasColors = EndsWith(job.Output, ".ply");
+    Exclude("only a picture, --screenshot, or a .ply file has use for ",
+      { { !hasColors && !picture.ColorBy.empty(), "--color-by" },
+        { !hasColors && !picture.ColorRange.empty(), "--color-range" } });
+  }
+  if (!job.IsProbe() && picture.ColorBy.empty() && !picture.ColorRange.empty())
+  {
+    throw UsageError("--color-range needs --color-by NAME");
+  }
+  if (picture.File.empty())
+  {
+    return;
+  }
+  if (!EndsWith(picture.File, ".png"))
+  {
+    throw UsageError("--screenshot writes a .png file, not '" + picture.File + "'");
+  }
+  if (job.IsFilm() && !HasStepNumber(picture.File))
+  {
+    throw UsageError(
+      "a film has a picture of each step: --screenshot frame_%04d.png, not '" + picture.File + "'");
+  }
+}
+
+/// What can be said without looking at the input.
+void Check(const Job& job)
+{
+  if (job.Inputs.empty())
+  {
+    throw UsageError("needs INPUT and OUTPUT");
+  }
+  CheckPicture(job);
+  Exclude("only --slice and --line have use for ",
+    { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
+      "--resolution" } });
+  if (job.IsProbe())
+  {
+    CheckProbe(job);
+    return;
+  }
+  CheckFilm(job);
+  if (!job.IsFilm() && !IsSurfaceFile(job.Output) &&
+    !(LaunchedCount() > 1 && EndsWith(job.Output, ".pvtp")))
+  {
+    throw UsageError("the output is a " + SurfaceFileEndings() +
+      " file, or .pvd for a film, not '" + job.Output + "'");
+  }
+  if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod)
+  {
+    throw UsageError("--capping closes the surface at periodic sides; add --periodic");
+  }
+  const bool isFree = job.Surface->GetFreeSurface() != 0;
+  if (isFree && !job.Scalar.empty())
+  {
+    throw UsageError("--free-surface contours the weight sum; leave out --scalar");
+  }
+  if (!isFree && job.Scalar.empty())
+  {
+    throw UsageError("needs --scalar NAME and --iso V, or --free-surface");
+  }
+  if (!isFree && !job.HasIsoValues)
+  {
+    throw UsageError("--scalar needs an iso value, --iso V");
+  }
+}
+
+const Option& FindOption(const std::string& name)
+{
+  const std::vector<Option>& all = AllOptions();
+  const auto find = [&](const std::string& text)
+  {
+    return std::find_if(
+      all.begin(), all.end(), [&](const Option& o) { return !text.empty() && text == o.Name; });
+  };
+  const auto option = find(name == "-h" ? "--help" : name);
+  if (option == all.end())
+  {
+    const bool lacksDash = find("-" + name) != all.end();
+    throw UsageError("unknown option " + name + (lacksDash ? "; it is -" + name : ""));
+  }
+  return *option;
+}
+
+/// Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, or axes, -z.
+bool LooksLikeOption(const std::string& word)
+{
+  return word == "-h" ||
+    (word.size() > 2 && word[0] == '-' &&
+      std::string("0123456789.").find(word[1]) == std::string::npos);
+}
+
+/// The words of a command line, taken from left to right.
+class Parser
+{
+public:
+  Parser(const std::vector<std::string>& words, Job& job)
+    : Words(words)
+    , Target(job)
+  {
+  }
+
+  void Parse()
+  {
+    while (this->Next < this->Words.size())
+    {
+      const std::string word = this->Words[this->Next++];
+      if (!this->OptionsEnded && word == "--")
+      {
+        this->OptionsEnded = true;
+      }
+      else if (!this->OptionsEnded && word.size() > 1 && word[0] == '-')
+      {
+        this->TakeOption(word);
+      }
+      else
+      {
+        this->TakeFile(word);
+      }
+    }
+    if (this->Files.size() > 1)
+    {
+      this->Target.Output = this->Files.back();
+      this->Files.pop_back();
+      this->Target.Inputs = this->Files;
+    }
+  }
+
+private:
+  void TakeOption(std::string name)
+  {
+    std::string value;
+    const std::size_t equals = name.find('=');
+    const bool joined = equals != std::string::npos;
+    if (joined)
+    {
+      value = name.substr(equals + 1);
+      name.resize(equals);
+    }
+    const Option& option = FindOption(name);
+    const bool takesValue = option.Argument[0] != '\0';
+    if (joined && !takesValue)
+    {
+      throw UsageError(name + " takes no value");
+    }
+    if (takesValue && !this->Given.insert(name).second)
+    {
+      throw UsageError(name + " is given twice");
+    }
+    if (takesValue && !joined && this->Next < this->Words.size() &&
+      !LooksLikeOption(this->Words[this->Next]))
+    {
+      value = this->Words[this->Next++];
+    }
+    if (takesValue && value.empty())
+    {
+      throw UsageError(name + " needs " + option.Argument);
+    }
+    option.Set(this->Target, name, value);
+  }
+
+  void TakeFile(const std::string& word)
+  {
+    if (word.empty() || word == "-")
+    {
+      throw UsageError("'" + word + "' is not the name of a file");
+    }
+    this->Files.push_back(word);
+  }
+
+  const std::vector<std::string> Words;
+  std::size_t Next = 0;
+  std::vector<std::string> Files;
+  bool OptionsEnded = false;
+  std::set<std::string> Given; ///< options with a value
+  Job& Target;
+};
+
+} // namespace
+
+//------------------------------------------------------------------------------
+bool Job::IsFilm() const
+{
+  return !this->IsProbe() &&
+    (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
+      (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
+}
+
+//------------------------------------------------------------------------------
+std::string CommandLineHelp()
+{
+  std::ostringstream help;
+  help
+    << "usage: marching-correctors INPUT OUTPUT [options]\n"
+       "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
+       "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n\n"
+       "Extracts an isosurface from SPH particles. INPUT is a "
+    << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
+    << " file. With OUTPUT.pvd a film: one surface for each step,\n"
+       "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ...; with "
+       "OUTPUT_%04d.ply\n"
+       "or .obj, .stl the same without a list.\n"
+       "With mpirun, processes share a surface, see the guide; OUTPUT may be a .pvtp file then.\n";
+  for (const Option& option : AllOptions())
+  {
+    if (option.Name[0] == '\0')
+    {
+      help << "\n" << option.Help << ":\n";
+      continue;
+    }
+    std::string left = std::string("  ") + option.Name + " " + option.Argument;
+    left.resize(std::max<std::size_t>(left.size() + 2, 32), ' ');
+    help << left << option.Help << "\n";
+  }
+  help << "\nEvery output is written completely or left as it was. -- ends the options.\n"
+          "Exit status: 0 all outputs were written (of an empty surface, too, with a warning),\n"
+          "1 bad data, or a problem with a file or the device, 2 wrong usage.\n"
+          "Example: marching-correctors dam_break_45k.vtp speed.vtp --scalar Velocity --iso 1 "
+          "--fluid ParticleType=0\n";
+  return help.str();
+}
+
+//------------------------------------------------------------------------------
+void ParseCommandLine(int argc, char* argv[], Job& job)
+{
+  for (vtkSPHAlgorithm* filter : job.All())
+  {
+    filter->KeepDeviceDataOff(); // for one run
+  }
+  Parser(std::vector<std::string>(argv + std::min(argc, 1), argv + argc), job).Parse();
+  if (!job.Help && !job.Version && !job.ListDevices)
+  {
+    Check(job);
+  }
+}

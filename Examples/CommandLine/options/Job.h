@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Job_h
+#define Job_h
+
+#include "vtkMarchingCorrectors.h"
+#include "vtkNew.h"
+#include "vtkSPHDerivatives.h"
+#include "vtkSPHProbe.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+/// How pictures are made.
+struct PictureOptions
+{
+  std::string File;               ///< empty: none; with %04d in it, one for each step of a film
+  std::string ColorBy;            ///< an array of what is shown; empty: chosen
+  std::vector<double> ColorRange; ///< lowest and highest; empty: those of the array
+  std::string Up = "y";           ///< axis, or -axis, that points upwards
+  std::vector<double> View;       ///< from what is shown to the eye; empty: chosen
+};
+
+/// Points to probe at that no file has.
+struct SliceOptions
+{
+  int Axis = -1;            ///< that a slice is normal to; below 0: there is none
+  double Place = 0.0;       ///< on that axis
+  std::vector<double> Line; ///< from, to: six numbers; empty: there is none
+  int Resolution = 0;       ///< points along the longest side; 0: 512
+};
+
+/// What the command line asks for: the filters, set up as far as that can be done without the input,
+/// and what the program does around them. Array names are spelled as ReadParticles() spells them.
+struct Job
+{
+  vtkNew<vtkMarchingCorrectors> Surface;
+  vtkNew<vtkSPHDerivatives> Derivatives; ///< where Derive is not empty
+  vtkNew<vtkSPHProbe> Probe;             ///< where IsProbe()
+
+  /// For settings that all of them have.
+  std::array<vtkSPHAlgorithm*, 3> All() const
+  {
+    return { this->Surface, this->Derivatives, this->Probe };
+  }
+  bool IsProbe() const
+  {
+    return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
+  }
+  /// Whether there are surfaces of several times.
+  bool IsFilm() const;
+
+  std::vector<std::string> Inputs;
+  std::string Output;
+  std::vector<double> Times; ///< of a film, ascending; empty: all that are stored
+  double TimeStep = 1.0;     ///< between the steps of a film of particle files
+  std::string ProbeFile;
+  SliceOptions Slice;
+  std::string Derive; ///< array whose gradient, and what is made of it, the particles get
+
+  std::string Scalar;
+  bool HasIsoValues = false;
+  /// A quantity is an array name or one value for all particles; the input decides which of the two
+  /// a text such as "2" is.
+  std::string SmoothingLength;
+  std::string Mass;
+  std::string Density;
+  double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
+  double CoefH = 1.0;
+  bool DetectPeriod = false;               ///< --periodic auto
+  std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
+  bool HasVertexThreshold = false;         ///< else it is what suits the boundary detection
+  std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
+
+  std::string StatisticsFile;
+  PictureOptions Picture;
+  int Repeat = 1;
+  bool Quiet = false;
+  bool ListDevices = false;
+  bool Help = false;
+  bool Version = false;
+};
+
+/// Throws UsageError, see OptionValue.h.
+void ParseCommandLine(int argc, char* argv[], Job& job);
+
+/// The text of --help.
+std::string CommandLineHelp();
+
+#endif

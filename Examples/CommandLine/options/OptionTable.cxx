@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A setting of the filters is a line here.
+#include "OptionTable.h"
+
+#include "Job.h"
+#include "OptionValue.h"
+#include "SafeText.h"
+
+#include <algorithm>
+
+namespace
+{
+
+using Filter = vtkMarchingCorrectors;
+using Text = const std::string&;
+
+/// Of all filters.
+template <typename T>
+void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T), T value)
+{
+  for (vtkSPHAlgorithm* filter : job.All())
+  {
+    (filter->*set)(value);
+  }
+}
+
+void SetFluid(Job& job, Text option, Text text)
+{
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0)
+  {
+    throw UsageError(option + " needs NAME=VALUE, not '" + text + "'");
+  }
+  for (vtkSPHAlgorithm* filter : job.All())
+  {
+    filter->SetFluidArrayName(Printable(text.substr(0, equals)).c_str());
+    filter->SetFluidValue(ToNumber(option, text.substr(equals + 1)));
+  }
+}
+
+void SetSolids(Job& job, Text option, Text text)
+{
+  const int solids = ToChoice(option, text,
+    { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT }, { "ignore", Filter::SOLIDS_IGNORE },
+      { "wall", Filter::SOLIDS_WALL } });
+  SetAll<vtkTypeBool>(job, &vtkSPHAlgorithm::SetIgnoreSolids, solids == Filter::SOLIDS_IGNORE);
+  job.Surface->SetSolids(solids);
+}
+
+void SetComponent(Job& job, Text option, Text text)
+{
+  const bool isMagnitude = text == "magnitude" || text == "-1"; // the filter's number for it
+  job.Surface->SetScalarComponent(isMagnitude ? Filter::MAGNITUDE : ToCount(option, text, 0));
+}
+
+/// Either is used in its mode alone.
+void SetIsoValues(Job& job, Text option, Text text)
+{
+  const std::vector<double> values = ToNumbers(option, text);
+  job.HasIsoValues = true;
+  job.Surface->SetNumberOfContours(static_cast<int>(values.size()));
+  job.Surface->SetNumberOfFreeSurfaceValues(static_cast<int>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    job.Surface->SetValue(static_cast<int>(i), values[i]);
+    job.Surface->SetFreeSurfaceValue(static_cast<int>(i), values[i]);
+  }
+}
+
+void SetKernel(Job& job, Text option, Text text)
+{
+  const int kernel = ToChoice(option, text,
+    { { "cubic", Filter::CUBIC_SPLINE }, { "quadratic", Filter::QUADRATIC },
+      { "mprime4", Filter::M_PRIME_4 }, { "quintic", Filter::QUINTIC_SPLINE },
+      { "wendland", Filter::WENDLAND_C2 } });
+  SetAll(job, &vtkSPHAlgorithm::SetKernel, kernel);
+}
+
+void SetField(Job& job, Text option, Text text)
+{
+  const int isShepard = ToChoice(option, text, { { "shepard", 1 }, { "sum", 0 } });
+  job.Surface->SetShepardNormalization(isShepard);
+  job.Probe->SetShepardNormalization(isShepard);
+}
+
+void SetBoundary(Job& job, Text option, Text text)
+{
+  const int boundary = ToChoice(
+    option, text, { { "weight", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
+  job.Surface->SetBoundaryDetection(boundary);
+  if (!job.HasVertexThreshold)
+  {
+    job.Surface->SetVertexThreshold(boundary == Filter::EIGENVALUE ? 0.3 : 0.5);
+  }
+}
+
+void SetPeriod(Job& job, Text option, Text text)
+{
+  job.DetectPeriod = text == "auto";
+  job.Periodic = job.DetectPeriod ? std::vector<double>() : ToPeriod(option, text);
+}
+
+void SetTimes(Job& job, Text option, Text text)
+{
+  job.Times = ToNumbers(option, text);
+  std::sort(job.Times.begin(), job.Times.end());
+  job.Times.erase(std::unique(job.Times.begin(), job.Times.end()), job.Times.end());
+}
+
+using Options = std::vector<Option>;
+
+const Options WhatToContour = {
+  { "", "", "What to contour", {} },
+  { "--scalar", "NAME", "point array to contour",
+    [](Job& j, Text, Text v)
+    {
+      j.Scalar = Printable(v);
+      j.Surface->SetInputArrayToProcess(
+        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str());
+    } },
+  { "--component", "N|magnitude", "component of a vector, from 0, or its magnitude (default)",
+    SetComponent },
+  { "--iso", "V[,V...]", "iso values; with --free-surface the weight sum (default 0.5)",
+    SetIsoValues },
+  { "--free-surface", "", "contour the weight sum; needs no scalar",
+    [](Job& j, Text, Text) { j.Surface->FreeSurfaceOn(); } },
+  { "--derive", "NAME", "add Gradients of this array; of a vector also Vorticity, Lambda2, ...",
+    [](Job& j, Text, Text v)
+    {
+      j.Derive = Printable(v);
+      j.Derivatives->SetInputArrayToProcess(
+        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Derive.c_str());
+    } },
+  { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum", SetField },
+
+  { "", "", "No surface, but the field at points; OUTPUT is their data set", {} },
+  { "--probe", "POINTS_FILE", "at the points of this file",
+    [](Job& j, Text, Text v) { j.ProbeFile = v; } },
+  { "--slice", "AXIS=PLACE", "on a plane through the particles, as z=0.1; OUTPUT is an image, .vti",
+    [](Job& j, Text n, Text v) { ToSlice(n, v, j.Slice.Axis, j.Slice.Place); } },
+  { "--line", "X,Y,Z,X,Y,Z", "on a line from one place to another; OUTPUT is a .vtp file",
+    [](Job& j, Text n, Text v) { j.Slice.Line = ToLine(n, v); } },
+  { "--resolution", "N", "points along the line, or the longest side of the slice (default 512)",
+    [](Job& j, Text n, Text v) { j.Slice.Resolution = ToCount(n, v, 2, 1 << 15); } },
+};
+
+const Options TheParticles = {
+  { "", "", "The particles (arrays are found by their usual names if not given)", {} },
+  { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or from the spacing",
+    [](Job& j, Text n, Text v) { j.SmoothingLength = ToQuantity(n, v); } },
+  { "--dp", "D", "particle distance of DualSPHysics: smoothing length coefh x sqrt(3) x D",
+    [](Job& j, Text n, Text v) { j.ParticleDistance = ToPositive(n, v); } },
+  { "--coefh", "C", "its coefficient (default 1)",
+    [](Job& j, Text n, Text v) { j.CoefH = ToPositive(n, v); } },
+  { "--support-radius", "", "these are the support radius, not the smoothing length",
+    [](Job& j, Text, Text)
+    { SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true); } },
+  { "--volume", "NAME", "array of particle volumes",
+    [](Job& j, Text, Text v)
+    {
+      for (vtkSPHAlgorithm* filter : j.All())
+      {
+        filter->SetVolumeArrayName(Printable(v).c_str());
+      }
+    } },
+  { "--mass", "NAME|VALUE", "array of particle masses, or one value",
+    [](Job& j, Text n, Text v) { j.Mass = ToQuantity(n, v); } },
+  { "--density", "NAME|VALUE", "array of densities, or one value",
+    [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
+  { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
+  { "--solids", "auto|weight|ignore|wall",
+    "count in the weight that trims, not at all, or end the surface; auto (default): the last for a "
+    "scalar, the first for the free surface",
+    SetSolids },
+  { "--wall-share", "S|measured",
+    "where solids end the surface: their share of the weight (default: as measured at the walls)",
+    [](Job& j, Text n, Text v) { j.Surface->SetWallShare(ToShare(n, v)); } },
+};
+
+const Options TheMethod = {
+  { "", "", "The method", {} },
+  { "--kernel", "NAME", "cubic (default), quadratic, mprime4, quintic or wendland", SetKernel },
+  { "--h-scale", "S", "the kernel uses S times the smoothing length (default 1)",
+    [](Job& j, Text n, Text v)
+    { SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v)); } },
+  { "--cube-factor", "C", "cube size / smallest smoothing length (default 0.5)",
+    [](Job& j, Text n, Text v) { j.Surface->SetCubeSizeFactor(ToPositive(n, v)); } },
+  { "--cube-size", "D", "cube size itself, in the unit of the positions",
+    [](Job& j, Text n, Text v) { j.Surface->SetCubeSize(ToPositive(n, v)); } },
+  { "--cubes", "uniform|adaptive", "cubes alike, or as fine as the particles are (default)",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetCubeSizeMode(
+        ToChoice(n, v, { { "uniform", Filter::UNIFORM }, { "adaptive", Filter::ADAPTIVE } }));
+    } },
+  { "--partition", "HOW",
+    "processes of mpirun have as many particles each, or as much work (default work)",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetPartition(
+        ToChoice(n, v, { { "particles", Filter::BY_PARTICLES }, { "work", Filter::BY_WORK } }));
+    } },
+  { "--max-level", "N", "adaptive cubes are up to 2^N times as large, 0 to 24 (default 24)",
+    [](Job& j, Text n, Text v) { j.Surface->SetCubeLevelLimit(ToCount(n, v, 0, 24)); } },
+  { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetBox(ToBox(n, v).data());
+      j.Surface->UseBoxOn();
+    } },
+  { "--periodic", "LX,LY,LZ|BOUNDS|auto",
+    "particles repeat: lengths (0: open), x0,x1,y0,y1,z0,z1, or as field data say", SetPeriod },
+  { "--capping", "", "close the surface at periodic sides, around what is above the iso value",
+    [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
+  { "--seeds", "pairs|complete", "the paper's seeds, or such that nothing is missed (default)",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetSeedMode(
+        ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }));
+    } },
+  { "--topology", "table|field", "ambiguous cells: by the table (default), or as the field is",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetTopology(ToChoice(
+        n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }));
+    } },
+  { "--preview", "", "no correction, normals of the triangles",
+    [](Job& j, Text, Text) { j.Surface->PreviewOn(); } },
+  { "--node-threshold", "T", "discard cells with a node of lower weight (default 0.1)",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetNodeThreshold(ToThreshold(n, v));
+      j.Probe->SetWeightThreshold(ToThreshold(n, v));
+    } },
+  { "--boundary", "weight|eigenvalue", "trim by the weight (default), or by Marrone's eigenvalue",
+    SetBoundary },
+  { "--vertex-threshold", "T", "trim triangles where that is lower (default 0.5; eigenvalue 0.3)",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetVertexThreshold(ToThreshold(n, v));
+      j.HasVertexThreshold = true;
+    } },
+  { "--precision", "single|double", "of the field evaluation on the device (default single)",
+    [](Job& j, Text n, Text v)
+    {
+      SetAll(j, &vtkSPHAlgorithm::SetPrecision,
+        ToChoice(n, v,
+          { { "single", vtkAlgorithm::SINGLE_PRECISION },
+            { "double", vtkAlgorithm::DOUBLE_PRECISION } }));
+    } },
+};
+
+const Options Output = {
+  { "", "", "Output", {} },
+  { "--weight-sum", "", "add the array WeightSum",
+    [](Job& j, Text, Text) { j.Surface->ComputeWeightSumOn(); } },
+  { "--boundary-eigenvalue", "", "add the array BoundaryEigenvalue",
+    [](Job& j, Text, Text) { j.Surface->ComputeBoundaryEigenvalueOn(); } },
+  { "--gradients", "", "add the array Gradients",
+    [](Job& j, Text, Text)
+    {
+      j.Surface->ComputeGradientsOn();
+      j.Probe->ComputeGradientsOn();
+    } },
+  { "--attributes", "NAME[,NAME...]", "carry only these arrays to the surface (default all)",
+    [](Job& j, Text n, Text v) { j.AttributeNames = ToNames(n, v); } },
+  { "--no-attributes", "", "leave out the particles' other arrays",
+    [](Job& j, Text, Text)
+    {
+      j.Surface->InterpolateAttributesOff();
+      j.Probe->InterpolateAttributesOff();
+    } },
+  { "--output-precision", "single|double|input",
+    "of the surface's points (default: as the input's)",
+    [](Job& j, Text n, Text v)
+    {
+      j.Surface->SetOutputPointsPrecision(ToChoice(n, v,
+        { { "single", vtkAlgorithm::SINGLE_PRECISION },
+          { "double", vtkAlgorithm::DOUBLE_PRECISION },
+          { "input", vtkAlgorithm::DEFAULT_PRECISION } }));
+    } },
+  { "--times", "T[,T...]", "of a film: at these times, stored ones or between two steps",
+    SetTimes },
+  { "--time-step", "DT", "of a film: time from each INPUT to the next (default 1)",
+    [](Job& j, Text n, Text v) { j.TimeStep = ToPositive(n, v); } },
+  { "--stats", "FILE.json", "write the statistics of the run",
+    [](Job& j, Text, Text v) { j.StatisticsFile = v; } },
+  { "--repeat", "N", "run N times, statistics of each (default 1)",
+    [](Job& j, Text n, Text v) { j.Repeat = ToCount(n, v, 1); } },
+  { "--quiet", "", "print errors and warnings only", [](Job& j, Text, Text) { j.Quiet = true; } },
+
+  { "", "", "Pictures and colours", {} },
+  { "--screenshot", "FILE.png",
+    "write a picture (may need a display); of a film frame_%04d.png, one for each step",
+    [](Job& j, Text, Text v) { j.Picture.File = v; } },
+  { "--color-by", "NAME", "array that colours the picture, and a .ply file",
+    [](Job& j, Text, Text v) { j.Picture.ColorBy = Printable(v); } },
+  { "--color-range", "LOW,HIGH", "values of the first and the last colour (default: all there are)",
+    [](Job& j, Text n, Text v) { j.Picture.ColorRange = ToRange(n, v); } },
+  { "--up", "x|y|z|-x|-y|-z", "axis that points upwards in the picture (default y)",
+    [](Job& j, Text n, Text v)
+    {
+      ToChoice(n, v, { { "x", 0 }, { "y", 0 }, { "z", 0 }, { "-x", 0 }, { "-y", 0 }, { "-z", 0 } });
+      j.Picture.Up = v;
+    } },
+  { "--view", "X,Y,Z", "direction from the surface to the eye (default: from the front, above)",
+    [](Job& j, Text n, Text v) { j.Picture.View = ToDirection(n, v); } },
+};
+
+const Options DeviceAndHelp = {
+  { "", "", "Device and help", {} },
+  { "--device", "N|SUBSTRING", "OpenCL device: number, or part of its name (see --list-devices)",
+    [](Job& j, Text, Text v)
+    {
+      for (vtkSPHAlgorithm* filter : j.All())
+      {
+        filter->SetDevice(v.c_str());
+      }
+    } },
+  { "--memory-limit", "MIB", "most device memory used (default all)",
+    [](Job& j, Text n, Text v)
+    { SetAll(j, &vtkSPHAlgorithm::SetDeviceMemoryLimit, ToCount(n, v, 1)); } },
+  { "--list-devices", "", "list the OpenCL devices",
+    [](Job& j, Text, Text) { j.ListDevices = true; } },
+  { "--help", "", "print this text (also -h)", [](Job& j, Text, Text) { j.Help = true; } },
+  { "--version", "", "print the version", [](Job& j, Text, Text) { j.Version = true; } },
+};
+
+}
+
+//------------------------------------------------------------------------------
+const std::vector<Option>& AllOptions()
+{
+  static const Options all = []
+  {
+    Options joined;
+    for (const Options* group :
+      { &WhatToContour, &TheParticles, &TheMethod, &Output, &DeviceAndHelp })
+    {
+      joined.insert(joined.end(), group->begin(), group->end());
+    }
+    return joined;
+  }();
+  return all;
+}

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef OptionTable_h
+#define OptionTable_h
+
+#include <functional>
+#include <string>
+#include <vector>
+
+struct Job;
+
+struct Option
+{
+  const char* Name;
+  const char* Argument; ///< what stands for it in the help; empty: the option has none
+  const char* Help;
+  std::function<void(Job&, const std::string& option, const std::string& value)> Set;
+};
+
+/// Every option, in the order of the help. An option without a name starts a group.
+const std::vector<Option>& AllOptions();
+
+#endif

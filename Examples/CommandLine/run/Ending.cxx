@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Ending.h"
+
+#include "SafeText.h"
+
+#include <algorithm>
+#include <climits>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <initializer_list>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace
+{
+
+/// What people and batch systems send to end a program.
+const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
+
+/// Those of them that were not ignored at the start, as hangups are under nohup.
+sigset_t Awaited;
+
+void FindAwaited()
+{
+  sigemptyset(&Awaited);
+  for (const int number : EndingSignals)
+  {
+    struct sigaction action = {};
+    sigaction(number, nullptr, &action);
+    if (action.sa_handler != SIG_IGN)
+    {
+      sigaddset(&Awaited, number);
+    }
+  }
+}
+
+#ifdef __ELF__
+/// Before libraries begin: UCX, which comes with some MPI, takes hangups for itself when it is loaded.
+__attribute__((section(".preinit_array"), used)) void (*const FindAwaitedFirst)() = FindAwaited;
+#else
+const bool FoundAwaited = (FindAwaited(), true);
+#endif
+
+/// Plain memory, for a handler that must not allocate any.
+char Failure[PATH_MAX + 256] = "the run failed";
+char Hint[256] = "the OpenCL driver may be at fault, or memory ran out";
+char StackOfHandler[1 << 16]; // that of a recursion without end is full
+volatile std::sig_atomic_t IsFinished = 0;
+volatile std::sig_atomic_t FinalStatus = 0;
+volatile std::sig_atomic_t ClearsLine = 0;
+volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< also where Silence has taken that
+
+/// Never destroyed: the waiting thread lives as long as the process.
+std::mutex& FilesLock = *new std::mutex;
+std::vector<std::string>& Files = *new std::vector<std::string>;
+
+void RemoveFiles()
+{
+  for (const std::string& file : Files)
+  {
+    unlink(file.c_str());
+  }
+}
+
+template <std::size_t N>
+void Set(char (&target)[N], const std::string& text)
+{
+  std::strncpy(target, text.c_str(), N - 1);
+}
+
+const char* Reason(int number)
+{
+  switch (number)
+  {
+    case SIGSEGV:
+      return "the program crashed there (Segmentation fault)";
+    case SIGABRT:
+      return "the program crashed there (Aborted)";
+    case SIGXCPU:
+      return "it took too much processor time";
+    default:
+      return "the program crashed there";
+  }
+}
+
+void SayInHandler(const char* text)
+{
+  const ssize_t ignored = write(StandardError, text, std::strlen(text));
+  (void)ignored;
+}
+
+/// A reader went astray over a damaged file, or a driver. No output is lost: it is whole before it takes
+/// the place of another one.
+void EndByCrash(int number)
+{
+  if (IsFinished)
+  {
+    _exit(FinalStatus);
+  }
+  RemoveFiles();
+  SayInHandler(ClearsLine ? "\r\033[K" : "");
+  for (const char* part : std::initializer_list<const char*>{
+         "marching-correctors: ", Failure, ": ", Reason(number), "; ", Hint, "\n" })
+  {
+    SayInHandler(part);
+  }
+  _exit(1);
+}
+
+void SetHandlersOfCrashes()
+{
+  stack_t stack = {};
+  stack.ss_sp = StackOfHandler;
+  stack.ss_size = sizeof(StackOfHandler);
+  sigaltstack(&stack, nullptr);
+  struct sigaction action = {};
+  action.sa_handler = EndByCrash;
+  action.sa_flags = SA_ONSTACK | SA_RESETHAND;
+  for (const int number : { SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU })
+  {
+    sigaction(number, &action, nullptr);
+  }
+  std::set_terminate(std::abort); // without more lines
+}
+
+/// The program ends as by the signal itself, so that a shell or a batch system sees it.
+[[noreturn]] void EndBySignal(int number)
+{
+  FilesLock.lock(); // for ever: no other file is made
+  RemoveFiles();
+  std::signal(number, SIG_DFL);
+  sigset_t one;
+  sigemptyset(&one);
+  sigaddset(&one, number);
+  pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
+  raise(number);
+  _exit(1);
+}
+
+void WaitForSignal()
+{
+  int number = 0;
+  while (sigwait(&Awaited, &number) != 0)
+  {
+  }
+  EndBySignal(number);
+}
+
+}
+
+//------------------------------------------------------------------------------
+void PrepareForEnding()
+{
+  ClearsLine = isatty(STDERR_FILENO);
+  // Writing fails then, which is told, where the signal would end the program in silence.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  SetHandlersOfCrashes();
+  for (const int number : EndingSignals)
+  {
+    if (!sigismember(&Awaited, number))
+    {
+      std::signal(number, SIG_IGN); // whatever libraries have made of it
+    }
+  }
+  // All threads to come leave these signals to one that waits for them: it may lock and allocate.
+  pthread_sigmask(SIG_BLOCK, &Awaited, nullptr);
+  std::thread(WaitForSignal).detach();
+}
+
+//------------------------------------------------------------------------------
+int Finish(int status)
+{
+  FinalStatus = status;
+  IsFinished = 1;
+  return status;
+}
+
+//------------------------------------------------------------------------------
+Activity::Activity(const std::string& failure, const std::string& hint)
+  : OuterFailure(Failure)
+  , OuterHint(Hint)
+{
+  Set(Failure, Printable(failure));
+  Set(Hint, hint);
+}
+
+//------------------------------------------------------------------------------
+Activity::~Activity()
+{
+  Set(Failure, this->OuterFailure);
+  Set(Hint, this->OuterHint);
+}
+
+//------------------------------------------------------------------------------
+Silence::Silence()
+{
+  std::fflush(stderr);
+  const int before = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (before >= 0 && nowhere >= 0)
+  {
+    StandardError = before;
+    dup2(nowhere, STDERR_FILENO);
+  }
+  close(nowhere);
+}
+
+//------------------------------------------------------------------------------
+Silence::~Silence()
+{
+  std::fflush(stderr);
+  const int before = StandardError;
+  if (before != STDERR_FILENO)
+  {
+    dup2(before, STDERR_FILENO);
+    StandardError = STDERR_FILENO;
+    close(before);
+  }
+}
+
+//------------------------------------------------------------------------------
+TemporaryFile::TemporaryFile(const std::string& begin)
+  : Name(begin + "XXXXXX")
+{
+  const std::lock_guard<std::mutex> guard(FilesLock);
+  this->Descriptor = mkstemp(&this->Name[0]);
+  if (this->Descriptor >= 0)
+  {
+    Files.push_back(this->Name);
+  }
+  else
+  {
+    this->Name.clear();
+  }
+}
+
+//------------------------------------------------------------------------------
+TemporaryFile::~TemporaryFile()
+{
+  this->Close();
+  const std::lock_guard<std::mutex> guard(FilesLock);
+  if (!this->Name.empty())
+  {
+    unlink(this->Name.c_str());
+    Files.erase(std::find(Files.begin(), Files.end(), this->Name));
+  }
+}
+
+//------------------------------------------------------------------------------
+bool TemporaryFile::Close()
+{
+  const int descriptor = this->Descriptor;
+  this->Descriptor = -1;
+  return descriptor < 0 || close(descriptor) == 0;
+}
+
+//------------------------------------------------------------------------------
+bool TemporaryFile::TakePlaceOf(const std::string& file)
+{
+  if (std::rename(this->Name.c_str(), file.c_str()) != 0) // not under the lock: it may hang
+  {
+    return false;
+  }
+  const std::lock_guard<std::mutex> guard(FilesLock);
+  Files.erase(std::find(Files.begin(), Files.end(), this->Name));
+  this->Name.clear();
+  return true;
+}

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Ending_h
+#define Ending_h
+
+#include <string>
+
+/// Before any thread: from here on the program says a sentence where it crashes, and removes its
+/// temporary files where a crash, or a signal that people and batch systems send, ends it.
+void PrepareForEnding();
+
+/// All is done: a driver that crashes later, when it is unloaded, changes this status no more.
+int Finish(int status);
+
+/// For as long as it lives, what is said if the program crashes: "FAILURE: ...; HINT".
+class Activity
+{
+public:
+  Activity(const std::string& failure, const std::string& hint);
+  ~Activity();
+  Activity(const Activity&) = delete;
+  void operator=(const Activity&) = delete;
+
+private:
+  std::string OuterFailure;
+  std::string OuterHint;
+};
+
+/// While one lives, nothing but the program's own sentence about a crash reaches standard error: libraries
+/// write there what they think of a damaged file.
+class Silence
+{
+public:
+  Silence();
+  ~Silence();
+  Silence(const Silence&) = delete;
+  void operator=(const Silence&) = delete;
+};
+
+/// A new file that nobody could name before, and that goes away with the object or the program unless it
+/// takes the place of another one.
+class TemporaryFile
+{
+public:
+  /// Its name is `begin` and six more characters. Where it could not be made, errno tells why.
+  explicit TemporaryFile(const std::string& begin);
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  void operator=(const TemporaryFile&) = delete;
+
+  int GetDescriptor() const { return this->Descriptor; } ///< below 0: there is no file
+
+  /// False, and errno, where what was written could not be kept.
+  bool Close();
+  bool TakePlaceOf(const std::string& file);
+
+private:
+  std::string Name;
+  int Descriptor = -1;
+};
+
+#endif

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ColorScale.h"
+
+#include "Job.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace
+{
+
+/// Nine of the colours of viridis, by S. van der Walt and N. Smith: evenly brighter, also in grey, and for
+/// the colour-blind.
+constexpr int StopCount = 9;
+const double Stops[StopCount][3] = { { 0.267, 0.005, 0.329 }, { 0.279, 0.175, 0.483 },
+  { 0.230, 0.322, 0.546 }, { 0.173, 0.449, 0.558 }, { 0.128, 0.567, 0.551 },
+  { 0.158, 0.684, 0.502 }, { 0.369, 0.789, 0.383 }, { 0.678, 0.864, 0.190 },
+  { 0.993, 0.906, 0.144 } };
+
+}
+
+//------------------------------------------------------------------------------
+ColorScale::ColorScale(const PictureOptions& options)
+  : Name(options.ColorBy)
+  , IsGiven(!options.ColorRange.empty())
+  , HasRange(IsGiven)
+{
+  const int count = 256;
+  this->Table->SetNumberOfTableValues(count);
+  this->Table->SetVectorModeToMagnitude();
+  this->Table->SetNanColor(0.6, 0.6, 0.6, 1.0);
+  for (int i = 0; i < count; ++i)
+  {
+    const double place = static_cast<double>(i) / (count - 1) * (StopCount - 1);
+    const int stop = std::min(static_cast<int>(place), StopCount - 2);
+    double color[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      color[c] = Stops[stop][c] + (place - stop) * (Stops[stop + 1][c] - Stops[stop][c]);
+    }
+    this->Table->SetTableValue(i, color[0], color[1], color[2]);
+  }
+  if (this->IsGiven)
+  {
+    this->Table->SetTableRange(options.ColorRange[0], options.ColorRange[1]);
+  }
+}
+
+//------------------------------------------------------------------------------
+void ColorScale::Include(vtkDataSet* data)
+{
+  vtkDataArray* array = this->ArrayOf(data);
+  if (this->Name.empty() || data->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+  if (!array)
+  {
+    std::string names;
+    for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      names += (names.empty() ? "" : ", ") + std::string(data->GetPointData()->GetArrayName(i));
+    }
+    throw std::runtime_error(
+      "there is no array '" + this->Name + "' to colour by; there are " + names);
+  }
+  double range[2];
+  array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
+  if (this->IsGiven || !(range[0] <= range[1]))
+  {
+    return;
+  }
+  const double* old = this->Table->GetTableRange();
+  const double low = this->HasRange ? std::min(range[0], old[0]) : range[0];
+  const double high = this->HasRange ? std::max(range[1], old[1]) : range[1];
+  this->Table->SetTableRange(low, high);
+  this->HasRange = true;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* ColorScale::ArrayOf(vtkDataSet* data) const
+{
+  return this->Name.empty() ? nullptr : data->GetPointData()->GetArray(this->Name.c_str());
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> ColorScale::Map(vtkDataArray* array) const
+{
+  const auto count = static_cast<std::size_t>(array->GetNumberOfTuples());
+  std::vector<unsigned char> colors;
+  colors.reserve(3 * count);
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    double value = array->GetComponent(i, 0);
+    if (array->GetNumberOfComponents() > 1)
+    {
+      double squares = 0.0;
+      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+      {
+        squares += array->GetComponent(i, c) * array->GetComponent(i, c);
+      }
+      value = std::sqrt(squares);
+    }
+    const unsigned char* color = this->Table->MapValue(value);
+    colors.insert(colors.end(), color, color + 3);
+  }
+  return colors;
+}

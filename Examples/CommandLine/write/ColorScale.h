@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ColorScale_h
+#define ColorScale_h
+
+#include "vtkLookupTable.h"
+#include "vtkNew.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+struct PictureOptions;
+
+/// The colours of --color-by: those of a picture's and of a .ply file's points.
+class ColorScale
+{
+public:
+  explicit ColorScale(const PictureOptions& options);
+
+  /// Takes the values of this data set into the range, unless one was given: a film's colours have that
+  /// of all steps so far. Throws std::runtime_error where it has points and no such array.
+  void Include(vtkDataSet* data);
+
+  /// The array of the data set that colours it; nullptr if there is none.
+  vtkDataArray* ArrayOf(vtkDataSet* data) const;
+
+  const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for
+  void SetName(const std::string& name) { this->Name = name; }
+  vtkLookupTable* GetTable() const { return this->Table; }
+
+  /// Red, green and blue of the array's values.
+  std::vector<unsigned char> Map(vtkDataArray* array) const;
+
+private:
+  std::string Name;
+  const bool IsGiven;
+  bool HasRange;
+  vtkNew<vtkLookupTable> Table;
+};
+
+#endif

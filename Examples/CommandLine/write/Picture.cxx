@@ -1,0 +1,378 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Picture.h"
+
+#include "ColorScale.h"
+#include "Ending.h"
+#include "Job.h"
+#include "MessageCapture.h"
+
+#include "vtkActor.h"
+#include "vtkBoundingBox.h"
+#include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetMapper.h"
+#include "vtkLightKit.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkOutlineSource.h"
+#include "vtkPNGWriter.h"
+#include "vtkPointData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkScalarBarActor.h"
+#include "vtkTextProperty.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkWindowToImageFilter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include <dlfcn.h>
+
+namespace
+{
+
+/// A connection to the X server, where this VTK renders through one. X is asked for in the running
+/// program, since only VTK's rendering library knows whether it is linked to it. The connection is
+/// held until the picture is drawn: a server that loses its last client starts anew (Xvfb does),
+/// and does not answer meanwhile.
+class DisplayConnection
+{
+public:
+  explicit DisplayConnection(vtkRenderWindow* window)
+  {
+    if (window->IsA("vtkXOpenGLRenderWindow"))
+    {
+      const auto open = reinterpret_cast<OpenType>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
+      this->Close = reinterpret_cast<CloseType>(dlsym(RTLD_DEFAULT, "XCloseDisplay"));
+      this->Needed = open && this->Close;
+      this->Display = this->Needed ? open(nullptr) : nullptr;
+    }
+  }
+
+  ~DisplayConnection()
+  {
+    if (this->Display)
+    {
+      this->Close(this->Display);
+    }
+  }
+
+  DisplayConnection(const DisplayConnection&) = delete;
+  void operator=(const DisplayConnection&) = delete;
+
+  /// True only where it is certain that an X server is needed and cannot be reached.
+  bool IsMissing() const { return this->Needed && !this->Display; }
+
+private:
+  using OpenType = void* (*)(const char*);
+  using CloseType = int (*)(void*);
+
+  bool Needed = false;
+  void* Display = nullptr;
+  CloseType Close = nullptr;
+};
+
+const double WidthOfBar = 0.13; ///< of the picture, where there is one
+
+using Vector = std::array<double, 3>;
+
+Vector AxisOf(const std::string& name)
+{
+  Vector axis = { 0.0, 0.0, 0.0 };
+  axis[std::string("xyz").find(name.back())] = name[0] == '-' ? -1.0 : 1.0;
+  return axis;
+}
+
+Vector Cross(const Vector& a, const Vector& b)
+{
+  Vector product;
+  vtkMath::Cross(a.data(), b.data(), product.data());
+  return product;
+}
+
+/// A view: three directions at right angles.
+struct View
+{
+  Vector Right;
+  Vector Up;
+  Vector ToEye;
+};
+
+/// Of a direction that is not along `up`; if it is, the next axis points upwards.
+View MakeView(Vector up, Vector toEye)
+{
+  View view;
+  vtkMath::Normalize(toEye.data());
+  if (std::abs(vtkMath::Dot(up.data(), toEye.data())) > 0.999)
+  {
+    up = { up[1], up[2], up[0] };
+  }
+  view.ToEye = toEye;
+  view.Right = Cross(up, toEye);
+  vtkMath::Normalize(view.Right.data());
+  view.Up = Cross(toEye, view.Right);
+  return view;
+}
+
+/// From the front and a little from above and the left.
+View ObliqueView(const Vector& up)
+{
+  const Vector right = { std::abs(up[1]) + std::abs(up[2]), std::abs(up[0]), 0.0 };
+  const Vector front = Cross(right, up);
+  const double azimuth = vtkMath::RadiansFromDegrees(-25.0);
+  const double elevation = vtkMath::RadiansFromDegrees(22.0);
+  Vector toEye;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    toEye[c] = std::cos(elevation) * (std::sin(azimuth) * right[c] + std::cos(azimuth) * front[c]) +
+      std::sin(elevation) * up[c];
+  }
+  return MakeView(up, toEye);
+}
+
+/// Straight upon a slice.
+View ViewOfSlice(const Vector& up, int axis)
+{
+  Vector toEye = { 0.0, 0.0, 0.0 };
+  toEye[static_cast<std::size_t>(axis)] =
+    axis == 1 ? -1.0 : 1.0; // so that z is upwards and x to the right
+  return MakeView(axis == 1 && up[1] != 0.0 ? Vector{ 0.0, 0.0, 1.0 } : up, toEye);
+}
+
+/// Corners as the eye sees them: to the right, upwards, towards it; from the middle of the box.
+std::array<Vector, 8> CornersIn(const View& view, const vtkBoundingBox& box, const Vector& center)
+{
+  std::array<Vector, 8> seen;
+  for (int i = 0; i < 8; ++i)
+  {
+    Vector corner;
+    box.GetCorner(i, corner.data());
+    vtkMath::Subtract(corner.data(), center.data(), corner.data());
+    seen[static_cast<std::size_t>(i)] = { vtkMath::Dot(corner.data(), view.Right.data()),
+      vtkMath::Dot(corner.data(), view.Up.data()), vtkMath::Dot(corner.data(), view.ToEye.data()) };
+  }
+  return seen;
+}
+
+/// As near as all corners of the box are in the picture, and with as much space below as above.
+void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& box, double aspect)
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const double slope = std::tan(vtkMath::RadiansFromDegrees(0.5 * camera->GetViewAngle()));
+  const double margin = 1.04;
+  Vector center;
+  box.GetCenter(center.data());
+  for (int round = 0; round < 10; ++round)
+  {
+    double distance = 1e-6 * box.GetDiagonalLength();
+    const std::array<Vector, 8> corners = CornersIn(view, box, center);
+    for (const Vector& c : corners)
+    {
+      distance = std::max(
+        distance, c[2] + margin * std::max(std::abs(c[1]), std::abs(c[0]) / aspect) / slope);
+    }
+    distance = distance > 0.0 ? distance : 1.0; // of a single point
+    camera->SetFocalPoint(center.data());
+    camera->SetPosition(center[0] + distance * view.ToEye[0], center[1] + distance * view.ToEye[1],
+      center[2] + distance * view.ToEye[2]);
+    const std::size_t axes[] = { 0, 1 };
+    for (const std::size_t a : axes) // what is near looks larger: the middle is another one
+    {
+      double lowest = VTK_DOUBLE_MAX, highest = -VTK_DOUBLE_MAX;
+      for (const Vector& c : corners)
+      {
+        lowest = std::min(lowest, c[a] / (distance - c[2]));
+        highest = std::max(highest, c[a] / (distance - c[2]));
+      }
+      const Vector& direction = a == 0 ? view.Right : view.Up;
+      for (std::size_t i = 0; i < 3; ++i)
+      {
+        center[i] += 0.5 * (lowest + highest) * distance * direction[i];
+      }
+    }
+  }
+  camera->SetViewUp(view.Up.data());
+  renderer->ResetCameraClippingRange();
+}
+
+}
+
+/// Window and what is in it.
+class Picture::Scene
+{
+public:
+  explicit Scene(const PictureOptions& options)
+    : Display(this->Window)
+  {
+    if (this->Display.IsMissing())
+    {
+      throw std::runtime_error(options.File +
+        " could not be written: rendering needs a display; try xvfb-run -a -s -noreset");
+    }
+    this->Renderer->SetBackground(1.0, 1.0, 1.0);
+    // A headlight alone leaves what faces sideways nearly black.
+    vtkNew<vtkLightKit> lights;
+    lights->AddLightsToRenderer(this->Renderer);
+    this->Window->SetOffScreenRendering(1);
+    this->Window->SetMultiSamples(0);
+    this->Window->SetSize(Width, Height);
+    this->Window->AddRenderer(this->Renderer);
+  }
+
+  void Show(vtkDataSet* data, const ColorScale& colors, bool isFlat)
+  {
+    this->Renderer->RemoveAllViewProps();
+    vtkNew<vtkDataSetMapper> mapper;
+    mapper->SetInputDataObject(data);
+    mapper->SetScalarModeToUsePointFieldData();
+    vtkDataArray* scalars = data->GetPointData()->GetScalars(); // of a surface its iso value
+    double range[2] = { 0.0, 0.0 };
+    if (colors.ArrayOf(data))
+    {
+      mapper->SelectColorArray(colors.GetName().c_str());
+      mapper->SetLookupTable(colors.GetTable());
+      mapper->UseLookupTableScalarRangeOn();
+    }
+    else if (scalars && scalars->GetNumberOfTuples() > 0 && scalars->GetName())
+    {
+      scalars->GetRange(range); // colours tell several surfaces apart, and one needs none
+      mapper->SelectColorArray(scalars->GetName());
+      mapper->SetScalarRange(range);
+    }
+    mapper->SetScalarVisibility(colors.ArrayOf(data) || range[0] < range[1]);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(0.36, 0.60, 0.85);
+    actor->GetProperty()->SetLighting(!isFlat);
+    actor->GetProperty()->SetSpecular(colors.ArrayOf(data) ? 0.0 : 0.25);
+    actor->GetProperty()->SetSpecularPower(30.0);
+    actor->GetProperty()->SetLineWidth(3.0);
+    actor->GetProperty()->SetPointSize(3.0);
+    this->Renderer->AddActor(actor);
+  }
+
+  void ShowOutline(const vtkBoundingBox& box)
+  {
+    double bounds[6];
+    box.GetBounds(bounds);
+    vtkNew<vtkOutlineSource> outline;
+    outline->SetBounds(bounds);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(outline->GetOutputPort());
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(0.45, 0.45, 0.45);
+    actor->GetProperty()->LightingOff();
+    this->Renderer->AddActor(actor);
+  }
+
+  /// Beside the picture, with a place of its own.
+  void ShowBar(const ColorScale& colors)
+  {
+    this->Renderer->SetViewport(0.0, 0.0, 1.0 - WidthOfBar, 1.0);
+    this->Bars->SetViewport(1.0 - WidthOfBar, 0.0, 1.0, 1.0);
+    this->Bars->SetBackground(1.0, 1.0, 1.0);
+    this->Bars->RemoveAllViewProps();
+    vtkNew<vtkScalarBarActor> bar;
+    bar->SetLookupTable(colors.GetTable());
+    bar->SetTitle(colors.GetName().c_str());
+    bar->SetNumberOfLabels(6);
+    bar->SetVerticalTitleSeparation(14);
+    bar->SetLabelFormat("%-#.4g");
+    bar->SetUnconstrainedFontSize(true);
+    bar->SetPosition(0.1, 0.08);
+    bar->SetWidth(0.8);
+    bar->SetHeight(0.84);
+    bar->SetBarRatio(0.25);
+    for (vtkTextProperty* text : { bar->GetLabelTextProperty(), bar->GetTitleTextProperty() })
+    {
+      text->SetColor(0.0, 0.0, 0.0);
+      text->SetFontSize(15);
+      text->ItalicOff();
+      text->ShadowOff();
+    }
+    this->Bars->AddActor2D(bar);
+    this->Window->AddRenderer(this->Bars);
+    this->HasBar = true;
+  }
+
+  void Place(const View& view, const vtkBoundingBox& box)
+  {
+    const double share = this->HasBar ? 1.0 - WidthOfBar : 1.0;
+    PlaceCamera(this->Renderer, view, box, share * Width / Height);
+  }
+
+  std::string Draw()
+  {
+    this->Window->Render();
+    vtkNew<vtkWindowToImageFilter> image;
+    image->SetInput(this->Window);
+    image->ReadFrontBufferOff();
+    vtkNew<vtkPNGWriter> writer;
+    writer->WriteToMemoryOn();
+    writer->SetInputConnection(image->GetOutputPort());
+    writer->Write();
+    vtkUnsignedCharArray* bytes = writer->GetResult();
+    return bytes ? std::string(reinterpret_cast<const char*>(bytes->GetPointer(0)),
+                     static_cast<std::size_t>(bytes->GetNumberOfValues()))
+                 : std::string();
+  }
+
+private:
+  static constexpr int Width = 1280, Height = 800;
+  vtkNew<vtkRenderWindow> Window;
+  const DisplayConnection Display;
+  vtkNew<vtkRenderer> Renderer;
+  vtkNew<vtkRenderer> Bars;
+  bool HasBar = false;
+};
+
+//------------------------------------------------------------------------------
+Picture::Picture(const PictureOptions& options)
+  : Options(options)
+{
+  const Activity drawing(
+    options.File + " could not be written", "the graphics driver may be at fault");
+  this->Drawn.reset(new Scene(options));
+}
+
+Picture::~Picture() = default;
+
+//------------------------------------------------------------------------------
+std::string Picture::Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
+  const ColorScale& colors, MessageCapture* messages, int sliceAxis)
+{
+  const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
+  messages->Clear();
+  const bool isSlice = sliceAxis >= 0;
+  this->Drawn->Show(data, colors, isSlice);
+  this->Drawn->ShowOutline(vtkBoundingBox(frame->GetBounds()));
+  this->Seen.AddBounds(frame->GetBounds());
+  if (data->GetNumberOfPoints() > 0)
+  {
+    this->Seen.AddBounds(data->GetBounds());
+  }
+  if (!colors.GetName().empty())
+  {
+    this->Drawn->ShowBar(colors);
+  }
+  const Vector up = AxisOf(this->Options.Up);
+  const std::vector<double>& given = this->Options.View;
+  this->Drawn->Place(!given.empty() ? MakeView(up, { given[0], given[1], given[2] })
+      : isSlice                     ? ViewOfSlice(up, sliceAxis)
+                                    : ObliqueView(up),
+    this->Seen);
+  std::string bytes = this->Drawn->Draw();
+  if (bytes.empty() || !messages->GetErrors().empty())
+  {
+    throw std::runtime_error(file + " could not be written" +
+      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+  }
+  return bytes;
+}

@@ -87,6 +87,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_end_rounds(context);
   mcor_release_graded(context);
   mcor_release(context, &context->sort.sums);
+  mcor_drop_kept(context);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);

@@ -58,7 +58,7 @@ typedef struct mcor_level
 #define MCOR_ITEM_BUCKETS_OF(lanes) ((lanes) == 1 ? 1 : 1024)
 
 /* Bits that one round of the radix sort treats, at most. */
-#define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 11)
+#define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 12)
 
 /* Arrays whose values one launch reads beside each other, see mcor_values_load. */
 #define MCOR_ARRAY_STEP 4

@@ -15,6 +15,8 @@
 
 #define MCOR_KERNEL_LIMIT 96
 
+#define MCOR_KEPT_BUFFERS 16 /* at most */
+
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
 typedef struct mcor_buffer
 {
@@ -72,8 +74,10 @@ typedef struct mcor_cl
   bool keeps_binaries; /* programs are kept in files, see mcor_cache.h */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
-  uint64_t memory_limit; /* what of device_memory may be used; of the call under way */
-  int64_t bytes, bytes_peak;
+  uint64_t memory_limit;     /* what of device_memory may be used; of the call under way */
+  int64_t bytes, bytes_peak; /* of all buffers, the kept ones too */
+  mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* released, see mcor_release */
+  int kept_count;
   double build_seconds; /* of the call under way */
   bool compiles;        /* the driver does, at a kernel's first launch: the last one took long */
   char device_name[128], platform_name[128];
@@ -128,6 +132,8 @@ void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
+/* Gives back all large buffers that were kept when they were released. */
+void mcor_drop_kept(mcor_context* context);
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(

@@ -7,15 +7,67 @@
 
 #include <math.h>
 
+static void mcor_free_buffer(mcor_cl* cl, const mcor_buffer* buffer)
+{
+  clReleaseMemObject(buffer->mem);
+  cl->bytes -= (int64_t)buffer->size;
+}
+
+/* Large ones are kept, for the next that are about as large: the first touch of memory takes longer than
+ * most of what is done to it, and phases, and calls, follow each other with arrays alike. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer)
 {
-  if (buffer->mem)
+  mcor_cl* cl = &context->cl;
+  if (buffer->size >= MCOR_LARGE_ARRAY && cl->kept_count < MCOR_KEPT_BUFFERS)
   {
-    clReleaseMemObject(buffer->mem);
-    context->cl.bytes -= (int64_t)buffer->size;
+    cl->kept[cl->kept_count++] = *buffer;
   }
-  buffer->mem = NULL;
-  buffer->size = 0;
+  else if (buffer->mem)
+  {
+    mcor_free_buffer(cl, buffer);
+  }
+  *buffer = (mcor_buffer){ 0 };
+}
+
+void mcor_drop_kept(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  while (cl->kept_count > 0)
+  {
+    mcor_free_buffer(cl, &cl->kept[--cl->kept_count]);
+  }
+}
+
+/* The smallest kept buffer that has room, unless it is far too large. */
+static bool mcor_take_kept(mcor_cl* cl, mcor_buffer* buffer, size_t bytes)
+{
+  int best = -1;
+  for (int i = 0; i < cl->kept_count; ++i)
+  {
+    const size_t size = cl->kept[i].size;
+    if (size >= bytes && size - size / 8 <= bytes && (best < 0 || size < cl->kept[best].size))
+    {
+      best = i;
+    }
+  }
+  if (best < 0)
+  {
+    return false;
+  }
+  *buffer = cl->kept[best];
+  cl->kept[best] = cl->kept[--cl->kept_count];
+  return true;
+}
+
+/* Makes room for what nothing kept is fit for: keeping is not to need more memory than not keeping. */
+static void mcor_leave_room(mcor_cl* cl, size_t size)
+{
+  const uint64_t peak = (uint64_t)cl->bytes_peak,
+                 most = peak < cl->memory_limit ? peak : cl->memory_limit;
+  while (cl->kept_count > 0 && (uint64_t)cl->bytes + size > most)
+  {
+    mcor_free_buffer(cl, &cl->kept[--cl->kept_count]);
+  }
 }
 
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count)
@@ -48,6 +100,11 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
     return MCOR_OK;
   }
   mcor_release(context, buffer);
+  if (mcor_take_kept(cl, buffer, bytes))
+  {
+    return MCOR_OK;
+  }
+  mcor_leave_room(cl, size);
   MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
     context, MCOR_OUT_OF_CAPACITY,
     "This would need a buffer of %.1f MiB besides %.1f MiB in use, but %.1f MiB of device %s may "

@@ -87,7 +87,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_end_rounds(context);
   mcor_release_graded(context);
   mcor_release(context, &context->sort.sums);
-  mcor_drop_kept(context);
+  mcor_drop_kept(context, 0);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);
@@ -161,7 +161,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->correction_count = context->correction_sum = context->correction_squares = 0;
   context->evaluations_counted = 0;
   context->grid.view = 0;
-  context->cl.bytes_peak = context->cl.bytes;
+  mcor_begin_buffers(context);
   const mcor_status status = body(context, input, options, result);
   mcor_keep_call(context, input, options);
   context->options = NULL;

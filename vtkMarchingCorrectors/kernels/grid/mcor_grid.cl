@@ -275,16 +275,17 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   }
 }
 
-/* Whether sorted particles i and j differ in their scalar only. */
+/* Whether sorted particles i and j differ in their scalar only; mostly x tells. */
 #define MCOR_COINCIDENT_PARAMS                                                                     \
   __global const fix *px, __global const fix *py, __global const fix *pz,                          \
     __global const real *inv_h, __global const real *weight, __global const real *trim_weight
 bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 {
-  return px[i] == px[j] && py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] &&
-    weight[i] == weight[j] && trim_weight[i] == trim_weight[j];
+  return py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] && weight[i] == weight[j] &&
+    trim_weight[i] == trim_weight[j];
 }
-#define MCOR_SAME(i, j) mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j)
+#define MCOR_SAME(i, j)                                                                            \
+  (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
 /* One work-item = one sorted particle, the first of coincident ones. Sorts these; where they are more
  * than MCOR_INSERTION_LIMIT, says so. */

@@ -130,6 +130,7 @@ mcor_status mcor_prepare(
   if (!context->grid_valid)
   {
     mcor_release_graded(context);
+    mcor_release_grid(context); /* that of the last call is memory for this one's particles */
     MCOR_TRY(mcor_make_grid(context, input));
   }
   if (!context->value_valid)

@@ -53,6 +53,8 @@ typedef struct mcor_level
  * particles of a cell of which nobody takes note. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
+/* Where there are more, so many are sorted by insertion before they are merged. */
+#define MCOR_SORTED_RUN 32
 
 /* Buckets that one work-item fills. */
 #define MCOR_ITEM_BUCKETS_OF(lanes) ((lanes) == 1 ? 1 : 1024)

@@ -64,14 +64,14 @@ void mcor_begin_buffers(mcor_context* context)
   cl->bytes_peak = cl->bytes;
 }
 
-/* The smallest kept buffer that has room, unless it is three times as large. */
+/* The smallest kept buffer that has room, unless it is far too large. */
 static bool mcor_take_kept(mcor_cl* cl, mcor_buffer* buffer, size_t bytes)
 {
   int best = -1;
   for (int i = 0; i < cl->kept_count; ++i)
   {
     const size_t size = cl->kept[i].size;
-    if (size >= bytes && size / 3 < bytes && (best < 0 || size < cl->kept[best].size))
+    if (size >= bytes && size - size / 8 <= bytes && (best < 0 || size < cl->kept[best].size))
     {
       best = i;
     }

@@ -118,7 +118,7 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
   MCOR_TRY(mcor_reserve(context, &context->sort.values, (size_t)grid->count * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_LIGHT, batches,
     MCOR_SORT_ARGS(context, sort), MCOR_BUFFER(&grid->order)));
-  for (int64_t width = MCOR_INSERTION_OF(context->cl.lanes); width < sort->most; width *= 2)
+  for (int64_t width = MCOR_SORTED_RUN; width < sort->most; width *= 2)
   {
     MCOR_TRY(
       MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_LIGHT, batches, MCOR_SORT_ARGS(context, sort),
@@ -198,6 +198,9 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x),
     MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
+  /* Memory that has been touched goes on to the first array that is moved. */
+  grid->px = context->sort.keys;
+  context->sort.keys = (mcor_buffer){ 0 };
   mcor_release_sort(context);
   MCOR_TRY(mcor_order_large_cells(context));
   MCOR_TRY(mcor_move_particles(context));
@@ -205,8 +208,10 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
-    /* Each cell has a bucket: nobody looks for keys. */
-    mcor_release(context, &grid->cell_keys);
+    /* Each cell has a bucket: nobody looks for keys. The scalar is next to need memory. */
+    mcor_release(context, &context->stage.values);
+    context->stage.values = grid->cell_keys;
+    grid->cell_keys = (mcor_buffer){ 0 };
     MCOR_TRY(mcor_reserve(context, &grid->cell_keys, sizeof(cl_ulong)));
   }
   return MCOR_OK;
@@ -293,7 +298,6 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
     MCOR_TRY(mcor_needs_density(input) ? mcor_compute_volumes(context, input)
                                        : mcor_weigh_volumes(context));
   }
-  mcor_release_stage(context);
   return MCOR_OK;
 }
 

@@ -170,10 +170,10 @@ __kernel void mcor_grid_weigh(const int count, const real norm, __global const r
   }
 }
 
-/* Groups of any number of particles with the same key are sorted by all work-items together: runs of
- * MCOR_INSERTION_LIMIT, then pairs of runs are merged into runs twice as long. The groups are cells,
- * or (by_value) coincident particles, which are sorted by their scalar, so that not even they make a
- * result depend on the order of the input; then by that order, so that no earlier scalar's shows. */
+/* Groups of more than MCOR_INSERTION_LIMIT particles with the same key are sorted by all work-items
+ * together: runs of MCOR_SORTED_RUN, then pairs of runs are merged into runs twice as long. The groups
+ * are cells, or (by_value) coincident particles, which are sorted by their scalar, so that not even they
+ * make a result depend on the order of the input; then by that order, so that no earlier scalar's shows. */
 #define MCOR_SORT_PARAMS                                                                           \
   const int count, __global const ulong *keys, MCOR_PARTICLES, const int by_value,                 \
     __global const real *value
@@ -209,11 +209,12 @@ __kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
       continue;
     }
     group = group < i && keys[group] == keys[i] ? group : mcor_find_key(keys, 0, i, keys[i]);
-    if ((i - group) % MCOR_INSERTION_LIMIT != 0)
+    const int beyond = group + MCOR_INSERTION_LIMIT;
+    if (beyond >= count || keys[beyond] != keys[i] || (i - group) % MCOR_SORTED_RUN != 0)
     {
       continue;
     }
-    const int end = min(i + MCOR_INSERTION_LIMIT, count);
+    const int end = min(i + MCOR_SORTED_RUN, count);
     for (int next = i + 1; next < end && keys[next] == keys[i]; ++next)
     {
       const int item = order[next];
@@ -236,15 +237,16 @@ __kernel void mcor_grid_merge(
   const int begin = get_global_id(0) * MCOR_BATCH;
   for (int i = begin, group = 0, end = 0; i < min(begin + MCOR_BATCH, count); ++i)
   {
-    if (!mcor_sort_is_large(keys, i, count))
-    {
-      merged[i] = order[i];
-      continue;
-    }
-    if (i >= end)
+    const bool large = mcor_sort_is_large(keys, i, count);
+    if (large && i >= end)
     {
       group = mcor_find_key(keys, 0, i, keys[i]);
       end = mcor_find_key(keys, i, count, keys[i] + 1);
+    }
+    if (!large || end - group <= MCOR_INSERTION_LIMIT)
+    {
+      merged[i] = order[i];
+      continue;
     }
     const int own = (i - group) / width, run = group + own * width;
     const bool is_first = own % 2 == 0;

@@ -243,6 +243,54 @@ static void test_memory_limit(void** state)
   core_free_set(&big);
 }
 
+/* A large buffer that was released serves the next that is about as large; others are given back where
+ * more memory would be held than a call, or the one before, was in need of, and a limit always counts. */
+static void test_kept_buffers(void** state)
+{
+  mcor_context* context = *state;
+  mcor_cl* cl = &context->cl;
+  const size_t size = 3 * MCOR_LARGE_ARRAY;
+  mcor_buffer a = { 0 }, b = { 0 }, small = { 0 };
+  cl->memory_limit = cl->device_memory;
+  mcor_release_memory(context);
+  mcor_begin_buffers(context);
+  mcor_begin_buffers(context);
+  const int64_t tables = cl->bytes;
+  CORE_OK(context, mcor_reserve(context, &a, size));
+  CORE_OK(context, mcor_reserve(context, &small, size / 4));
+  const cl_mem first = a.mem;
+  mcor_release(context, &a);
+  mcor_release(context, &small);
+  CORE_CHECK(!a.mem && cl->bytes > tables, "a released buffer is not kept");
+  CORE_OK(context, mcor_reserve(context, &small, size / 4));
+  CORE_CHECK(small.mem != first, "a buffer was used that is far too large");
+  CORE_OK(context, mcor_reserve(context, &b, size / 10 * 9));
+  CORE_CHECK(b.mem == first && b.size >= size, "a kept buffer was not used");
+  CORE_OK(context, mcor_reserve(context, &a, size));
+  CORE_CHECK(a.mem && a.mem != b.mem, "two buffers are one");
+  mcor_release(context, &a);
+  mcor_release(context, &b);
+  mcor_release(context, &small);
+  const int64_t held = cl->bytes;
+  mcor_begin_buffers(context);
+  assert_int_equal(cl->bytes, held);
+  CORE_OK(context, mcor_reserve(context, &a, 2 * size));
+  CORE_CHECK(cl->bytes <= held / 8 * 9, "%lld bytes are held, %lld were needed",
+    (long long)cl->bytes, (long long)held);
+  mcor_release(context, &a);
+  mcor_begin_buffers(context); /* of a call that needs nothing */
+  mcor_begin_buffers(context);
+  assert_int_equal(cl->bytes, tables);
+  CORE_OK(context, mcor_reserve(context, &a, size));
+  mcor_release(context, &a);
+  cl->memory_limit = (uint64_t)tables + size;
+  CORE_OK(context, mcor_reserve(context, &small, size / 4));
+  assert_int_equal(cl->bytes, tables + (int64_t)small.size);
+  mcor_release(context, &small);
+  mcor_release_memory(context);
+  assert_int_equal(cl->bytes, tables);
+}
+
 static void test_devices(void** state)
 {
   char* list = NULL;
@@ -403,8 +451,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_reach),
     cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
-    cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_devices),
-    cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
+    cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_kept_buffers),
+    cmocka_unit_test(test_devices), cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
     cmocka_unit_test(test_build_seconds), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

@@ -649,7 +649,7 @@ extern "C"
   mcor_status mcor_decompose_gradients(
     const double* gradients, int64_t count, const mcor_flow* flow);
 
-  /* Drops all that the context keeps for reuse between calls of mcor_extract. */
+  /* Drops all that the context keeps between calls: results for reuse, and large buffers. */
   void mcor_release_memory(mcor_context* context);
 
 #ifdef __cplusplus

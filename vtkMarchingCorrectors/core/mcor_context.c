@@ -82,6 +82,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_end_rounds(context);
   mcor_release_graded(context);
   mcor_release(context, &context->sort.sums);
+  mcor_drop_kept(context, 0);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);
@@ -122,6 +123,7 @@ mcor_status mcor_prepare(
   if (!context->grid_valid)
   {
     mcor_release_graded(context);
+    mcor_release_grid(context); /* that of the last call is memory for this one's particles */
     MCOR_TRY(mcor_make_grid(context, input));
   }
   if (!context->value_valid)
@@ -153,7 +155,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->correction_count = context->correction_sum = context->correction_squares = 0;
   context->evaluations_counted = 0;
   context->grid.view = 0;
-  context->cl.bytes_peak = context->cl.bytes;
+  mcor_begin_buffers(context);
   const mcor_status status = body(context, input, options, result);
   mcor_keep_call(context, input, options);
   context->options = NULL;

@@ -65,11 +65,11 @@ typedef struct mcor_lattice
 /* On the way to the search grid. */
 typedef struct mcor_stage_data
 {
-  mcor_buffer xyz, inv_h, size, solid, level; /* of the particles in the order of the input */
-  mcor_buffer values;                         /* real, of one component, in that order */
-  mcor_buffer mass, density;                  /* where volumes are computed */
-  mcor_buffer flags, keys;                    /* of coincident particles */
-  mcor_buffer found;                          /* int: what a kernel found in any of them */
+  mcor_buffer x, y, z, inv_h, size, level; /* of the particles in the order of the input */
+  mcor_buffer values;                      /* real, of one component, in that order */
+  mcor_buffer density;                     /* where volumes are computed */
+  mcor_buffer flags, keys;                 /* of coincident particles */
+  mcor_buffer found;                       /* int: what a kernel found in any of them */
 } mcor_stage_data;
 
 /* [III-A] */
@@ -364,6 +364,12 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 static inline bool mcor_is_output(const cl_int* scanned, int64_t v)
 {
   return scanned[v] != scanned[v + 1];
+}
+
+/* Input index of particle i of the device. */
+static inline int64_t mcor_source_of(const mcor_context* context, int64_t i)
+{
+  return context->source ? context->source[i] : i;
 }
 
 /* Batches of so many particles or triangles, above 0. */

@@ -53,12 +53,14 @@ typedef struct mcor_level
  * particles of a cell of which nobody takes note. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
+/* Where there are more, so many are sorted by insertion before they are merged. */
+#define MCOR_SORTED_RUN 32
 
 /* Buckets that one work-item fills. */
 #define MCOR_ITEM_BUCKETS_OF(lanes) ((lanes) == 1 ? 1 : 1024)
 
 /* Bits that one round of the radix sort treats, at most. */
-#define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 11)
+#define MCOR_DIGIT_BITS_OF(lanes) ((lanes) == 1 ? 8 : 12)
 
 /* Arrays whose values one launch reads beside each other, see mcor_values_load. */
 #define MCOR_ARRAY_STEP 4

@@ -13,6 +13,8 @@
 
 #define MCOR_KERNEL_LIMIT 96
 
+#define MCOR_KEPT_BUFFERS 32 /* at most */
+
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
 typedef struct mcor_buffer
 {
@@ -70,10 +72,13 @@ typedef struct mcor_cl
   bool keeps_binaries;            /* programs are kept in files, see mcor_cache.h */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
-  uint64_t memory_limit; /* what of device_memory may be used; of the call under way */
-  int64_t bytes, bytes_peak;
-  double build_seconds; /* of the call under way */
-  bool compiles;        /* the driver does, at a kernel's first launch: the last one took long */
+  uint64_t memory_limit;     /* what of device_memory may be used; of the call under way */
+  int64_t bytes, bytes_peak; /* of all buffers, the kept ones too */
+  mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* see mcor_release */
+  int kept_count;
+  int64_t kept_bytes, used_peak, used_before; /* used_peak: without those kept; of the last call */
+  double build_seconds;                       /* of the call under way */
+  bool compiles; /* the driver does, at a kernel's first launch: the last one took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -129,7 +134,13 @@ void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
+/* A large buffer is kept, for the next that is about as large: the first touch of memory takes longer than
+ * most of what is done to it, and phases, and calls, follow each other with arrays alike. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
+/* Gives back kept ones until no more than `most` bytes are held. */
+void mcor_drop_kept(mcor_context* context, int64_t most);
+/* A call begins: no more is kept than the last one was in need of. */
+void mcor_begin_buffers(mcor_context* context);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);

@@ -7,15 +7,81 @@
 
 #include <math.h>
 
+static void mcor_free_buffer(mcor_cl* cl, const mcor_buffer* buffer)
+{
+  clReleaseMemObject(buffer->mem);
+  cl->bytes -= (int64_t)buffer->size;
+}
+
 void mcor_release(mcor_context* context, mcor_buffer* buffer)
 {
-  if (buffer->mem)
+  mcor_cl* cl = &context->cl;
+  if (buffer->size >= MCOR_LARGE_ARRAY && cl->kept_count < MCOR_KEPT_BUFFERS)
   {
-    clReleaseMemObject(buffer->mem);
-    context->cl.bytes -= (int64_t)buffer->size;
+    cl->kept[cl->kept_count++] = *buffer;
+    cl->kept_bytes += (int64_t)buffer->size;
   }
-  buffer->mem = NULL;
-  buffer->size = 0;
+  else if (buffer->mem)
+  {
+    mcor_free_buffer(cl, buffer);
+  }
+  *buffer = (mcor_buffer){ 0 };
+}
+
+/* Kept buffer number i is kept no longer. */
+static mcor_buffer mcor_take_out(mcor_cl* cl, int i)
+{
+  const mcor_buffer buffer = cl->kept[i];
+  cl->kept[i] = cl->kept[--cl->kept_count];
+  cl->kept_bytes -= (int64_t)buffer.size;
+  return buffer;
+}
+
+void mcor_drop_kept(mcor_context* context, int64_t most)
+{
+  mcor_cl* cl = &context->cl;
+  while (cl->kept_count > 0 && cl->bytes > most)
+  {
+    const mcor_buffer last = mcor_take_out(cl, cl->kept_count - 1);
+    mcor_free_buffer(cl, &last);
+  }
+}
+
+/* Bytes with those kept, at most: an eighth more than this call, or the last, was in need of. */
+static int64_t mcor_most_held(const mcor_cl* cl)
+{
+  const int64_t used = cl->used_peak > cl->used_before ? cl->used_peak : cl->used_before;
+  const int64_t limit = (int64_t)cl->memory_limit;
+  return used / 8 * 9 < limit ? used / 8 * 9 : limit;
+}
+
+void mcor_begin_buffers(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  cl->used_before = cl->used_peak;
+  cl->used_peak = cl->bytes - cl->kept_bytes;
+  mcor_drop_kept(context, mcor_most_held(cl));
+  cl->bytes_peak = cl->bytes;
+}
+
+/* The smallest kept buffer that has room, unless it is far too large. */
+static bool mcor_take_kept(mcor_cl* cl, mcor_buffer* buffer, size_t bytes)
+{
+  int best = -1;
+  for (int i = 0; i < cl->kept_count; ++i)
+  {
+    const size_t size = cl->kept[i].size;
+    if (size >= bytes && size - size / 8 <= bytes && (best < 0 || size < cl->kept[best].size))
+    {
+      best = i;
+    }
+  }
+  if (best < 0)
+  {
+    return false;
+  }
+  *buffer = mcor_take_out(cl, best);
+  return true;
 }
 
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count)
@@ -39,15 +105,16 @@ static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* 
   return mcor_unmap(context, buffer, &memory);
 }
 
-mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes)
+static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size_t bytes)
 {
   mcor_cl* cl = &context->cl;
   const size_t size = (bytes + 255) / 256 * 256 + 256; /* never empty */
-  if (buffer->mem && buffer->size >= bytes)
+  mcor_release(context, buffer);
+  if (mcor_take_kept(cl, buffer, bytes))
   {
     return MCOR_OK;
   }
-  mcor_release(context, buffer);
+  mcor_drop_kept(context, mcor_most_held(cl) - (int64_t)size);
   MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
     context, MCOR_OUT_OF_CAPACITY,
     "This would need a buffer of %.1f MiB besides %.1f MiB in use, but %.1f MiB of device %s may "
@@ -71,6 +138,16 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   cl->bytes += (int64_t)size;
   cl->bytes_peak = cl->bytes > cl->bytes_peak ? cl->bytes : cl->bytes_peak;
   return mcor_enlarge_pages(context, buffer);
+}
+
+mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes)
+{
+  mcor_cl* cl = &context->cl;
+  const mcor_status status =
+    buffer->mem && buffer->size >= bytes ? MCOR_OK : mcor_enlarge(context, buffer, bytes);
+  const int64_t used = cl->bytes - cl->kept_bytes;
+  cl->used_peak = used > cl->used_peak ? used : cl->used_peak;
+  return status;
 }
 
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes)

@@ -60,13 +60,13 @@ typedef struct mcor_fix_job
 static void mcor_put_fix_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_fix_job* job = data;
-  const int32_t* source = job->context->source;
   const bool single = job->context->cl.fix_size == sizeof(int32_t);
   for (int64_t i = first; i < last; ++i)
   {
-    const double v = job->solid && job->solid[source[i]]
+    const int64_t from = mcor_source_of(job->context, i);
+    const double v = job->solid && job->solid[from]
       ? 0
-      : (mcor_array_at(job->array, source[i], job->component) - job->shift) * job->scale;
+      : (mcor_array_at(job->array, from, job->component) - job->shift) * job->scale;
     if (single)
     {
       ((int32_t*)job->values)[i] = (int32_t)lrint(v);
@@ -220,7 +220,7 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
   const mcor_derivatives* derivatives = run->derivatives;
   for (int64_t i = first; i < last; ++i)
   {
-    const int64_t to = context->source[run->particles[run->first + job->order[i]]];
+    const int64_t to = mcor_source_of(context, run->particles[run->first + job->order[i]]);
     double m[3][3], inverse[3][3];
     for (int k = 0; k < 9; ++k)
     {

@@ -98,32 +98,17 @@ static mcor_status mcor_reserve_padded(
   return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
-static mcor_status mcor_reserve_particles(mcor_context* context, int count)
-{
-  mcor_grid* grid = &context->grid;
-  mcor_buffer* fixes[] = { &grid->px, &grid->py, &grid->pz };
-  mcor_buffer* reals[] = { &grid->inv_h, &grid->trim_weight, &grid->value };
-  for (int i = 0; i < 3; ++i)
-  {
-    MCOR_TRY(mcor_reserve_padded(context, fixes[i], count, context->cl.fix_size));
-    MCOR_TRY(mcor_reserve_padded(context, reals[i], count, context->cl.real_size));
-  }
-  return grid->has_solids
-    ? mcor_reserve_padded(context, &grid->fluid_weight, count, context->cl.real_size)
-    : MCOR_OK;
-}
-
 /* What sorts groups of particles with the same key, see mcor_sort_before. */
 typedef struct mcor_key_sort
 {
-  const mcor_buffer *keys, *xyz, *inv_h, *size, *solid, *value;
+  const mcor_buffer *keys, *x, *y, *z, *inv_h, *size, *value;
   int by_value, most; /* particles of a group */
 } mcor_key_sort;
 
 #define MCOR_SORT_ARGS(c, s)                                                                       \
-  MCOR_INT((c)->grid.count), MCOR_BUFFER((s)->keys), MCOR_BUFFER((s)->xyz),                        \
-    MCOR_BUFFER((s)->inv_h), MCOR_BUFFER((s)->size), MCOR_BUFFER((s)->solid),                      \
-    MCOR_INT((s)->by_value), MCOR_BUFFER((s)->value)
+  MCOR_INT((c)->grid.count), MCOR_BUFFER((s)->keys), MCOR_BUFFER((s)->x), MCOR_BUFFER((s)->y),     \
+    MCOR_BUFFER((s)->z), MCOR_BUFFER((s)->inv_h), MCOR_BUFFER((s)->size), MCOR_INT((s)->by_value), \
+    MCOR_BUFFER((s)->value)
 
 /* Sorts groups that are too large for one work-item. */
 static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sort* sort)
@@ -133,7 +118,7 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
   MCOR_TRY(mcor_reserve(context, &context->sort.values, (size_t)grid->count * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_sort_runs", MCOR_LIGHT, batches,
     MCOR_SORT_ARGS(context, sort), MCOR_BUFFER(&grid->order)));
-  for (int64_t width = MCOR_INSERTION_OF(context->cl.lanes); width < sort->most; width *= 2)
+  for (int64_t width = MCOR_SORTED_RUN; width < sort->most; width *= 2)
   {
     MCOR_TRY(
       MCOR_LAUNCH(context, "mcor_grid_merge", MCOR_LIGHT, batches, MCOR_SORT_ARGS(context, sort),
@@ -146,45 +131,55 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
   return MCOR_OK;
 }
 
-#define MCOR_GRID_INPUT(xyz, inv_h, size, solid)                                                   \
-  MCOR_BUFFER(xyz), MCOR_BUFFER(inv_h), MCOR_BUFFER(size), MCOR_BUFFER(solid)
-#define MCOR_GRID_OUTPUT(g)                                                                        \
-  MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
-    MCOR_BUFFER((g)->has_solids ? &(g)->fluid_weight : &(g)->trim_weight),                         \
-    MCOR_BUFFER(&(g)->trim_weight)
-
-/* Orders the particles within each cell, and moves them into that order. */
-static mcor_status mcor_order_cells(mcor_context* context)
+/* Orders the particles of cells that are too large for one work-item. */
+static mcor_status mcor_order_large_cells(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
-  const int count = grid->count;
-  const double norm = mcor_kernel_norm(context->cl.build.sph_kernel);
-  const mcor_buffer *xyz = &context->stage.xyz, *inv_h = &context->stage.inv_h,
-                    *size = &context->stage.size, *solid = &context->stage.solid;
+  const mcor_stage_data* stage = &context->stage;
   mcor_buffer* most = &context->stage.found;
   cl_int most_in_cell = MCOR_USUAL_IN_CELL;
   MCOR_TRY(mcor_write(context, most, &most_in_cell, sizeof most_in_cell));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
-    MCOR_INT(count), MCOR_REAL(norm), MCOR_BUFFER(&grid->cell_keys),
-    MCOR_GRID_INPUT(xyz, inv_h, size, solid), MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid),
-    MCOR_BUFFER(most)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count", MCOR_LIGHT, mcor_batches(context, grid->count),
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(most)));
   MCOR_TRY(mcor_read(context, most, 0, &most_in_cell, sizeof most_in_cell));
   grid->most_in_cell = most_in_cell;
-  if (most_in_cell <= MCOR_INSERTION_OF(context->cl.lanes))
-  {
-    return MCOR_OK;
-  }
   const mcor_key_sort sort = { .keys = &grid->cell_keys,
-    .xyz = xyz,
-    .inv_h = inv_h,
-    .size = size,
-    .solid = solid,
-    .value = inv_h,
+    .x = &stage->x,
+    .y = &stage->y,
+    .z = &stage->z,
+    .inv_h = &stage->inv_h,
+    .size = &stage->size,
+    .value = &stage->inv_h,
     .most = most_in_cell };
-  MCOR_TRY(mcor_sort_same_keys(context, &sort));
-  return MCOR_LAUNCH(context, "mcor_grid_move", MCOR_LIGHT, count, MCOR_INT(count), MCOR_REAL(norm),
-    MCOR_BUFFER(&grid->cell_keys), MCOR_GRID_INPUT(xyz, inv_h, size, solid),
-    MCOR_BUFFER(&grid->order), MCOR_GRID_OUTPUT(grid));
+  return most_in_cell > MCOR_INSERTION_OF(context->cl.lanes) ? mcor_sort_same_keys(context, &sort)
+                                                             : MCOR_OK;
+}
+
+/* Moves particles to where `order` says, one array after the other, so that each may take the place of
+ * the one before; then orders those of each cell. */
+static mcor_status mcor_move_particles(mcor_context* context)
+{
+  mcor_grid* grid = &context->grid;
+  mcor_stage_data* stage = &context->stage;
+  const int count = grid->count;
+  mcor_buffer* from[] = { &stage->x, &stage->y, &stage->z, &stage->inv_h, &stage->size };
+  mcor_buffer* to[] = { &grid->px, &grid->py, &grid->pz, &grid->inv_h, &grid->trim_weight };
+  for (int i = 0; i < 5; ++i)
+  {
+    MCOR_TRY(mcor_reserve_padded(context, to[i], count, context->cl.fix_size));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
+      MCOR_BUFFER(&grid->order), MCOR_BUFFER(from[i]), MCOR_BUFFER(to[i]), MCOR_INT(0)));
+    mcor_release(context, from[i]);
+  }
+  MCOR_TRY(mcor_reserve_padded(context, &grid->value, count, context->cl.real_size));
+  if (grid->has_solids)
+  {
+    MCOR_TRY(mcor_reserve_padded(context, &grid->fluid_weight, count, context->cl.real_size));
+  }
+  return MCOR_LAUNCH(context, "mcor_grid_order", MCOR_LIGHT, mcor_batches(context, count),
+    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py),
+    MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(&grid->trim_weight),
+    MCOR_BUFFER(&grid->order));
 }
 
 /* Sorts by search cell, then within a cell, and moves the particles into that order. */
@@ -192,7 +187,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)staging->count;
-  const mcor_buffer *xyz = &context->stage.xyz, *level = &context->stage.level;
+  const mcor_stage_data* stage = &context->stage;
   const uint64_t cells = mcor_make_levels(context, staging);
   const int count = grid->count;
   MCOR_TRY(mcor_unmap_staging(context, staging));
@@ -200,21 +195,41 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     context, &grid->level_buffer, grid->levels, (size_t)grid->level_count * sizeof(mcor_level)));
   MCOR_TRY(mcor_reserve(context, &grid->cell_keys, n * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_key", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(level), MCOR_BUFFER(xyz),
-    MCOR_BUFFER(&grid->cell_keys)));
+    MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x),
+    MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
+  /* Memory that has been touched goes on to the first array that is moved. */
+  grid->px = context->sort.keys;
+  context->sort.keys = (mcor_buffer){ 0 };
   mcor_release_sort(context);
-  MCOR_TRY(mcor_reserve_particles(context, count));
-  MCOR_TRY(mcor_order_cells(context));
+  MCOR_TRY(mcor_order_large_cells(context));
+  MCOR_TRY(mcor_move_particles(context));
   MCOR_TRY(
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
-    /* Each cell has a bucket: nobody looks for keys. */
-    mcor_release(context, &grid->cell_keys);
+    /* Each cell has a bucket: nobody looks for keys. The scalar is next to need memory. */
+    mcor_release(context, &context->stage.values);
+    context->stage.values = grid->cell_keys;
+    grid->cell_keys = (mcor_buffer){ 0 };
     MCOR_TRY(mcor_reserve(context, &grid->cell_keys, sizeof(cl_ulong)));
   }
   return MCOR_OK;
+}
+
+/* Where weights of fluid particles go. */
+static const mcor_buffer* mcor_fluid_weight(const mcor_grid* grid)
+{
+  return grid->has_solids ? &grid->fluid_weight : &grid->trim_weight;
+}
+
+static mcor_status mcor_weigh_volumes(mcor_context* context)
+{
+  const mcor_grid* grid = &context->grid;
+  const double norm = mcor_kernel_norm(context->cl.build.sph_kernel);
+  return MCOR_LAUNCH(context, "mcor_grid_weigh", MCOR_LIGHT, grid->count, MCOR_INT(grid->count),
+    MCOR_REAL(norm), MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(mcor_fluid_weight(grid)),
+    MCOR_BUFFER(&grid->trim_weight));
 }
 
 /* Why a particle's volume cannot be computed. */
@@ -241,30 +256,24 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
   const size_t bytes = ((size_t)count + MCOR_PADDING) * context->cl.real_size;
-  mcor_stage_data* stage = &context->stage;
-  mcor_buffer *mass = &stage->mass, *density = &stage->density, *without = &stage->found;
-  MCOR_RELEASE(context, &stage->xyz, &stage->inv_h, &stage->level);
-  MCOR_TRY(mcor_reserve(context, mass, bytes));
+  mcor_buffer *density = &context->stage.density, *without = &context->stage.found;
   MCOR_TRY(mcor_reserve(context, density, bytes));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(&stage->size), MCOR_BUFFER(mass), MCOR_INT(0)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
-    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(mass), MCOR_BUFFER(density)));
+    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(density)));
   double low[3], high[3];
   cl_int first = INT32_MAX;
   mcor_find_evaluated(context, low, high);
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(&stage->solid),
-    MCOR_BUFFER(mass), MCOR_BUFFER(density), MCOR_INT(context->lattice.fix_bits),
-    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
-    MCOR_BUFFER(&grid->inv_h), MCOR_REAL(low[0]), MCOR_REAL(low[1]), MCOR_REAL(low[2]),
-    MCOR_REAL(high[0]), MCOR_REAL(high[1]), MCOR_REAL(high[2]),
-    MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-    MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
+    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->order), MCOR_BUFFER(density),
+    MCOR_INT(context->lattice.fix_bits), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py),
+    MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h), MCOR_REAL(low[0]), MCOR_REAL(low[1]),
+    MCOR_REAL(low[2]), MCOR_REAL(high[0]), MCOR_REAL(high[1]), MCOR_REAL(high[2]),
+    MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
   MCOR_TRY(mcor_read(context, without, 0, &first, sizeof first));
-  return first == INT32_MAX ? MCOR_OK : mcor_refuse_density(context, input, context->source[first]);
+  return first == INT32_MAX ? MCOR_OK
+                            : mcor_refuse_density(context, input, mcor_source_of(context, first));
 }
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
@@ -284,18 +293,17 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   const mcor_status unmapped = mcor_unmap_staging(context, &staging);
   MCOR_TRY(status);
   MCOR_TRY(unmapped);
-  if (mcor_needs_density(input) && staging.count > 0)
+  if (staging.count > 0)
   {
-    MCOR_TRY(mcor_compute_volumes(context, input));
+    MCOR_TRY(mcor_needs_density(input) ? mcor_compute_volumes(context, input)
+                                       : mcor_weigh_volumes(context));
   }
-  mcor_release_stage(context);
   return MCOR_OK;
 }
 
 #define MCOR_COINCIDENT_ARGS(g)                                                                    \
   MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
-    MCOR_BUFFER((g)->has_solids ? &(g)->fluid_weight : &(g)->trim_weight),                         \
-    MCOR_BUFFER(&(g)->trim_weight)
+    MCOR_BUFFER(mcor_fluid_weight(g)), MCOR_BUFFER(&(g)->trim_weight)
 
 /* Orders particles that differ in the scalar only, which mcor_sort_values has just put in place. */
 static mcor_status mcor_order_coincident(mcor_context* context)
@@ -324,10 +332,11 @@ static mcor_status mcor_order_coincident(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(flags), MCOR_BUFFER(keys)));
   const mcor_key_sort sort = { .keys = keys,
-    .xyz = &grid->px,
+    .x = &grid->px,
+    .y = &grid->py,
+    .z = &grid->pz,
     .inv_h = raw,
     .size = raw,
-    .solid = flags,
     .value = raw,
     .by_value = 1,
     .most = count };

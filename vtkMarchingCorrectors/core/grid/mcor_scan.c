@@ -60,19 +60,25 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
   *b = c;
 }
 
+/* Bits of numbers below a limit. */
+static int mcor_bits_below(uint64_t limit)
+{
+  int bits = 1;
+  while (bits < 64 && (limit - 1) >> bits)
+  {
+    ++bits;
+  }
+  return bits;
+}
+
 /* Bits that one round of sorting treats: as few rounds as can be, of about the same size, with a
  * histogram no larger than what is sorted. */
-static int mcor_digit_bits(const mcor_context* context, int segments, int count, uint64_t key_limit)
+static int mcor_digit_bits(const mcor_context* context, int segments, int count, int bits)
 {
   int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
-  int bits = 1;
   while (most > 8 && segments << most > count)
   {
     --most;
-  }
-  while (bits < 64 && (key_limit - 1) >> bits)
-  {
-    ++bits;
   }
   const int rounds = (bits + most - 1) / most;
   return (bits + rounds - 1) / rounds;
@@ -83,27 +89,32 @@ mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
   const int segments = mcor_segments(context, count);
-  const int bits = mcor_digit_bits(context, segments, count, key_limit);
+  const int key_bits = mcor_bits_below(key_limit), value_bits = mcor_bits_below((uint64_t)count);
+  const int bits = mcor_digit_bits(context, segments, count, key_bits);
   const size_t n = (size_t)count;
+  /* Between rounds, a key and its value are one number, where that has room for both. */
+  const bool packs = key_bits + value_bits <= 64;
+  mcor_buffer* sorted = packs ? values : &context->sort.values;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, sorted, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &context->sort.keys, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &context->sort.values, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(
     context, &context->sort.histogram, (((size_t)segments << bits) + 1) * sizeof(cl_int)));
-  for (int shift = 0; shift == 0 || (shift < 64 && (key_limit - 1) >> shift); shift += bits)
+  for (int shift = 0, in = 0, out; shift < key_bits; shift += bits, in = out)
   {
+    out = packs && shift + bits < key_bits ? value_bits : 0;
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_count", mcor_walk(count), segments, MCOR_BUFFER(keys),
-      MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
+      MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift + in), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram)));
     const int counters = segments << bits; /* together `count` */
     MCOR_TRY(mcor_launch_scan(
       context, &context->sort.histogram, counters, mcor_segments(context, counters)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", mcor_walk(count), segments, MCOR_BUFFER(keys),
       MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
-      MCOR_BUFFER(&context->sort.histogram), MCOR_BUFFER(&context->sort.keys),
-      MCOR_BUFFER(&context->sort.values)));
+      MCOR_INT(in), MCOR_INT(out), MCOR_BUFFER(&context->sort.histogram),
+      MCOR_BUFFER(&context->sort.keys), MCOR_BUFFER(sorted)));
     mcor_swap(keys, &context->sort.keys);
-    mcor_swap(values, &context->sort.values);
+    mcor_swap(values, sorted);
   }
   return MCOR_OK;
 }

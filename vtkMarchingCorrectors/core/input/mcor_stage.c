@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_VIEWS 5
+#define MCOR_VIEWS 6
 
 /* A buffer of the stage, and the host's view of it. */
 typedef struct mcor_view
@@ -26,11 +26,12 @@ static void mcor_list_views(
 {
   mcor_stage_data* s = &context->stage;
   const size_t fix = context->cl.fix_size, real = context->cl.real_size;
-  views[0] = (mcor_view){ &s->xyz, &staging->xyz, 3 * fix };
-  views[1] = (mcor_view){ &s->inv_h, &staging->inv_h, real };
-  views[2] = (mcor_view){ &s->size, &staging->size, real };
-  views[3] = (mcor_view){ &s->solid, &staging->solid, 1 };
-  views[4] = (mcor_view){ &s->level, &staging->level, 1 };
+  views[0] = (mcor_view){ &s->x, &staging->x[0], fix };
+  views[1] = (mcor_view){ &s->y, &staging->x[1], fix };
+  views[2] = (mcor_view){ &s->z, &staging->x[2], fix };
+  views[3] = (mcor_view){ &s->inv_h, &staging->inv_h, real };
+  views[4] = (mcor_view){ &s->size, &staging->size, real };
+  views[5] = (mcor_view){ &s->level, &staging->level, 1 };
 }
 
 static mcor_status mcor_map_staging(mcor_context* context, int64_t count, mcor_staging* staging)
@@ -195,10 +196,10 @@ static int64_t mcor_count_images(mcor_stage_job* job, int64_t first, int64_t las
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_stage_job* job = data;
-  int64_t used = job->reach ? mcor_count_images(job, first, last) : 0;
-  for (int64_t i = first; i < last && !job->reach; ++i)
+  int64_t used = job->reach ? mcor_count_images(job, first, last) : last - first;
+  for (int64_t i = first; i < last && !job->reach && job->input->solid; ++i)
   {
-    used += mcor_is_used(job->context, job->input, i);
+    used -= !mcor_is_used(job->context, job->input, i);
   }
   job->used[slice] = used;
 }
@@ -343,10 +344,14 @@ static mcor_status mcor_make_room(mcor_context* context, mcor_stage_job* job, mc
   staging->count = (int)total;
   const size_t bytes = (size_t)staging->count * sizeof(int32_t);
   free(context->source);
-  context->source = malloc(bytes + 1);
-  MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %d particles could not be allocated.", staging->count);
-  mcor_use_large_pages(context->source, bytes);
+  context->source = NULL;
+  if (job->input->solid || job->reach)
+  {
+    context->source = malloc(bytes + 1);
+    MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
+      "Host memory for %d particles could not be allocated.", staging->count);
+    mcor_use_large_pages(context->source, bytes);
+  }
   return staging->count > 0 ? mcor_map_staging(context, staging->count, staging) : MCOR_OK;
 }
 
@@ -403,6 +408,6 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
 void mcor_release_stage(mcor_context* context)
 {
   mcor_stage_data* s = &context->stage;
-  MCOR_RELEASE(context, &s->xyz, &s->inv_h, &s->size, &s->solid, &s->level, &s->mass, &s->density,
+  MCOR_RELEASE(context, &s->x, &s->y, &s->z, &s->inv_h, &s->size, &s->level, &s->density,
     &s->values, &s->flags, &s->keys, &s->found);
 }

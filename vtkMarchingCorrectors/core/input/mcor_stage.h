@@ -10,9 +10,10 @@
 typedef struct mcor_staging
 {
   int count;
-  void *xyz, *inv_h, *size; /* fix [count][3], real [count]; size: volume, mass, or 1 */
-  double size_scale;        /* see mcor_size_scale */
-  void *solid, *level;      /* uint8_t */
+  void* x[3];         /* fix */
+  void *inv_h, *size; /* real; size: volume, mass, or 1, below 0 of solids */
+  double size_scale;  /* see mcor_size_scale */
+  void* level;        /* uint8_t */
 } mcor_staging;
 
 /* Whether volumes are computed from the particles' density on the device. */

@@ -144,25 +144,25 @@ void mcor_store_reals(
   }
 }
 
-/* One of three coordinates. Positions are never below the lattice's origin, so adding 1/2 and
+/* Coordinates. Positions are never below the lattice's origin, so adding 1/2 and
  * truncating rounds them. */
-static void mcor_store_fixed(const mcor_context* context, void* array, int64_t first, int axis,
-  const double* values, int count)
+static void mcor_store_fixed(
+  const mcor_context* context, void* array, int64_t first, const double* values, int count)
 {
   if (context->cl.fix_size == sizeof(int32_t))
   {
-    int32_t* to = (int32_t*)array + 3 * first + axis;
+    int32_t* to = (int32_t*)array + first;
     for (int i = 0; i < count; ++i)
     {
-      to[3 * i] = (int32_t)(values[i] + 0.5);
+      to[i] = (int32_t)(values[i] + 0.5);
     }
   }
   else
   {
-    int64_t* to = (int64_t*)array + 3 * first + axis;
+    int64_t* to = (int64_t*)array + first;
     for (int i = 0; i < count; ++i)
     {
-      to[3 * i] = (int64_t)(values[i] + 0.5);
+      to[i] = (int64_t)(values[i] + 0.5);
     }
   }
 }
@@ -173,24 +173,30 @@ void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input
   const mcor_measure* m = &context->measure;
   const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
   const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
-  uint8_t *solid = (uint8_t*)staging->solid + to, *level = (uint8_t*)staging->level + to;
+  uint8_t* level = (uint8_t*)staging->level + to;
   if (mcor_spared_bits(context, m->support_max, context->lattice.top) > 0)
   {
     mcor_round_positions(context, reach, chunk);
   }
   for (int a = 0; a < 3; ++a)
   {
-    mcor_store_fixed(context, staging->xyz, to, a, chunk->x[a], chunk->count);
+    mcor_store_fixed(context, staging->x[a], to, chunk->x[a], chunk->count);
+  }
+  for (int i = 0; i < chunk->count && input->solid; ++i)
+  {
+    chunk->size[i] = input->solid[chunk->source[i]] ? -chunk->size[i] : chunk->size[i];
   }
   mcor_store_reals(context, staging->size, to, chunk->size, chunk->count);
   for (int i = 0; i < chunk->count; ++i)
   {
-    solid[i] = input->solid && input->solid[chunk->source[i]];
     level[i] = m->support_min < m->support_max
       ? (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach)
       : 0;
     chunk->h[i] = scaled_cube / chunk->h[i];
   }
   mcor_store_reals(context, staging->inv_h, to, chunk->h, chunk->count);
-  memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
+  if (context->source)
+  {
+    memcpy(context->source + to, chunk->source, (size_t)chunk->count * sizeof chunk->source[0]);
+  }
 }

@@ -20,25 +20,26 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
 {
   const mcor_value_job* job = data;
   const mcor_input* input = job->input;
-  const int32_t* source = job->context->source;
   const double shift = job->shift, scale = job->scale;
   int n = 0;
   for (int64_t begin = first; begin < last; begin += n)
   {
-    const int64_t from = source[begin], rest = input->count - from;
+    const int64_t from = mcor_source_of(job->context, begin), rest = input->count - from;
     const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
     double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
     job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
                : mcor_read_scalar(input, from, count, chunk);
     /* Images of a particle stand side by side. */
-    for (n = 0; n < MCOR_CHUNK && begin + n < last && source[begin + n] < from + count; ++n)
+    for (n = 0; n < MCOR_CHUNK && begin + n < last &&
+         mcor_source_of(job->context, begin + n) < from + count;
+         ++n)
     {
-      used[n] = (chunk[source[begin + n] - from] - shift) * scale;
+      used[n] = (chunk[mcor_source_of(job->context, begin + n) - from] - shift) * scale;
     }
     /* Those of solids play no part, whatever they are. */
     for (int i = 0; i < n && input->solid; ++i)
     {
-      used[i] = input->solid[source[begin + i]] ? 0 : used[i];
+      used[i] = input->solid[mcor_source_of(job->context, begin + i)] ? 0 : used[i];
     }
     mcor_store_reals(job->context, job->values, begin, used, n);
   }

@@ -347,8 +347,8 @@ static mcor_status mcor_launch_nearest(mcor_context* context, int groups)
 
 typedef struct mcor_nearest
 {
+  const mcor_context* context;
   const cl_int *scanned, *index;
-  const int32_t* source;
   int64_t* to;
 } mcor_nearest;
 
@@ -359,7 +359,8 @@ static void mcor_store_nearest(void* data, int slice, int64_t first, int64_t las
   {
     if (mcor_is_output(job->scanned, v))
     {
-      job->to[job->scanned[v]] = job->index[v] < 0 ? -1 : job->source[job->index[v]];
+      job->to[job->scanned[v]] =
+        job->index[v] < 0 ? -1 : mcor_source_of(job->context, job->index[v]);
     }
   }
   (void)slice;
@@ -375,8 +376,7 @@ static mcor_status mcor_add_nearest(
   MCOR_TRY(mcor_launch_groups(context, mcor_launch_nearest));
   void* view;
   MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
-  mcor_nearest job = { scanned, view, context->source,
-    surface->nearest_particle + surface->point_count };
+  mcor_nearest job = { context, scanned, view, surface->nearest_particle + surface->point_count };
   mcor_parallel_for(mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_store_nearest, &job);
   return mcor_unmap(context, indices, &view);
 }

@@ -29,9 +29,11 @@
 /* Of functions called in several places, and seldom for one particle: a compiler for CPUs makes a copy for
  * each call else, in each kernel anew, and its time is the first surface's. */
 #if MCOR_LANES == 1
+#define MCOR_INLINE
 #define MCOR_ONE_COPY
 #else
 #define MCOR_ONE_COPY __attribute__((noinline))
+#define MCOR_INLINE __attribute__((always_inline))
 #ifdef POCL_DEVICE_ADDRESS_BITS
 /* PoCL makes three functions of a kernel, and would put all of it into each. */
 #define __kernel __kernel MCOR_ONE_COPY
@@ -198,7 +200,10 @@ MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x
 }
 
 /* Cell along an axis of a particle of the level. */
-int mcor_cell_of_particle(__global const mcor_level* level, int axis, fix x)
+MCOR_INLINE int mcor_cell_of_particle(__global const mcor_level* level, int axis, fix x)
 {
-  return clamp(mcor_cell_of(level, axis, x), 0, level->cells[axis] - 1);
+  /* The same, but for what is clamped. */
+  const int cell = level->period[axis] == 0 ? (int)((float)x * level->inv_cell[axis])
+                                            : mcor_cell_of(level, axis, x);
+  return clamp(cell, 0, level->cells[axis] - 1);
 }

@@ -6,7 +6,8 @@
 #if MCOR_OF_LATTICE
 /* One work-item = one particle. Reads position and level. Writes the key of its search cell. */
 __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
-  __global const uchar* level_of, __global const fix* xyz, __global ulong* keys)
+  __global const uchar* level_of, __global const fix* x, __global const fix* y,
+  __global const fix* z, __global ulong* keys)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -14,96 +15,104 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
     return;
   }
   __global const mcor_level* level = levels + level_of[i];
-  ulong cell[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    cell[a] = mcor_cell_of_particle(level, a, xyz[3L * i + a]);
-  }
-  keys[i] = level->base + (cell[2] * level->cells[1] + cell[1]) * level->cells[0] + cell[0];
+  const ulong cell_x = mcor_cell_of_particle(level, 0, x[i]);
+  const ulong cell_y = mcor_cell_of_particle(level, 1, y[i]);
+  const ulong cell_z = mcor_cell_of_particle(level, 2, z[i]);
+  keys[i] = level->base + (cell_z * level->cells[1] + cell_y) * level->cells[0] + cell_x;
 }
+
+/* One work-item = the cells that begin in a batch of sorted keys. Raises `most` to the particles of a
+ * cell. */
+__kernel void mcor_grid_count(const int count, __global const ulong* keys, __global int* most)
+{
+  const int begin = get_global_id(0) * MCOR_BATCH, end = min(begin + MCOR_BATCH, count);
+  for (int i = begin + MCOR_USUAL_IN_CELL; i < end + MCOR_USUAL_IN_CELL && i < count; ++i)
+  {
+    const int first = i - MCOR_USUAL_IN_CELL;
+    if (keys[first] == keys[i] && (first == 0 || keys[first] != keys[first - 1]))
+    {
+      atomic_max(most, mcor_find_key(keys, i, count, keys[i] + 1) - first);
+    }
+  }
+}
+
+/* The particles' arrays, in any order. size: volume or mass, or 1, below 0 of solids. */
+#define MCOR_PARTICLES                                                                             \
+  __global const fix *x, __global const fix *y, __global const fix *z, __global const real *inv_h, \
+    __global const real *size
 
 /* Order of two particles of one search cell: by position, then by size and kind. Particles equal in
  * all of this are interchangeable but for their scalar, see mcor_grid_order_value. */
-bool mcor_grid_before(__global const fix* xyz, __global const real* inv_h,
-  __global const real* volume, __global const uchar* solid, int i, int j)
+bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 {
-  for (int a = 0; a < 3; ++a)
+  if (x[i] != x[j])
   {
-    if (xyz[3L * i + a] != xyz[3L * j + a])
-    {
-      return xyz[3L * i + a] < xyz[3L * j + a];
-    }
+    return x[i] < x[j];
+  }
+  if (y[i] != y[j])
+  {
+    return y[i] < y[j];
+  }
+  if (z[i] != z[j])
+  {
+    return z[i] < z[j];
   }
   if (inv_h[i] != inv_h[j])
   {
     return inv_h[i] < inv_h[j];
   }
-  return volume[i] != volume[j] ? volume[i] < volume[j] : solid[i] < solid[j];
+  const real a = fabs(size[i]), b = fabs(size[j]);
+  return a != b ? a < b : size[i] > size[j];
 }
 
-/* Insertion sort in each of some cells; its limit. Particles lie far apart in the input arrays: all
- * are asked for before the first is needed. Returns the most particles of a cell. */
+/* The limit of insertion sort. */
 #define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
-int mcor_grid_insert(__global const ulong* keys, __global const fix* xyz,
-  __global const real* inv_h, __global const real* volume, __global const uchar* solid,
-  __global int* order, int count)
-{
-  fix x[MCOR_INSERTION_LIMIT];
-  int sorted[MCOR_INSERTION_LIMIT];
-  int most = 0;
-  for (int i = 0; i < count; ++i)
-  {
-    sorted[i] = order[i];
-    x[i] = xyz[3L * sorted[i]];
-    MCOR_PREFETCH(inv_h + sorted[i]);
-    MCOR_PREFETCH(volume + sorted[i]);
+
+/* Elements from[0 .. count) of an array, in place. */
+#define MCOR_GRID_PERMUTE(type, array)                                                             \
+  {                                                                                                \
+    type old[MCOR_INSERTION_LIMIT];                                                                \
+    for (int i = 0; i < count; ++i)                                                                \
+    {                                                                                              \
+      old[i] = array[i];                                                                           \
+    }                                                                                              \
+    for (int i = 0; i < count; ++i)                                                                \
+    {                                                                                              \
+      array[i] = old[from[i]];                                                                     \
+    }                                                                                              \
   }
+
+/* Sorts the particles of each of some whole cells. */
+void mcor_grid_insert(__global const ulong* keys, __global fix* x, __global fix* y, __global fix* z,
+  __global real* inv_h, __global real* size, __global int* order, int count)
+{
+  fix sorted[MCOR_INSERTION_LIMIT];
+  int from[MCOR_INSERTION_LIMIT];
   for (int i = 0, cell = 0; i < count; ++i)
   {
-    const int item = sorted[i];
-    const fix item_x = x[i];
+    const fix item = x[i];
     cell = i > 0 && keys[i] == keys[i - 1] ? cell : i;
-    most = max(most, i - cell + 1);
     int to = i;
     for (; to > cell &&
-         (item_x < x[to - 1] ||
-           (item_x == x[to - 1] &&
-             mcor_grid_before(xyz, inv_h, volume, solid, item, sorted[to - 1])));
+         (item < sorted[to - 1] ||
+           (item == sorted[to - 1] && mcor_grid_before(x, y, z, inv_h, size, i, from[to - 1])));
          --to)
     {
-      x[to] = x[to - 1];
       sorted[to] = sorted[to - 1];
+      from[to] = from[to - 1];
     }
-    x[to] = item_x;
     sorted[to] = item;
+    from[to] = i;
   }
   for (int i = 0; i < count; ++i)
   {
-    order[i] = sorted[i];
+    x[i] = sorted[i];
   }
-  return most;
-}
-
-/* The particles' arrays, of the input and in sorted order. `volume` is the mass, or 1, where it is
- * still to be computed; norm: of the SPH kernel. */
-#define MCOR_GRID_INPUT                                                                            \
-  __global const fix *xyz, __global const real *inv_h_in, __global const real *volume,             \
-    __global const uchar *solid
-#define MCOR_GRID_OUTPUT                                                                           \
-  __global fix *px, __global fix *py, __global fix *pz, __global real *inv_h_out,                  \
-    __global real *weight, __global real *trim_weight
-
-/* Moves particle j of the input to place i. */
-void mcor_grid_move_particle(int i, int j, real norm, MCOR_GRID_INPUT, MCOR_GRID_OUTPUT)
-{
-  px[i] = xyz[3L * j];
-  py[i] = xyz[3L * j + 1];
-  pz[i] = xyz[3L * j + 2];
-  const real inv_h = inv_h_in[j];
-  inv_h_out[i] = inv_h;
-  const real w = volume[j] * norm * inv_h * inv_h * inv_h;
-  trim_weight[i] = w;
-  weight[i] = solid[j] ? (real)0 : w; /* the same array where there are no solids */
+  MCOR_GRID_PERMUTE(fix, y)
+  MCOR_GRID_PERMUTE(fix, z)
+  MCOR_GRID_PERMUTE(real, inv_h)
+  MCOR_GRID_PERMUTE(real, size)
+  MCOR_GRID_PERMUTE(int, order)
 }
 
 /* End of the whole cells from `first` on that begin before `end`, as many as have room for insertion
@@ -126,12 +135,11 @@ int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int coun
   return last;
 }
 
-/* One work-item = the cells that begin in a batch of particles. Reads the input arrays. Writes the
- * order of the particles in these cells, so that it no longer depends on that of the input, and the
- * arrays in that order. Raises `most` to the particles of a cell; one with more than
- * MCOR_INSERTION_LIMIT is left to mcor_grid_sort_runs. */
-__kernel void mcor_grid_order(const int count, const real norm, __global const ulong* keys,
-  MCOR_GRID_INPUT, __global int* order, MCOR_GRID_OUTPUT, __global int* most)
+/* One work-item = the cells that begin in a batch of sorted particles. Orders the particles in these
+ * cells, so that it no longer depends on the order of the input; not those of a cell with more than
+ * MCOR_INSERTION_LIMIT, which mcor_grid_sort_runs and mcor_grid_merge have ordered. */
+__kernel void mcor_grid_order(const int count, __global const ulong* keys, __global fix* x,
+  __global fix* y, __global fix* z, __global real* inv_h, __global real* size, __global int* order)
 {
   int first = get_global_id(0) * MCOR_BATCH;
   const int end = min(first + MCOR_BATCH, count);
@@ -142,30 +150,34 @@ __kernel void mcor_grid_order(const int count, const real norm, __global const u
   while (first < end)
   {
     const int last = mcor_grid_cells_end(keys, first, end, count);
-    const int size = last == first
-      ? mcor_find_key(keys, first, count, keys[first] + 1) - first
-      : mcor_grid_insert(keys + first, xyz, inv_h_in, volume, solid, order + first, last - first);
-    for (int i = first; i < last; ++i)
-    {
-      mcor_grid_move_particle(i, order[i], norm, xyz, inv_h_in, volume, solid, px, py, pz,
-        inv_h_out, weight, trim_weight);
-    }
-    if (size > MCOR_USUAL_IN_CELL)
-    {
-      atomic_max(most, size);
-    }
-    first = last == first ? first + size : last;
+    mcor_grid_insert(keys + first, x + first, y + first, z + first, inv_h + first, size + first,
+      order + first, last - first);
+    first = last > first ? last : mcor_find_key(keys, first, count, keys[first] + 1);
   }
 }
 
-/* Groups of any number of particles with the same key are sorted by all work-items together: runs of
- * MCOR_INSERTION_LIMIT, then pairs of runs are merged into runs twice as long. The groups are cells,
- * or (by_value) coincident particles, which are sorted by their scalar, so that not even they make a
- * result depend on the order of the input; then by that order, so that no earlier scalar's shows. */
+/* One work-item = one particle. Turns its volume into its weights; norm: of the SPH kernel. */
+__kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
+  __global real* weight, __global real* trim_weight)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    const real size = trim_weight[i];
+    const real w = fabs(size) * norm * inv_h[i] * inv_h[i] * inv_h[i];
+    trim_weight[i] = w;
+    weight[i] = size < 0 ? (real)0 : w; /* the same array where there are no solids */
+  }
+}
+
+/* Groups of more than MCOR_INSERTION_LIMIT particles with the same key are sorted by all work-items
+ * together: runs of MCOR_SORTED_RUN, then pairs of runs are merged into runs twice as long. The groups
+ * are cells, or (by_value) coincident particles, which are sorted by their scalar, so that not even they
+ * make a result depend on the order of the input; then by that order, so that no earlier scalar's shows. */
 #define MCOR_SORT_PARAMS                                                                           \
-  const int count, __global const ulong *keys, MCOR_GRID_INPUT, const int by_value,                \
+  const int count, __global const ulong *keys, MCOR_PARTICLES, const int by_value,                 \
     __global const real *value
-#define MCOR_SORT_ARGS count, keys, xyz, inv_h_in, volume, solid, by_value, value
+#define MCOR_SORT_ARGS count, keys, x, y, z, inv_h, size, by_value, value
 
 bool mcor_grid_value_before(real v, int source, real w, int other)
 {
@@ -175,7 +187,7 @@ bool mcor_grid_value_before(real v, int source, real w, int other)
 bool mcor_sort_before(MCOR_SORT_PARAMS, int i, int j)
 {
   return by_value ? mcor_grid_value_before(value[i], i, value[j], j)
-                  : mcor_grid_before(xyz, inv_h_in, volume, solid, i, j);
+                  : mcor_grid_before(x, y, z, inv_h, size, i, j);
 }
 
 /* Whether place i may be one of more than MCOR_INSERTION_LIMIT with one key. */
@@ -197,11 +209,12 @@ __kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
       continue;
     }
     group = group < i && keys[group] == keys[i] ? group : mcor_find_key(keys, 0, i, keys[i]);
-    if ((i - group) % MCOR_INSERTION_LIMIT != 0)
+    const int beyond = group + MCOR_INSERTION_LIMIT;
+    if (beyond >= count || keys[beyond] != keys[i] || (i - group) % MCOR_SORTED_RUN != 0)
     {
       continue;
     }
-    const int end = min(i + MCOR_INSERTION_LIMIT, count);
+    const int end = min(i + MCOR_SORTED_RUN, count);
     for (int next = i + 1; next < end && keys[next] == keys[i]; ++next)
     {
       const int item = order[next];
@@ -224,15 +237,16 @@ __kernel void mcor_grid_merge(
   const int begin = get_global_id(0) * MCOR_BATCH;
   for (int i = begin, group = 0, end = 0; i < min(begin + MCOR_BATCH, count); ++i)
   {
-    if (!mcor_sort_is_large(keys, i, count))
-    {
-      merged[i] = order[i];
-      continue;
-    }
-    if (i >= end)
+    const bool large = mcor_sort_is_large(keys, i, count);
+    if (large && i >= end)
     {
       group = mcor_find_key(keys, 0, i, keys[i]);
       end = mcor_find_key(keys, i, count, keys[i] + 1);
+    }
+    if (!large || end - group <= MCOR_INSERTION_LIMIT)
+    {
+      merged[i] = order[i];
+      continue;
     }
     const int own = (i - group) / width, run = group + own * width;
     const bool is_first = own % 2 == 0;
@@ -251,23 +265,10 @@ __kernel void mcor_grid_merge(
   }
 }
 
-/* One work-item = one sorted particle. Reads the input arrays. Writes them in sorted order where
- * mcor_grid_order left a cell to mcor_grid_sort_runs. */
-__kernel void mcor_grid_move(const int count, const real norm, __global const ulong* keys,
-  MCOR_GRID_INPUT, __global const int* order, MCOR_GRID_OUTPUT)
-{
-  const int i = get_global_id(0);
-  if (i < count && mcor_sort_is_large(keys, i, count))
-  {
-    mcor_grid_move_particle(
-      i, order[i], norm, xyz, inv_h_in, volume, solid, px, py, pz, inv_h_out, weight, trim_weight);
-  }
-}
-
-/* One work-item = one sorted particle. Reads an array in input order. Writes it in sorted order,
- * to a row that is `count` long. */
+/* One work-item = one sorted particle. Reads an array, of fix or real, in input order. Writes it in
+ * sorted order, to a row that is `count` long. */
 __kernel void mcor_grid_gather_value(const int count, __global const int* order,
-  __global const real* in, __global real* out, const int out_row)
+  __global const fix* in, __global fix* out, const int out_row)
 {
   const int i = get_global_id(0);
   if (i < count)
@@ -276,16 +277,17 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   }
 }
 
-/* Whether sorted particles i and j differ in their scalar only. */
+/* Whether sorted particles i and j differ in their scalar only; mostly x tells. */
 #define MCOR_COINCIDENT_PARAMS                                                                     \
   __global const fix *px, __global const fix *py, __global const fix *pz,                          \
     __global const real *inv_h, __global const real *weight, __global const real *trim_weight
 bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 {
-  return px[i] == px[j] && py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] &&
-    weight[i] == weight[j] && trim_weight[i] == trim_weight[j];
+  return py[i] == py[j] && pz[i] == pz[j] && inv_h[i] == inv_h[j] && weight[i] == weight[j] &&
+    trim_weight[i] == trim_weight[j];
 }
-#define MCOR_SAME(i, j) mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j)
+#define MCOR_SAME(i, j)                                                                            \
+  (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
 /* One work-item = one sorted particle, the first of coincident ones. Sorts these; where they are more
  * than MCOR_INSERTION_LIMIT, says so. */
@@ -379,7 +381,7 @@ __kernel void mcor_grid_density(
         const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
         const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
         const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
-        const realv m = inside ? (realv)mass[k] : (realv)0;
+        const realv m = inside ? (realv)fabs(mass[k]) : (realv)0;
         sum = MCOR_FMA(m, mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1), sum);
       }
     }
@@ -408,13 +410,12 @@ bool mcor_grid_reaches(const real* x, real support, MCOR_EVALUATED_PARAMS)
     x[2] + far > low_z && x[2] - far < high_z;
 }
 
-/* One work-item = one sorted particle. Turns density into the weight V norm / (scaled h)^3: as
+/* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled h)^3: as
  * V = m / (sum m W), the norm and the unscaled h^3 cancel. Writes the first particle, if any, of
  * which the density is too low to `without`; not where it lacks neighbours, as it reaches nothing. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
-  __global const uchar* solid, __global const real* mass, __global const real* density,
-  const int fix_bits, __global const fix* px, __global const fix* py, __global const fix* pz,
-  __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,
+  __global const real* density, const int fix_bits, __global const fix* px, __global const fix* py,
+  __global const fix* pz, __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,
   __global real* trim_weight, __global int* without)
 {
   const int i = get_global_id(0);
@@ -422,8 +423,9 @@ __kernel void mcor_grid_weight(const int count, const real h_scale, __global con
   {
     return;
   }
+  const real mass = fabs(trim_weight[i]);
   real sum = density[i];
-  if (!(sum > mass[i] * MCOR_LEAST_DENSITY))
+  if (!(sum > mass * MCOR_LEAST_DENSITY))
   {
     const real unit = ldexp((real)1, -fix_bits);
     const real x[3] = { (real)px[i] * unit, (real)py[i] * unit, (real)pz[i] * unit };
@@ -431,12 +433,12 @@ __kernel void mcor_grid_weight(const int count, const real h_scale, __global con
     {
       atomic_min(without, order[i]);
     }
-    sum = mass[i];
+    sum = mass;
   }
-  const real w = mass[i] / (sum * h_scale * h_scale * h_scale);
-  trim_weight[i] = w;
+  const real w = mass / (sum * h_scale * h_scale * h_scale);
 #if MCOR_SOLIDS
-  weight[i] = solid[order[i]] ? (real)0 : w;
+  weight[i] = trim_weight[i] < 0 ? (real)0 : w;
 #endif
+  trim_weight[i] = w;
 }
 #endif

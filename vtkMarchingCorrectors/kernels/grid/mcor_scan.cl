@@ -127,10 +127,11 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
 
 /* One work-item = one segment. Reads keys, values (in the first round that of key i is i) and the
  * scanned histogram. Writes both in the order of the digit, equal digits in the order in which they
- * came. */
+ * came. in_bits, out_bits: of values that are below their keys in one number; 0: they are by themselves. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
-  const int count, const int segments, const int shift, const int bits,
-  __global const int* histogram, __global ulong* sorted_keys, __global int* sorted_values)
+  const int count, const int segments, const int shift, const int bits, const int in_bits,
+  const int out_bits, __global const int* histogram, __global ulong* sorted_keys,
+  __global int* sorted_values)
 {
   const int segment = get_global_id(0);
   if (segment >= segments)
@@ -146,10 +147,14 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   const int end = mcor_segment_begin(segment + 1, segments, count);
   for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
   {
-    const ulong key = keys[i];
+    const ulong key = keys[i] >> in_bits;
+    const ulong value = in_bits > 0 ? keys[i] - (key << in_bits) : shift == 0 ? i : values[i];
     const int to = bins[(int)(key >> shift) & (radix - 1)]++;
-    sorted_keys[to] = key;
-    sorted_values[to] = shift == 0 ? i : values[i];
+    sorted_keys[to] = out_bits > 0 ? key << out_bits | value : key;
+    if (out_bits == 0)
+    {
+      sorted_values[to] = (int)value;
+    }
   }
 }
 

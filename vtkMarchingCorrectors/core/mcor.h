@@ -523,6 +523,7 @@ extern "C"
     MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
     MCOR_WARN_ISO_VALUE,      /* outside of the field's range */
     MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
+    MCOR_WARN_TOLERANCE,      /* some vertices are off the iso value, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;
 

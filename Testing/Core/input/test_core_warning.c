@@ -128,6 +128,15 @@ static void test_iso_value(void** state)
   SILENT(call.iso[0] = 8.4; call.options.field = MCOR_SUM);
 }
 
+static void test_tolerance(void** state)
+{
+  SILENT(call.options.tolerance = 1e-9; call.options.preview = 1);
+  WARNED(MCOR_WARN_TOLERANCE, "vertices are off the iso value|tolerance|double precision",
+    call.options.tolerance = 1e-9);
+  WARNED(MCOR_WARN_TOLERANCE, "a higher iteration limit", call.options.iteration_limit = 1);
+  SILENT(call.options.tolerance = 1e-9; call.options.precision = MCOR_FLOAT64);
+}
+
 static void test_trimmed(void** state)
 {
   WARNED(MCOR_WARN_TRIMMED, "triangles were trimmed|weight sum|vertex threshold 3",
@@ -164,6 +173,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
     cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
-    cmocka_unit_test(test_without_input) };
+    cmocka_unit_test(test_tolerance), cmocka_unit_test(test_without_input) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

@@ -193,11 +193,32 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
                : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
 }
 
+/* Vertices that the correction could not bring to the iso value. A preview does not try. */
+static bool mcor_warn_tolerance(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const mcor_options* o = s->options;
+  const double range = n->scalar_max - n->scalar_min;
+  if (o->preview || n->vertices_above_tolerance == 0)
+  {
+    return false;
+  }
+  return mcor_say(s,
+    "%lld of %lld vertices are off the iso value by more than the tolerance %.3g, by %.3g at most, "
+    "of a "
+    "range of %.4g. Try %s.",
+    (long long)n->vertices_above_tolerance, (long long)n->correction_count, o->tolerance * range,
+    n->residual_max, range,
+    n->iterations_max >= o->iteration_limit ? "a higher iteration limit"
+      : o->precision == MCOR_FLOAT32        ? "double precision"
+                                            : "a larger tolerance");
+}
+
 char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
   bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
-    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed };
+    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_tolerance };
   /* With globals the input is a part of the particles. */
   if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
     input->count == 0 || options->globals)

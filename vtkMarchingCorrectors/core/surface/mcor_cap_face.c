@@ -9,10 +9,8 @@
 #include "mcor_cap.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
-
-/* As MCOR_LEAST_WEIGHT of mcor_node.cl. */
-#define MCOR_LEAST_MEAN_WEIGHT 1e-3
 
 /* Points evaluated at a time. */
 #define MCOR_CAP_BATCH (1 << 18)
@@ -193,13 +191,18 @@ typedef struct mcor_cap_values
 static double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)
 {
   const double weight = mcor_get_real(context, v->weight, i), share = mcor_fluid_share(context);
-  const double fluid = share > 0 ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
+  const double fluid =
+    context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
   const double quantity = v->eigenvalue ? mcor_get_real(context, v->eigenvalue, i) : weight;
   const double threshold = context->options->field == MCOR_WEIGHT_SUM
     ? DBL_MAX
     : quantity - mcor_real_of(context, context->options->vertex_threshold);
   const double ends = share > 0 ? fluid - share * weight : DBL_MAX;
-  return threshold < ends ? threshold : ends;
+  const double margin = threshold < ends ? threshold : ends;
+  return fluid > mcor_real_of(context, mcor_least_fluid(context)) ||
+      context->options->field != MCOR_SHEPARD
+    ? margin
+    : fmin(margin, 0);
 }
 
 static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
@@ -210,7 +213,7 @@ static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values
     context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
   return options->field == MCOR_WEIGHT_SUM ||
     (weight >= mcor_real_of(context, options->node_threshold) &&
-      (options->field == MCOR_SUM || fluid >= mcor_real_of(context, MCOR_LEAST_MEAN_WEIGHT)));
+      (options->field == MCOR_SUM || fluid >= mcor_real_of(context, MCOR_LEAST_NODE_WEIGHT)));
 }
 
 /* Takes point i, which is node number `to`: of the side itself, or of those within. */

@@ -51,10 +51,28 @@ double mcor_fluid_share(const mcor_context* context)
   return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
 }
 
+double mcor_least_fluid(const mcor_context* context)
+{
+  return context->options->field == MCOR_SHEPARD
+    ? MCOR_LEAST_VERTEX_WEIGHT(context->options->sph_kernel == MCOR_M_PRIME_4)
+    : 0;
+}
+
+/* Whether a vertex may be within the threshold, and yet lack the fluid that a mean needs. */
+static bool mcor_may_lack_fluid(const mcor_context* context)
+{
+  const double least = mcor_least_fluid(context);
+  return least > 0 &&
+    (context->grid.has_solids || mcor_trims_by_eigenvalue(context) ||
+      context->options->vertex_threshold < least);
+}
+
 /* What is trimmed by, and where it ends. */
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
-  return mcor_ends_at_solids(context) ? &context->trim.margin : mcor_threshold_quantity(context);
+  return mcor_ends_at_solids(context) || mcor_may_lack_fluid(context)
+    ? &context->trim.margin
+    : mcor_threshold_quantity(context);
 }
 
 double mcor_trim_threshold(const mcor_context* context)
@@ -79,7 +97,7 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
     MCOR_TRY(mcor_reserve(context, &trim->eigenvalue, (size_t)count * context->cl.real_size));
     MCOR_TRY(mcor_evaluate_boundary(context, false, &trim->eigenvalue));
   }
-  if (!mcor_ends_at_solids(context))
+  if (mcor_trim_quantity(context) != &trim->margin)
   {
     return MCOR_OK;
   }
@@ -161,8 +179,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
     MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
-    MCOR_BUFFER(mcor_trim_quantity(context))));
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
   if (mcor_is_graded(context))
   {
     MCOR_TRY(mcor_find_cut_levels(context, cut_count));

@@ -20,8 +20,19 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
   return inside;
 }
 
-/* One work-item = one vertex. Writes how far it is inside, of a threshold of `quantity` and of the
- * fluid's share of the weight, whichever is nearer: what is trimmed by, its threshold being 0. */
+/* What a Shepard mean at a vertex needs of the fluid's own weight. */
+#define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
+
+/* The fluid's own weight at vertex v. */
+real mcor_trim_fluid(__global const real* weight, __global const real4* gradient, int v)
+{
+  return MCOR_SOLIDS ? gradient[v].w : weight[v];
+}
+
+/* One work-item = one vertex. Writes what is trimmed by: `quantity`, or where the fluid needs a share of
+ * the weight, how far the vertex is inside of that and of the threshold of `quantity`, whichever is
+ * nearer, the threshold then being 0. A vertex where there is no mean is outside at any rate: at the
+ * threshold, if it was inside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -30,7 +41,14 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   if (i < count)
   {
     const real share = gradient[i].w - fluid_share * weight[i];
-    margin[i] = MCOR_FIELD == 2 ? share : fmin(quantity[i] - threshold, share);
+    real m = fluid_share <= 0 ? quantity[i]
+      : MCOR_FIELD == 2       ? share
+                              : fmin(quantity[i] - threshold, share);
+    if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
+    {
+      m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
+    }
+    margin[i] = m;
   }
 }
 
@@ -148,12 +166,21 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
   }
 }
 
+/* Whether vertex v is outside for want of fluid alone, see mcor_trim_margin. */
+bool mcor_trim_lacks_fluid(__global const real* trimmed_by, const real threshold,
+  __global const real* weight, __global const real4* gradient, int v)
+{
+  return MCOR_FIELD == 0 && trimmed_by[v] == threshold &&
+    !(mcor_trim_fluid(weight, gradient, v) > MCOR_LEAST_FLUID);
+}
+
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
  * mesh edge, is the threshold: node of the lower vertex, offset. It keeps off the ends, as cut
- * vertices of several edges would meet there. */
+ * vertices of several edges would meet there. Writes in place of its gradient how far the end inside is,
+ * and whether the other one lacks fluid alone. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
-  __global const real* weight)
+  __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
 {
   const int i = get_global_id(0);
   if (i >= cut_count)
@@ -161,8 +188,12 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
     return;
   }
   const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
-  const real wa = weight[a], wb = weight[b];
-  const real s = clamp((threshold - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
+  const bool inside = trimmed_by[a] > threshold;
+  const bool lacks = mcor_trim_lacks_fluid(trimmed_by, threshold, weight, gradient, inside ? b : a);
+  const real wa = lacks ? mcor_trim_fluid(weight, gradient, a) : trimmed_by[a];
+  const real wb = lacks ? mcor_trim_fluid(weight, gradient, b) : trimmed_by[b];
+  const real end = lacks ? MCOR_LEAST_FLUID : threshold;
+  const real s = clamp((end - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
   /* In cells of a's level; b's, of adaptive cubes, may be higher. */
   const int4 n = node[a];
   const int level = n.w >> MCOR_LEVEL_SHIFT, above = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
@@ -170,22 +201,63 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const real4 to = offset[b] * (real)(1 << above) + (real4)(d.x, d.y, d.z, 0);
   node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
   offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
+  const real4 along = inside ? -s * (to - offset[a]) : ((real)1 - s) * (to - offset[a]);
+  gradient[vertex_count + i] = (real4)(along.x, along.y, along.z, lacks);
 }
 
 /* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
+/* Steps back to where there is a mean, at most. */
+#define MCOR_TRIM_RETREATS 15
+
 /* |w - threshold| of a cut vertex, at most. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
 /* What is trimmed by: thresholds of the weight or the boundary eigenvalue and, above 0, of the
- * fluid's share of the weight. */
+ * fluid's share of the weight; where points lie on an edge whose one end lacks fluid, its weight. */
 typedef struct
 {
   real threshold, fluid_share;
   bool by_eigenvalue;
+  fixv lacking;
+  realv inside[3]; /* from the linear cut, the edge's end inside */
 } mcor_trim_limits;
+
+/* The fluid's own weight at all points. */
+realv mcor_fluid_of(const mcor_field_at* at)
+{
+#if MCOR_SOLIDS
+  return at->fluid;
+#else
+  return at->weight;
+#endif
+}
+
+/* Where the weight is the threshold, the fluid's own may yet be too low. */
+fixv mcor_lacks_fluid(const mcor_field_at* at)
+{
+  return mcor_fluid_of(at) < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
+}
+
+#if MCOR_FIELD == 0
+void mcor_trim_bound_fluid(const mcor_field_at* at, fixv lacking, mcor_boundary_at* bound)
+{
+  const realv least = mcor_fluid_of(at) - MCOR_LEAST_FLUID;
+  const fixv nearer = lacking && least < bound->value;
+  bound->value = nearer ? least : bound->value;
+#if MCOR_SOLIDS
+  bound->gx = nearer ? at->fx : bound->gx;
+  bound->gy = nearer ? at->fy : bound->gy;
+  bound->gz = nearer ? at->fz : bound->gz;
+#else
+  bound->gx = nearer ? at->wx : bound->gx;
+  bound->gy = nearer ? at->wy : bound->gy;
+  bound->gz = nearer ? at->wz : bound->gz;
+#endif
+}
+#endif
 
 #if MCOR_SOLIDS
 /* Where the fluid's share is the nearer limit, or the only one, it is the one that counts. */
@@ -222,6 +294,9 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
   {
     mcor_trim_bound_share(at, limits->fluid_share, bound);
   }
+#endif
+#if MCOR_FIELD == 0
+  mcor_trim_bound_fluid(at, limits->lacking, bound);
 #endif
 }
 
@@ -272,11 +347,34 @@ fixv mcor_trim_step(
   return tangent;
 }
 
+/* Moves points that stay at the linear cut, where there is no mean, towards the edge's end inside until
+ * there is one. */
+void mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
+  const mcor_trim_limits* limits, fixv back, mcor_points* points, mcor_reach* reach,
+  mcor_field_at* at)
+{
+  const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
+  const realv most =
+    fmax(fabs(limits->inside[0]), fmax(fabs(limits->inside[1]), fabs(limits->inside[2])));
+  const realv step = MCOR_TRIM_REACH / (MCOR_TRIM_RETREATS * fmax(most, (realv)MCOR_TRIM_REACH));
+  for (int i = 1; i <= MCOR_TRIM_RETREATS; ++i)
+  {
+    const fixv move = back && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
+    if (!MCOR_ANY(move))
+    {
+      return;
+    }
+    points->ox = move ? x0 + (real)i * step * limits->inside[0] : points->ox;
+    points->oy = move ? y0 + (real)i * step * limits->inside[1] : points->oy;
+    points->oz = move ? z0 + (real)i * step * limits->inside[2] : points->oz;
+    mcor_evaluate(grid, query, reach, points, iso, at);
+  }
+}
+
 /* Moves a group of points to where field = iso and weight = threshold; points for which that does
  * not succeed nearby stay where they were. Returns the latter. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  const mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach,
-  mcor_field_at* at)
+  mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
   mcor_boundary_at bound;
@@ -286,7 +384,10 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   {
     mcor_evaluate(grid, query, reach, points, iso, at);
     mcor_trim_bound(grid, query, reach, points, at, limits, &bound);
-    done = done || (fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE);
+    const fixv met = fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE;
+    const fixv lacks = MCOR_FIELD == 0 && met && mcor_lacks_fluid(at);
+    limits->lacking = limits->lacking || lacks;
+    done = done || (met && !lacks);
     if (i == steps || !MCOR_ANY(!(done || failed)))
     {
       break;
@@ -308,6 +409,10 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     points->oy = back ? y0 : points->oy;
     points->oz = back ? z0 : points->oz;
     mcor_evaluate(grid, query, reach, points, iso, at);
+    if (MCOR_FIELD == 0)
+    {
+      mcor_trim_retreat(grid, query, iso, limits, back, points, reach, at);
+    }
   }
   return back;
 }
@@ -334,9 +439,23 @@ void mcor_trim_solve_group(const mcor_grid* grid, bool by_eigenvalue, MCOR_TRIM_
   mcor_query query;
   mcor_reach reach;
   mcor_field_at at;
+  realv lacks = 0;
   mcor_group_load(
     grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
-  const mcor_trim_limits limits = { threshold, fluid_share, by_eigenvalue };
+  mcor_trim_limits limits;
+  limits.threshold = threshold;
+  limits.fluid_share = fluid_share;
+  limits.by_eigenvalue = by_eigenvalue;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = points.index[lane];
+    const real4 along = v >= 0 ? gradient[v] : (real4)(0, 0, 0, 0);
+    MCOR_SET(limits.inside[0], lane) = along.x;
+    MCOR_SET(limits.inside[1], lane) = along.y;
+    MCOR_SET(limits.inside[2], lane) = along.z;
+    MCOR_SET(lacks, lane) = along.w;
+  }
+  limits.lacking = lacks != 0;
   const fixv linear =
     mcor_trim_group(grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
   if (attribute_count > 0)

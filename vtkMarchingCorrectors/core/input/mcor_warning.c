@@ -71,6 +71,11 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   {
     return false;
   }
+  if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
+  {
+    return mcor_say(s, "All %lld fluid particles are at one point. Is that the array of positions?",
+      (long long)n->fluid_particles);
+  }
   const char* why = few && s->input->smoothing_length_is_support_radius
     ? "Perhaps what is read as the support radius is the smoothing length, or it is not in the "
       "unit "

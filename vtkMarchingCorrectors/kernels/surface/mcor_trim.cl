@@ -166,18 +166,16 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
   }
 }
 
-/* Whether vertex v is outside for want of fluid alone, see mcor_trim_margin. */
-bool mcor_trim_lacks_fluid(__global const real* trimmed_by, const real threshold,
-  __global const real* weight, __global const real4* gradient, int v)
+/* Where what is wa and wb at the ends of an edge, and linear between, is w: off the ends. */
+real mcor_trim_fraction(real wa, real wb, real w)
 {
-  return MCOR_FIELD == 0 && trimmed_by[v] == threshold &&
-    !(mcor_trim_fluid(weight, gradient, v) > MCOR_LEAST_FLUID);
+  return clamp((w - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
 }
 
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold: node of the lower vertex, offset. It keeps off the ends, as cut
- * vertices of several edges would meet there. Writes in place of its gradient how far the end inside is,
- * and whether the other one lacks fluid alone. */
+ * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the lower vertex, offset. It
+ * keeps off the ends, as cut vertices of several edges would meet there. Writes in place of its gradient how
+ * far the end inside is, and whether it is the fluid that ends. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
@@ -189,11 +187,17 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   }
   const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
   const bool inside = trimmed_by[a] > threshold;
-  const bool lacks = mcor_trim_lacks_fluid(trimmed_by, threshold, weight, gradient, inside ? b : a);
-  const real wa = lacks ? mcor_trim_fluid(weight, gradient, a) : trimmed_by[a];
-  const real wb = lacks ? mcor_trim_fluid(weight, gradient, b) : trimmed_by[b];
-  const real end = lacks ? MCOR_LEAST_FLUID : threshold;
-  const real s = clamp((end - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
+  real s = mcor_trim_fraction(trimmed_by[a], trimmed_by[b], threshold);
+  bool lacks = false;
+#if MCOR_FIELD == 0
+  const real fa = mcor_trim_fluid(weight, gradient, a), fb = mcor_trim_fluid(weight, gradient, b);
+  if (!(fmin(fa, fb) > MCOR_LEAST_FLUID))
+  {
+    const real t = mcor_trim_fraction(fa, fb, MCOR_LEAST_FLUID);
+    lacks = inside ? t < s : t > s;
+    s = lacks ? t : s;
+  }
+#endif
   /* In cells of a's level; b's, of adaptive cubes, may be higher. */
   const int4 n = node[a];
   const int level = n.w >> MCOR_LEVEL_SHIFT, above = (node[b].w >> MCOR_LEVEL_SHIFT) - level;

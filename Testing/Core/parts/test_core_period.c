@@ -526,10 +526,44 @@ static void derivatives_see_images(void** state)
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
   assert_memory_equal(
     moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
+  mcor_free_derivatives(&moved);
+  /* Wherever in the period: next to its sides, too. */
+  for (int shift = 1; shift < 4; ++shift)
+  {
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      set.position[i] += 0.25;
+    }
+    CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      const double is = moved.gradients[0][i], was = found.gradients[0][i];
+      CORE_CHECK(fabs(is - was) < 1e-4, "shift %d: gradient %lld is %g, expected %g", shift,
+        (long long)i, is, was);
+    }
+    mcor_free_derivatives(&moved);
+  }
   mcor_free_derivatives(&found);
   mcor_free_derivatives(&expected);
-  mcor_free_derivatives(&moved);
   core_free_set(&all);
+  core_free_set(&set);
+}
+
+/* 48 cubes, but for a digit. */
+static void rounded_length(void** state)
+{
+  static const double around[6] = { 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16 };
+  const double iso = 0.5;
+  core_set set = core_make_random(60, 4, 0.3, 0.3, 4);
+  const mcor_input input = core_input(&set);
+  mcor_options options = period_options(&iso, around);
+  assert_true(around[1] / 0.1 > 48);
+  options.field = MCOR_WEIGHT_SUM;
+  options.cube_size = 0.1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_CHECK(
+    fabs(surface.statistics.cube_size - 0.1) < 1e-9, "cube size %g", surface.statistics.cube_size);
+  mcor_free_surface(&surface);
   core_free_set(&set);
 }
 
@@ -581,7 +615,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
     cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts),
-    cmocka_unit_test(boxes), cmocka_unit_test(lengths), cmocka_unit_test(large_sides),
-    cmocka_unit_test(points_see_images), cmocka_unit_test(derivatives_see_images) };
+    cmocka_unit_test(boxes), cmocka_unit_test(lengths), cmocka_unit_test(rounded_length),
+    cmocka_unit_test(large_sides), cmocka_unit_test(points_see_images),
+    cmocka_unit_test(derivatives_see_images) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -413,7 +413,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     points->oy = back ? y0 : points->oy;
     points->oz = back ? z0 : points->oz;
     mcor_evaluate(grid, query, reach, points, iso, at);
-    if (MCOR_FIELD == 0)
+    if (MCOR_FIELD == 0 && steps > 0) /* not in a preview */
     {
       mcor_trim_retreat(grid, query, iso, limits, back, points, reach, at);
     }

@@ -395,6 +395,8 @@ extern "C"
     double iterations_mean;
     int iterations_max;
     double residual_max; /* max |f - iso| as evaluated on the device, in the scalar's unit */
+    /* Rounding of positions on the device, unit L, at most: residuals are of positions so rounded. */
+    double position_error;
     int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut */
     int64_t device_bytes_peak;
     char device[128], platform[128];
@@ -523,6 +525,7 @@ extern "C"
     MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
     MCOR_WARN_ISO_VALUE,      /* outside of the field's range */
     MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
+    MCOR_WARN_PRECISION,      /* positions are rounded too much, see position_error */
     MCOR_WARN_TOLERANCE,      /* some vertices are off the iso value, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;

@@ -245,6 +245,7 @@ typedef struct mcor_component
 {
   int attribute, component;
   double shift, scale; /* on the device: (value - shift) * scale */
+  double low, high;    /* of a probe's, over fluid particles: no mean of theirs is beyond */
 } mcor_component;
 
 /* The components that vary, and those of them that are on the device. */

@@ -130,6 +130,17 @@ static void test_iso_value(void** state)
   SILENT(call.iso[0] = 8.4; call.options.field = MCOR_SUM);
 }
 
+static void test_precision(void** state)
+{
+  WARNED(MCOR_WARN_PRECISION, "single precision|of the smallest smoothing length|double precision",
+         call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+         call.set.smoothing_length[5] = 1.3 / 4000);
+  SILENT(call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE; call.options.precision = MCOR_FLOAT64;
+         call.set.smoothing_length[5] = 1.3 / 4000);
+  SILENT(call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+         call.set.smoothing_length[5] = 1.3 / 100);
+}
+
 static void test_tolerance(void** state)
 {
   SILENT(call.options.tolerance = 1e-9; call.options.preview = 1);
@@ -175,6 +186,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
     cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
-    cmocka_unit_test(test_tolerance), cmocka_unit_test(test_without_input) };
+    cmocka_unit_test(test_tolerance), cmocka_unit_test(test_precision),
+    cmocka_unit_test(test_without_input) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

@@ -198,6 +198,30 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
                : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
 }
 
+/* As a share of the smallest smoothing length: residuals then are off by about as much of the range. */
+#define MCOR_MOST_POSITION_ERROR 5e-6
+
+/* As a share of the cube size; less where the grid is short. */
+#define MCOR_LONG_GRID_ERROR 1e-6
+
+static bool mcor_warn_precision(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const double share = n->position_error / n->smoothing_length_min;
+  if (s->options->precision != MCOR_FLOAT32 || n->smoothing_length_min == 0 ||
+    share <= MCOR_MOST_POSITION_ERROR || n->position_error < MCOR_LONG_GRID_ERROR * n->cube_size)
+  {
+    return false;
+  }
+  return mcor_say(s,
+    "The virtual grid is so long, with cubes of %.3g, that positions in single precision are "
+    "rounded by up "
+    "to %.3g, %.2g of the smallest smoothing length: surfaces near the smallest particles are off "
+    "by about "
+    "as much. Try double precision.",
+    n->cube_size, n->position_error, share);
+}
+
 /* Vertices that the correction could not bring to the iso value. A preview does not try. */
 static bool mcor_warn_tolerance(mcor_suspicion* s)
 {
@@ -223,7 +247,8 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
   bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
-    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_tolerance };
+    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_precision,
+    mcor_warn_tolerance };
   /* With globals the input is a part of the particles. */
   if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
     input->count == 0 || options->globals)

@@ -124,8 +124,6 @@ FAULTS = [
     Fault("normal: triangles are not added up", ["core_normal"],
           "sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];",
           "sums[3 * (int64_t)t[c / 3] + c % 3] = n[c % 3];"),
-    Fault("correct: a mean's pole is a place of the surface", ["core_correct"],
-          "return at->fluid < 0 ? -at->value : at->value;", "return at->value;"),
     Fault("trim: the fluid's own weight does not matter", ["core_correct"],
           "MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID)", "false"),
     Fault("trim: cuts do not keep to where there is fluid", ["core_correct"],

@@ -213,8 +213,9 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
-/* Steps back to where there is a mean, at most. */
-#define MCOR_TRIM_RETREATS 15
+/* Steps back to where there is a mean, at most, each half of the way that is left to the edge's end, where
+ * cuts would meet. */
+#define MCOR_TRIM_RETREATS 12
 
 /* |w - threshold| of a cut vertex, at most. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
@@ -360,17 +361,19 @@ void mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
   const realv most =
     fmax(fabs(limits->inside[0]), fmax(fabs(limits->inside[1]), fabs(limits->inside[2])));
-  const realv step = MCOR_TRIM_REACH / (MCOR_TRIM_RETREATS * fmax(most, (realv)MCOR_TRIM_REACH));
-  for (int i = 1; i <= MCOR_TRIM_RETREATS; ++i)
+  const realv scale = MCOR_TRIM_REACH / fmax(most, (realv)MCOR_TRIM_REACH);
+  real share = 1;
+  for (int i = 0; i < MCOR_TRIM_RETREATS; ++i)
   {
     const fixv move = back && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
     if (!MCOR_ANY(move))
     {
       return;
     }
-    points->ox = move ? x0 + (real)i * step * limits->inside[0] : points->ox;
-    points->oy = move ? y0 + (real)i * step * limits->inside[1] : points->oy;
-    points->oz = move ? z0 + (real)i * step * limits->inside[2] : points->oz;
+    share *= (real)0.5;
+    points->ox = move ? x0 + (1 - share) * scale * limits->inside[0] : points->ox;
+    points->oy = move ? y0 + (1 - share) * scale * limits->inside[1] : points->oy;
+    points->oz = move ? z0 + (1 - share) * scale * limits->inside[2] : points->oz;
     mcor_evaluate(grid, query, reach, points, iso, at);
   }
 }

@@ -266,7 +266,9 @@ extern "C"
                             * are Shepard cells with a node of a fluid weight below 0.001. */
     mcor_boundary_detection boundary_detection;
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
-                              * is lower; default 0.5 */
+                              * is lower; default 0.5. A Shepard mean's are, at any rate, where the
+                              * fluid's own weight is below 0.001, with M'4, whose lobes let it pass 0,
+                              * below 0.05: no mean is there, but a pole. */
     double wall_share;    /* above 0: the surface, the free surface too, also ends where the solids'
                         * share of the weight, unless they are ignored, becomes greater than this;
                         * 0.5: where they weigh more than the fluid. 0, the default: nowhere.

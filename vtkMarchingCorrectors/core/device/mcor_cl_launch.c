@@ -202,9 +202,9 @@ static mcor_status mcor_enqueue_cut(
     MCOR_TRY(mcor_enqueue_part(context, kernel, offset, count, group));
     MCOR_TRY(mcor_finish(context));
     const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
-    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest     ? fmin(2 * part, limit)
-      : seconds > 2 * MCOR_PART_SECONDS && part > (double)group ? part / 2
-                                                                : part;
+    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest ? fmin(2 * part, limit)
+      : seconds > 2 * MCOR_PART_SECONDS ? fmax(part * MCOR_PART_SECONDS / seconds, (double)group)
+                                        : part;
     kernel->part = part;
     MCOR_TRY(mcor_report_launch(context));
   }

@@ -194,6 +194,8 @@ mcor_status mcor_make_cap_face(
 mcor_status mcor_check_caps(mcor_context* context)
 {
   const mcor_options* options = context->options;
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
   double least = INFINITY;
   for (int i = 0; i < options->iso_count; ++i)
   {
@@ -202,10 +204,13 @@ mcor_status mcor_check_caps(mcor_context* context)
   mcor_status status = MCOR_OK;
   for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
   {
-    if (context->lattice.period[a] > 0 && !context->box.is_empty)
+    const int first = lattice->period_first[a];
+    const bool has_lower = box->first[a] == first,
+               has_upper = box->last[a] == first + lattice->period[a];
+    if (lattice->period[a] > 0 && !box->is_empty && (has_lower || has_upper))
     {
       mcor_cap_face face;
-      mcor_set_cap_extent(context, a, 0, &face);
+      mcor_set_cap_extent(context, a, !has_lower, &face);
       status = mcor_note_face(context, least, &face);
       mcor_free_cap_face(&face);
     }

@@ -208,8 +208,8 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
   free(all.bytes);
 }
 
-void core_check_cuts(
-  mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
+void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
+  const mcor_options* options, const core_cut* cuts, int count)
 {
   core_whole whole = { 0 };
   mcor_surface surface = core_extract(context, input, options);
@@ -219,11 +219,17 @@ void core_check_cuts(
   core_add_surface(&whole.triangles, input, &surface);
   whole.statistics = surface.statistics;
   mcor_free_surface(&surface);
-  for (size_t i = 0; i < CORE_CUTS; ++i)
+  for (int i = 0; i < count; ++i)
   {
-    check_cut(context, name, input, options, core_cuts + i, &whole);
+    check_cut(context, name, input, options, cuts + i, &whole);
   }
   free(whole.triangles.bytes);
+}
+
+void core_check_cuts(
+  mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
+{
+  core_check_these_cuts(context, name, input, options, core_cuts, CORE_CUTS);
 }
 
 void core_ask_for_all(mcor_options* options)

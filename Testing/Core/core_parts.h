@@ -35,6 +35,10 @@ void core_set_box(mcor_options* options, const core_cut* cut, const int at[3]);
 void core_check_cuts(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options);
 
+/* The same with other cuts. */
+void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
+  const mcor_options* options, const core_cut* cuts, int count);
+
 /* Arrays and keys of points, to be compared. */
 void core_ask_for_all(mcor_options* options);
 

@@ -102,6 +102,9 @@ extern "C"
   /* scalar: [count], contoured in place of particles->scalar; NULL: particles->scalar. */
   void oracle_evaluate(
     const oracle_field* field, const double* scalar, const double point[3], oracle_sample* sample);
+  /* Value less iso; where a mean's weight is below 0, negative: the sum of the terms against iso has this
+   * sign, and passes 0 where the value is iso, not at the mean's poles. */
+  double oracle_side(const oracle_field* field, const oracle_sample* sample, double iso);
 
   /* The eigenvalues, ascending, of the symmetric part of sum V (x_j - x) (outer product) grad W,
    * over the particles of trim_weight. The lowest one is the boundary eigenvalue of Marrone et
@@ -148,10 +151,11 @@ extern "C"
   typedef struct oracle_limits
   {
     double iso;
-    double node_threshold; /* not applied to ORACLE_WEIGHT */
-    double least_weight;   /* fluid weight below which a Shepard mean has no meaning, > 0 */
-    double close;          /* |value - iso| up to which a node is excused, in the scalar's unit */
-    double margin;         /* |weight - threshold| up to which a node is excused */
+    double node_threshold;    /* not applied to ORACLE_WEIGHT */
+    double least_weight;      /* fluid weight below which a Shepard mean has no meaning, > 0 */
+    double least_at_vertices; /* the same of vertices */
+    double close;  /* |value - iso| up to which a node is excused, in the scalar's unit */
+    double margin; /* |weight - threshold| up to which a node is excused */
   } oracle_limits;
 
   void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_limits* limits);

@@ -61,7 +61,6 @@ extern "C"
 
     double residual; /* max |f - iso| / range over vertices on edges */
     int64_t noisy;   /* vertices whose residual is above 4e-6, but within the bound on rounding */
-    int64_t jumps;   /* vertices where f jumps over iso; not in residual and normal_degrees */
     double distance; /* max distance to the surface f = iso, in cubes */
     double normal_degrees; /* max angle between normal and -gradient */
     int64_t flat_vertices; /* gradient too small for a meaningful normal; not in normal_degrees */

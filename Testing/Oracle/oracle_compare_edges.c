@@ -224,7 +224,7 @@ static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
   {
     p[edge % 3] = start + reference->lattice.cube * piece / pieces;
     oracle_evaluate(&reference->field, NULL, p, &sample);
-    const double difference = sample.value - reference->limits.iso;
+    const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
     if (piece > 0 && (difference >= 0.0) != (previous >= 0.0) &&
       compare_trim_margin(state, p, &sample) < limit)
     {

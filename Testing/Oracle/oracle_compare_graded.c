@@ -229,7 +229,7 @@ static int graded_rightly_trimmed(const compare_state* state, const graded_edge*
     double p[3];
     graded_point(state, edge, (double)piece / pieces, p);
     oracle_evaluate(&reference->field, NULL, p, &sample);
-    const double difference = sample.value - reference->limits.iso;
+    const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
     if (piece > 0 && (difference >= 0.0) != (previous >= 0.0))
     {
       double low = (piece - 1.0) / pieces;
@@ -238,7 +238,8 @@ static int graded_rightly_trimmed(const compare_state* state, const graded_edge*
       {
         graded_point(state, edge, 0.5 * (low + high), p);
         oracle_evaluate(&reference->field, NULL, p, &sample);
-        const int as_high = (sample.value >= reference->limits.iso) == (difference >= 0.0);
+        const int as_high = (oracle_side(&reference->field, &sample, reference->limits.iso) >=
+                              0.0) == (difference >= 0.0);
         *(as_high ? &high : &low) = 0.5 * (low + high);
       }
       if (compare_trim_margin(state, p, &sample) < 1e-5)

@@ -40,6 +40,7 @@ typedef struct compare_state
 double compare_threshold_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 double compare_wall_margin(const compare_state* state, const oracle_sample* sample);
+double compare_fluid_margin(const compare_state* state, const oracle_sample* sample);
 double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 /* The first fault is kept in words. */

@@ -38,30 +38,6 @@ static double compare_distance(
   return isnan(distance) ? 0.0 : distance; /* 0 / 0: exactly on a flat spot */
 }
 
-/* Shepard's field jumps where the fluid weight falls to 0: the last particle in reach leaves with a
- * value of its own, and beyond is a void without values. Weight of solids can keep the cells there
- * valid. It has poles where kernels with negative lobes make the weight pass 0. No point of the
- * edge then has the value iso; the vertex must be where the side changes, or at the void. */
-static int compare_jump(
-  const compare_state* state, const double point[3], int axis, double residual)
-{
-  const oracle_reference* reference = state->reference;
-  const double step = 1e-5 * reference->lattice.cube;
-  double p[3] = { point[0], point[1], point[2] };
-  oracle_sample low;
-  oracle_sample high;
-  if (reference->field.kind != ORACLE_SHEPARD || residual < 1e-3)
-  {
-    return 0;
-  }
-  p[axis] = point[axis] - step;
-  oracle_evaluate(&reference->field, NULL, p, &low);
-  p[axis] = point[axis] + step;
-  oracle_evaluate(&reference->field, NULL, p, &high);
-  return (low.value >= reference->limits.iso) != (high.value >= reference->limits.iso) ||
-    fabs(low.weight) < 1e-9 || fabs(high.weight) < 1e-9;
-}
-
 static void compare_normal(compare_state* state, int64_t v, const oracle_sample* sample)
 {
   oracle_comparison* result = state->result;
@@ -138,6 +114,12 @@ static double compare_trim_gradient(const compare_state* state, const double poi
 {
   const double wall = compare_wall_margin(state, sample);
   const double margin = compare_threshold_margin(state, point, sample);
+  const double fluid = compare_fluid_margin(state, sample);
+  if (fluid < fmin(wall, margin))
+  {
+    memcpy(gradient, sample->weight_gradient, sizeof(sample->weight_gradient));
+    return fluid;
+  }
   if (wall < margin)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -238,19 +220,14 @@ static void compare_trim_vertex(
   }
 }
 
-/* A vertex on a lattice edge; 1 if f is iso there, 0 if f only jumps over it. */
-static int compare_edge_vertex(
+/* A vertex on a lattice edge. */
+static void compare_edge_vertex(
   compare_state* state, int64_t v, const oracle_sample* sample, double residual)
 {
   oracle_comparison* result = state->result;
   const double* point = &state->surface->points[3 * v];
   const int axis = (int)(state->vertex_edge[v] % 3);
   result->below_threshold += state->trimmed && compare_trim_margin(state, point, sample) < -1e-5;
-  if (compare_jump(state, point, axis, residual))
-  {
-    ++result->jumps;
-    return 0;
-  }
   if (residual > 4e-6 &&
     residual * state->reference->range <=
       oracle_rounding(&state->reference->field, point, state->reference->unit))
@@ -269,7 +246,6 @@ static int compare_edge_vertex(
     }
   }
   result->distance = fmax(result->distance, compare_distance(state, v, axis, sample));
-  return 1;
 }
 
 void compare_vertices(compare_state* state)
@@ -291,7 +267,7 @@ void compare_vertices(compare_state* state)
     }
     else if (state->vertex_edge[v] >= 0)
     {
-      on_surface = compare_edge_vertex(state, v, &sample, residual);
+      compare_edge_vertex(state, v, &sample, residual);
     }
     if (state->surface->normals && on_surface)
     {

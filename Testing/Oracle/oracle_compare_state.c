@@ -41,10 +41,19 @@ double compare_threshold_margin(
   return eigenvalues[0] - state->options->vertex_threshold;
 }
 
+double compare_fluid_margin(const compare_state* state, const oracle_sample* sample)
+{
+  return state->reference->field.kind == ORACLE_SHEPARD
+    ? sample->weight - state->reference->limits.least_at_vertices
+    : INFINITY;
+}
+
 double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample)
 {
-  return fmin(compare_threshold_margin(state, point, sample), compare_wall_margin(state, sample));
+  return fmin(
+    fmin(compare_threshold_margin(state, point, sample), compare_wall_margin(state, sample)),
+    compare_fluid_margin(state, sample));
 }
 
 /* Least trimming weight at the nodes of a cell; NaN outside the lattice. */

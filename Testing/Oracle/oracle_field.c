@@ -318,6 +318,12 @@ void oracle_evaluate(
   }
 }
 
+double oracle_side(const oracle_field* field, const oracle_sample* sample, double iso)
+{
+  const double difference = sample->value - iso;
+  return field->kind == ORACLE_SHEPARD && sample->weight < 0.0 ? -difference : difference;
+}
+
 /* ---- the boundary eigenvalue ----------------------------------------------------------------- */
 
 typedef struct oracle_matrix

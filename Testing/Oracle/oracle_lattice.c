@@ -298,7 +298,7 @@ void oracle_edge_root(const oracle_lattice* lattice, const oracle_field* field, 
     const int bisect = step % 3 == 2 || !(t > 0.0 && t < 1.0);
     point[axis] = bisect ? 0.5 * (x[0] + x[1]) : x[0] + t * (x[1] - x[0]);
     oracle_evaluate(field, NULL, point, sample);
-    const double value = sample->value - iso;
+    const double value = oracle_side(field, sample, iso);
     const int side = (value >= 0.0) == low_above ? 0 : 1;
     x[side] = point[axis];
     f[side] = value;

@@ -222,6 +222,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON : 0.5 * DBL_EPSILON;
   reference->limits.node_threshold = options->node_threshold;
   reference->limits.least_weight = 1e-3;
+  reference->limits.least_at_vertices = options->sph_kernel == MCOR_M_PRIME_4 ? 0.05 : 1e-3;
   if (!reference_particles(&reference->particles, input, options) ||
     !oracle_create_field(&reference->field, &reference->particles,
       reference_kernel(options->sph_kernel), reference_kind(options->field), options->h_scale))

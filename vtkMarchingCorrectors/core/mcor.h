@@ -269,7 +269,9 @@ extern "C"
                             * are Shepard cells with a node of a fluid weight below 0.001. */
     mcor_boundary_detection boundary_detection;
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
-                              * is lower; default 0.5 */
+                              * is lower; default 0.5. A Shepard mean's are, at any rate, where the
+                              * fluid's own weight is below 0.001, with M'4, whose lobes let it pass 0,
+                              * below 0.05: no mean is there, but a pole. */
     double wall_share;    /* above 0: the surface, the free surface too, also ends where the solids'
                         * share of the weight, unless they are ignored, becomes greater than this;
                         * 0.5: where they weigh more than the fluid. 0: nowhere. MCOR_WALL_SHARE_AUTO (the
@@ -398,6 +400,8 @@ extern "C"
     double iterations_mean;
     int iterations_max;
     double residual_max; /* max |f - iso| as evaluated on the device, in the scalar's unit */
+    /* Rounding of positions on the device, unit L, at most: residuals are of positions so rounded. */
+    double position_error;
     int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut */
     int64_t device_bytes_peak;
     char device[128], platform[128];
@@ -565,6 +569,8 @@ extern "C"
     MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
     MCOR_WARN_ISO_VALUE,      /* outside of the field's range */
     MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
+    MCOR_WARN_PRECISION,      /* positions are rounded too much, see position_error */
+    MCOR_WARN_TOLERANCE,      /* some vertices are off the iso value, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;
 

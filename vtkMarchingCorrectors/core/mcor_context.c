@@ -6,7 +6,7 @@
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_graded.h"
-#include "mcor_internal.h"
+#include "mcor_input.h"
 
 #include <stdlib.h>
 
@@ -157,6 +157,10 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->grid.view = 0;
   mcor_begin_buffers(context);
   const mcor_status status = body(context, input, options, result);
+  if (status == MCOR_OUT_OF_CAPACITY)
+  {
+    mcor_blame_outlier(context, input);
+  }
   mcor_keep_call(context, input, options);
   context->options = NULL;
   context->statistics = NULL;

@@ -60,6 +60,7 @@ static mcor_status mcor_extract_all(
     return mcor_attend_rounds(context, 0);
   }
   MCOR_TRY(mcor_prepare(context, input, options, mcor_uses_solids(input, options)));
+  MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
   for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));

@@ -245,6 +245,7 @@ typedef struct mcor_component
 {
   int attribute, component;
   double shift, scale; /* on the device: (value - shift) * scale */
+  double low, high;    /* of a probe's, over fluid particles: no mean of theirs is beyond */
 } mcor_component;
 
 /* The components that vary, and those of them that are on the device. */
@@ -515,6 +516,8 @@ bool mcor_trims_by_eigenvalue(const mcor_context* context);
 double mcor_fluid_share(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
+double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
+double mcor_vertex_threshold(const mcor_context* context);
 mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
 mcor_status mcor_list_attributes(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);

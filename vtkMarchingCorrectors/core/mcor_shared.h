@@ -129,6 +129,14 @@ typedef struct mcor_rung
 /* Groups of points of which one work-item evaluates those together that are near each other. */
 #define MCOR_CLUSTER_OF(lanes) ((lanes) == 1 ? 1 : 16)
 
+/* A Shepard mean needs this much weight of the fluid itself. At nodes: where solids make up the rest,
+ * cells would otherwise reach over voids without any fluid, and rounding noise of a kernel's rim would
+ * count as a value. At vertices, which lie between nodes, a kernel with negative lobes may let the weight
+ * pass 0, where the mean has a pole; with this much, it is no further from the particles' values than
+ * linear extrapolation takes it. */
+#define MCOR_LEAST_NODE_WEIGHT 1e-3
+#define MCOR_LEAST_VERTEX_WEIGHT(has_lobes) ((has_lobes) ? 0.05 : 1e-3)
+
 /* Components of attributes that are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 12
 

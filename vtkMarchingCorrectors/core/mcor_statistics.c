@@ -43,6 +43,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   }
   s->wall_share = m->solid_count > 0 && context->uses_solids ? mcor_wall_share(context) : 0;
   s->cube_size = lattice->cube;
+  s->position_error = 0.5 * sqrt(3) * ldexp(lattice->cube, -lattice->fix_bits);
   s->highest_level = lattice->top;
   s->scalar_min = m->scalar_min;
   s->scalar_max = m->scalar_max;

@@ -121,6 +121,14 @@ static void check_triangles(const core_shape* cell, uint32_t above,
     side[a][b] = (uint8_t)(1 + i / 3);
     parent[1 + i / 3] = 1 + i / 3;
   }
+  /* Nothing lies flat in a face but loops that do so altogether. */
+  for (int i = 0; i < count; ++i)
+  {
+    const uint8_t* t = triangles + 3 * i;
+    CORE_CHECK(loops->in_whole[loops->loop_of[t[0]]] ||
+        !(cell->in_whole[t[0]] & cell->in_whole[t[1]] & cell->in_whole[t[2]]),
+      "split %x, above %x: triangle %d %d %d lies in a face", cell->split, above, t[0], t[1], t[2]);
+  }
   for (int i = 0; i < 3 * count; ++i)
   {
     const int a = triangles[i], b = triangles[i % 3 == 2 ? i - 2 : i + 1];

@@ -246,6 +246,53 @@ static void test_pocl_folder(void** state)
   own ? setenv("POCL_CACHE_DIR", saved, 1) : unsetenv("POCL_CACHE_DIR");
 }
 
+/* Where nothing says where PoCL is to compile, a folder of this user's alone is made for it. */
+static void test_pocl_folder_without_home(void** state)
+{
+  (void)state;
+  static const char* const names[3] = { "POCL_CACHE_DIR", "XDG_CACHE_HOME", "HOME" };
+  char saved[3][400] = { "", "", "" }, path[1024];
+  struct stat status;
+  for (int i = 0; i < 3; ++i)
+  {
+    const char* value = getenv(names[i]);
+    snprintf(saved[i], sizeof saved[i], "%s", value ? value : "");
+    unsetenv(names[i]);
+  }
+  mcor_pocl_folder(path, sizeof path);
+  assert_non_null(getenv("POCL_CACHE_DIR"));
+  assert_string_equal(path, getenv("POCL_CACHE_DIR"));
+  assert_null(strstr(path, "/tmp/pocl"));
+  assert_int_equal(lstat(path, &status), 0);
+  assert_true(S_ISDIR(status.st_mode) && status.st_uid == geteuid());
+  assert_int_equal(status.st_mode & (S_IWGRP | S_IWOTH), 0);
+  for (int i = 0; i < 3; ++i)
+  {
+    saved[i][0] ? setenv(names[i], saved[i], 1) : unsetenv(names[i]);
+  }
+}
+
+/* What a link leads to is not run. */
+static void test_links(void** state)
+{
+  char path[400], aside[420];
+  size_t size;
+  (void)state;
+  remove_files();
+  mcor_cache_store(&key, "text", 5);
+  assert_int_equal(list_files(path), 1);
+  snprintf(aside, sizeof aside, "%s.aside", path);
+  assert_int_equal(rename(path, aside), 0);
+  assert_int_equal(symlink(aside, path), 0);
+  assert_null(mcor_cache_load(&key, &size));
+  assert_int_equal(unlink(path), 0);
+  assert_int_equal(rename(aside, path), 0);
+  void* data = mcor_cache_load(&key, &size);
+  assert_non_null(data);
+  free(data);
+  remove_files();
+}
+
 /* Sums 1 + 2 + ... by a kernel. */
 static void expect_scan(mcor_context* context)
 {
@@ -327,6 +374,7 @@ int main(void)
     cmocka_unit_test(test_key), cmocka_unit_test(test_damaged),
     cmocka_unit_test(test_several_processes), cmocka_unit_test(test_no_folder),
     cmocka_unit_test(test_read_only), cmocka_unit_test(test_pocl_folder),
+    cmocka_unit_test(test_pocl_folder_without_home), cmocka_unit_test(test_links),
     cmocka_unit_test(test_program), cmocka_unit_test(test_unused_programs_are_removed) };
   return cmocka_run_group_tests_name("cache", tests, set_up, tear_down);
 }

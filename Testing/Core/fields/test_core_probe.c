@@ -483,12 +483,85 @@ static void test_kept_attributes(void** state)
   core_free_set(&call.set);
 }
 
+/* Exactly at particles, where the quadratic kernel's gradient has no direction and is 0. */
+static void test_at_particles(void** state)
+{
+  core_set set = core_make_random(3000, 10, 0.6, 6, 11);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] = 1.0 / 3;
+  }
+  mcor_input input = core_input(&set);
+  const mcor_array attribute = input.scalar, at = core_array(set.position, 3);
+  input.scalar = (mcor_array){ 0 };
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.sph_kernel = MCOR_QUADRATIC;
+  options.gradients = 1;
+  mcor_samples samples;
+  CORE_OK(*state, mcor_probe(*state, &input, &options, &at, set.count, &samples));
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_QUADRATIC, ORACLE_SHEPARD, 1));
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    oracle_sample expected;
+    oracle_evaluate(&field, NULL, set.position + 3 * i, &expected);
+    for (int a = 0; a < 3; ++a)
+    {
+      CORE_CHECK(fabs(samples.gradients[0][3 * i + a] - expected.gradient[a]) < 1e-4 &&
+          fabs(samples.weight_gradient[3 * i + a] - expected.weight_gradient[a]) < 1e-4,
+        "particle %lld, h %g: gradient %g, expected %g", (long long)i, set.smoothing_length[i],
+        samples.gradients[0][3 * i + a], expected.gradient[a]);
+    }
+  }
+  oracle_free_field(&field);
+  mcor_free_samples(&samples);
+  core_free_set(&set);
+}
+
+/* A mean is between the least and the greatest value, rounding or not. */
+static void test_means_are_between(void** state)
+{
+  core_set set = core_make_random(3000, 10, 0.6, 1.8, 11);
+  uint64_t seed = 3;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] = 1.0 / 3;
+    set.scalar[i] = set.position[3 * i] < 4 ? 0 : 12421.7 * random_unit(&seed);
+  }
+  double* points = probe_points(20000, 10, 5);
+  mcor_input input = core_input(&set);
+  const mcor_array attribute = input.scalar, at = core_array(points, 3);
+  input.scalar = (mcor_array){ 0 };
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  mcor_samples samples;
+  CORE_OK(*state, mcor_probe(*state, &input, &options, &at, 20000, &samples));
+  int zero = 0, more = 0;
+  for (int64_t i = 0; i < 20000; ++i)
+  {
+    CORE_CHECK(samples.values[0][i] >= 0, "point %lld: %g", (long long)i, samples.values[0][i]);
+    zero += samples.valid[i] && samples.values[0][i] == 0;
+    more += samples.values[0][i] > 1;
+  }
+  CORE_CHECK(zero > 1000 && more > 1000, "%d of 0, %d above", zero, more);
+  mcor_free_samples(&samples);
+  free(points);
+  core_free_set(&set);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_threshold_itself),
     cmocka_unit_test(test_against_oracle), cmocka_unit_test(test_wide_range_against_oracle),
     cmocka_unit_test(test_bits_do_not_depend_on_other_points),
     cmocka_unit_test(test_only_particles_nearby_are_needed), cmocka_unit_test(test_odd_points),
-    cmocka_unit_test(test_kept_attributes) };
+    cmocka_unit_test(test_kept_attributes), cmocka_unit_test(test_at_particles),
+    cmocka_unit_test(test_means_are_between) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -534,6 +534,36 @@ static void test_far_options(void** state)
   expect_good(*state);
 }
 
+static void repeat(bad_call* call, double length, double from)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    call->options.periodic[2 * a + 1] = length;
+  }
+  for (int64_t i = 0; i < 3 * call->set.count; ++i)
+  {
+    call->set.position[i] += from;
+  }
+}
+
+/* The sentence names what is to blame. */
+static void test_outliers(void** state)
+{
+  CAPACITY("cells along axis|Particle 7 has a smoothing length of 1.3e-06|median is 1.3",
+    call.set.smoothing_length[7] = 1.3e-6);
+  CAPACITY("cells along axis|Particle 7 has a smoothing length of 1.3e+06|median is 1.3",
+    call.set.smoothing_length[7] = 1.3e6);
+  CAPACITY("cubes in the period|Particle 7 has a smoothing length of 1.3e-06",
+           call.set.smoothing_length[7] = 1.3e-6;
+           repeat(&call, 10, 0));
+  CAPACITY("1e+15 away from the origin|digits", repeat(&call, 10, 1e15));
+  ARGUMENT("cube size 4 is too large for the period 10 along x|no more than 1.5",
+           call.options.cube_size = 4;
+           repeat(&call, 10, 0));
+  ARGUMENT("too little for support radii", repeat(&call, 3, 0));
+  expect_good(*state);
+}
+
 static void test_names(void** state)
 {
   assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
@@ -719,7 +749,7 @@ int main(void)
     cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids),
     cmocka_unit_test(test_magnitudes), cmocka_unit_test(test_bad_products),
     cmocka_unit_test(test_computed_volumes), cmocka_unit_test(test_units_of_length),
-    cmocka_unit_test(test_far_options), cmocka_unit_test(test_names),
+    cmocka_unit_test(test_far_options), cmocka_unit_test(test_outliers), cmocka_unit_test(test_names),
     cmocka_unit_test(test_period_of_field_data), cmocka_unit_test(test_fluid_values),
     cmocka_unit_test(test_view_ranks), cmocka_unit_test(test_iso_values) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);

@@ -128,6 +128,34 @@ static void test_exact(void** state)
   }
 }
 
+/* Caps end where the surface does: at the wall, and at the vertex threshold. */
+static void test_caps(void** state)
+{
+  core_set set = make_tank();
+  const double iso = -9;
+  const wall_case at = { .share = 0.5 };
+  const mcor_input input = core_input(&set);
+  mcor_options options = make_options(&at, &iso);
+  options.periodic[0] = options.periodic[2] = -5;
+  options.periodic[1] = options.periodic[3] = 5;
+  options.capping = 1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  int64_t nodes = 0, low = 0;
+  for (int64_t v = 0; v < surface.point_count; ++v)
+  {
+    nodes += surface.boundary_flag[v] == 8;
+    /* Cuts of caps are linear. */
+    CORE_CHECK(surface.boundary_flag[v] < 8 || (double)surface.weight_sum[v] > 0.42,
+      "vertex %lld of a cap: weight %g, flag %d", (long long)v, (double)surface.weight_sum[v],
+      surface.boundary_flag[v]);
+    low += surface.boundary_flag[v] >= 8 && (double)surface.weight_sum[v] < 0.58;
+  }
+  CORE_CHECK(nodes > 500 && low > 20, "%lld nodes, %lld of them at the threshold", (long long)nodes,
+    (long long)low);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
 /* In the form for a GPU, the same surface. */
 static void test_forms(void** state)
 {
@@ -393,7 +421,7 @@ static void test_measured_elsewhere(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_exact), cmocka_unit_test(test_forms),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_exact), cmocka_unit_test(test_caps), cmocka_unit_test(test_forms),
     cmocka_unit_test(test_iso_values), cmocka_unit_test(test_without_solids),
     cmocka_unit_test(test_share), cmocka_unit_test(test_measured),
     cmocka_unit_test(test_measured_elsewhere), cmocka_unit_test(test_auto) };

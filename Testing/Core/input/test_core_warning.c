@@ -93,6 +93,8 @@ static void test_neighbours(void** state)
          call.input.smoothing_length = far_off;
          call.options.cube_size = 1; call.options.node_threshold = 0;
          call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_NEIGHBOURS, "All 1000 fluid particles are at one point",
+    memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
          call.options.vertex_threshold = 0); /* nothing is usual */
 }
@@ -126,6 +128,26 @@ static void test_iso_value(void** state)
          call.options.iso_count = 2);
   WARNED(MCOR_WARN_ISO_VALUE, "100 is outside", call.iso[0] = 100; call.options.field = MCOR_SUM);
   SILENT(call.iso[0] = 8.4; call.options.field = MCOR_SUM);
+}
+
+static void test_precision(void** state)
+{
+  WARNED(MCOR_WARN_PRECISION, "single precision|of the smallest smoothing length|double precision",
+         call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+         call.set.smoothing_length[5] = 1.3 / 4000);
+  SILENT(call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE; call.options.precision = MCOR_FLOAT64;
+         call.set.smoothing_length[5] = 1.3 / 4000);
+  SILENT(call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+         call.set.smoothing_length[5] = 1.3 / 100);
+}
+
+static void test_tolerance(void** state)
+{
+  SILENT(call.options.tolerance = 1e-9; call.options.preview = 1);
+  WARNED(MCOR_WARN_TOLERANCE, "vertices are off the iso value|tolerance|double precision",
+    call.options.tolerance = 1e-9);
+  WARNED(MCOR_WARN_TOLERANCE, "a higher iteration limit", call.options.iteration_limit = 1);
+  SILENT(call.options.tolerance = 1e-9; call.options.precision = MCOR_FLOAT64);
 }
 
 static void test_trimmed(void** state)
@@ -200,6 +222,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
     cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
+    cmocka_unit_test(test_tolerance), cmocka_unit_test(test_precision),
     cmocka_unit_test(test_without_input), cmocka_unit_test(test_unused_type) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

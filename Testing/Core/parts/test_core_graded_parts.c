@@ -130,6 +130,21 @@ static void given_levels(void** state)
   core_free_set(&set);
 }
 
+/* Through cubes of high levels: the particles that matter there are many small cubes away. */
+static void cuts_through_large_cubes(void** state)
+{
+  static const double half = 0.5;
+  /* Just beside the centres of cubes 64 times the smallest, of 0.18. */
+  static const core_cut cuts[] = { { "3 boxes far out", { 2, 0, 0 }, { { -86.41, -74.89 } } },
+    { "6 boxes far out", { 0, 1, 2 }, { { 0 }, { -74.87 }, { -86.39, 74.87 } } } };
+  core_set set = core_make_graded(150, 0.3);
+  const mcor_input input = core_input(&set);
+  mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
+  options.nearest_particle = 0; /* as that needs all around */
+  core_check_these_cuts(*state, "large cubes", &input, &options, cuts, 2);
+  core_free_set(&set);
+}
+
 /* A box costs what reaches it. */
 static void small_boxes(void** state)
 {
@@ -167,6 +182,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(smooth_surfaces),
     cmocka_unit_test(rough_surfaces), cmocka_unit_test(given_levels),
-    cmocka_unit_test(small_boxes) };
+    cmocka_unit_test(cuts_through_large_cubes), cmocka_unit_test(small_boxes) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -399,7 +399,9 @@ static void lengths(void** state)
     const mcor_status status = mcor_extract(*state, &input, &options, &surface);
     if (cases[i].sentence)
     {
-      assert_int_equal(status, MCOR_INVALID_ARGUMENT);
+      assert_int_equal(status,
+        strstr(cases[i].sentence, "cubes in the period") ? MCOR_OUT_OF_CAPACITY
+                                                         : MCOR_INVALID_ARGUMENT);
       CORE_CHECK(strstr(mcor_last_error(*state), cases[i].sentence), "%s", mcor_last_error(*state));
       continue;
     }
@@ -524,18 +526,97 @@ static void derivatives_see_images(void** state)
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
   assert_memory_equal(
     moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
+  mcor_free_derivatives(&moved);
+  /* Wherever in the period: next to its sides, too. */
+  for (int shift = 1; shift < 4; ++shift)
+  {
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      set.position[i] += 0.25;
+    }
+    CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      const double is = moved.gradients[0][i], was = found.gradients[0][i];
+      CORE_CHECK(fabs(is - was) < 1e-4, "shift %d: gradient %lld is %g, expected %g", shift,
+        (long long)i, is, was);
+    }
+    mcor_free_derivatives(&moved);
+  }
   mcor_free_derivatives(&found);
   mcor_free_derivatives(&expected);
-  mcor_free_derivatives(&moved);
   core_free_set(&all);
+  core_free_set(&set);
+}
+
+/* 48 cubes, but for a digit. */
+static void rounded_length(void** state)
+{
+  static const double around[6] = { 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16 };
+  const double iso = 0.5;
+  core_set set = core_make_random(60, 4, 0.3, 0.3, 4);
+  const mcor_input input = core_input(&set);
+  mcor_options options = period_options(&iso, around);
+  assert_true(around[1] / 0.1 > 48);
+  options.field = MCOR_WEIGHT_SUM;
+  options.cube_size = 0.1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_CHECK(
+    fabs(surface.statistics.cube_size - 0.1) < 1e-9, "cube size %g", surface.statistics.cube_size);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Sides of very many nodes: caps take memory and time for what particles reach of them. What would take all
+ * memory, or hours, is refused before. */
+static void large_sides(void** state)
+{
+  const double iso = 0.5, half = 0.5;
+  core_set set = core_make_random(200, 1, 0.05, 0.05, 9);
+  mcor_input input = core_input(&set);
+  const double around[6] = { -0.5, 0.5, -0.5, 0.5, -0.5, 0.5 };
+  mcor_options options = period_options(&half, around);
+  mcor_surface surface;
+  options.field = MCOR_WEIGHT_SUM;
+  options.capping = 1;
+  options.cube_size = 1e-4;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  assert_non_null(strstr(mcor_last_error(*state), "Particles reach more than"));
+  options.capping = 0;
+  options.iso_values = &iso;
+  for (int64_t j = 0; j < set.count; ++j)
+  {
+    set.volume[j] = 0.02;
+  }
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  assert_non_null(strstr(mcor_last_error(*state), "blocks of 32^3 cells"));
+  /* 40,000 nodes along a side. */
+  options.capping = 1;
+  options.cube_size = 2.5e-5;
+  for (int64_t j = 0; j < set.count; ++j)
+  {
+    set.smoothing_length[j] = 5e-5;
+    set.volume[j] = 4e-13;
+    set.position[3 * j] = j % 2 ? 0.5 : set.position[3 * j];
+  }
+  surface = core_extract(*state, &input, &options);
+  CORE_CHECK(surface.statistics.cap_triangles > 1000, "%lld triangles of caps",
+    (long long)surface.statistics.cap_triangles);
+  mesh_report report;
+  assert_true(mesh_check(
+    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report));
+  assert_int_equal(report.boundary_edges, 0);
+  mesh_free_report(&report);
+  mcor_free_surface(&surface);
   core_free_set(&set);
 }
 
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
-    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
-    cmocka_unit_test(lengths), cmocka_unit_test(points_see_images),
+    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts),
+    cmocka_unit_test(boxes), cmocka_unit_test(lengths), cmocka_unit_test(rounded_length),
+    cmocka_unit_test(large_sides), cmocka_unit_test(points_see_images),
     cmocka_unit_test(derivatives_see_images) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -298,11 +298,76 @@ static void test_tolerance(void** state)
   core_free_set(&set);
 }
 
+static double core_waves(const double x[3])
+{
+  return sin(1.3 * x[0]) + cos(0.9 * x[1]) + 0.7 * sin(1.1 * x[2]);
+}
+
+/* Half of the particles are solid, so that the fluid's weight, with a kernel that has negative lobes,
+ * passes 0 where that of both is about 1: a mean then has a pole, which is no place of the surface. */
+static void check_poles(
+  mcor_context* context, uint64_t seed, double spread, mcor_cube_size_mode cubes)
+{
+  core_set set = core_make_block(12, 0.45, seed, core_waves);
+  set.has_solids = 1;
+  for (int64_t j = 0; j < set.count; ++j)
+  {
+    set.solid[j] = ((uint32_t)j * 2654435761u >> 7) % 10 < 5;
+    set.smoothing_length[j] *= set.position[3 * j] > 0 ? spread : 1;
+  }
+  const double iso = 0.3;
+  mcor_input input = core_input(&set);
+  const mcor_array other = core_array(set.position, 3);
+  input.attributes = &other;
+  input.attribute_count = 1;
+  mcor_options options = core_options(&iso);
+  options.sph_kernel = MCOR_M_PRIME_4;
+  options.cube_size_mode = cubes;
+  options.boundary_flag = 1;
+  mcor_surface surface = core_extract(context, &input, &options);
+  oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_M_PRIME_4, ORACLE_SHEPARD, 1));
+  int64_t lacking = 0;
+  for (int64_t v = 0; v < surface.point_count; ++v)
+  {
+    oracle_sample s;
+    oracle_evaluate(&field, NULL, surface.points + 3 * v, &s);
+    CORE_CHECK(s.weight > 0.05 - 1e-4, "vertex %lld: fluid %g", (long long)v, s.weight);
+    CORE_CHECK(surface.boundary_flag[v] == 2 || fabs(s.value - iso) < 3e-5,
+      "vertex %lld, fluid %g: %g", (long long)v, s.weight, s.value);
+    lacking += surface.boundary_flag[v] == 1 && s.weight < 0.05 + 1e-4;
+    for (int a = 0; a < 3; ++a)
+    {
+      CORE_CHECK(fabs(surface.attributes[0][3 * v + a]) < 100, "vertex %lld: attribute %g",
+        (long long)v, surface.attributes[0][3 * v + a]);
+    }
+  }
+  CORE_CHECK(lacking > 10, "%lld cuts where the fluid ends", (long long)lacking);
+  assert_int_equal(surface.statistics.vertices_above_tolerance, 0);
+  assert_true(surface.statistics.trim_vertices_linear * 20 < surface.statistics.trim_vertices);
+  mesh_report report = core_check_pinched_mesh(&surface);
+  mesh_free_report(&report);
+  oracle_free_field(&field);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+static void test_poles(void** state)
+{
+  for (uint64_t seed = 100; seed < 114; ++seed)
+  {
+    check_poles(*state, seed, 1, MCOR_CUBES_UNIFORM);
+  }
+  check_poles(*state, 100, 2.2, MCOR_CUBES_UNIFORM);
+  check_poles(*state, 100, 2.2, MCOR_CUBES_ADAPTIVE);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_residuals),
     cmocka_unit_test(test_every_particle_counts), cmocka_unit_test(test_bracket_is_kept),
     cmocka_unit_test(test_reported_numbers), cmocka_unit_test(test_iteration_limit),
-    cmocka_unit_test(test_tolerance) };
+    cmocka_unit_test(test_poles), cmocka_unit_test(test_tolerance) };
   return cmocka_run_group_tests_name("correct", tests, core_set_up, core_tear_down);
 }

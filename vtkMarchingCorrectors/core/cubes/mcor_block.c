@@ -5,6 +5,7 @@
 
 #include "mcor_box.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* The first size has the smallest cubes of which no more than this many cover the lattice. */
@@ -87,10 +88,22 @@ static mcor_status mcor_test_cubes(
   {
     MCOR_TRY(mcor_void_kept(context, children));
   }
-  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_MEDIUM, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count, MCOR_INT(count),
     MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
     MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),
     MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
+}
+
+/* So many blocks at most: surface in a fourth of them has as many triangles as there can be. */
+#define MCOR_BLOCK_LIMIT (1 << 20)
+
+/* Blocks that these cubes will become, at least. Where cubes are small against the particles' supports a
+ * surface is nearly flat in them: dividing them makes fewer than four times as many, but more than three
+ * times. */
+static double mcor_foresee_blocks(const mcor_context* context, int64_t count, int doublings)
+{
+  const double edge = ldexp(context->lattice.cube, doublings) * MCOR_BLOCK_CUBES;
+  return (double)count * (edge < 0.25 * context->measure.h_median ? pow(3, doublings) : 1);
 }
 
 /* Replaces the cubes by the *children parts of those that are active, and by the blocks `kept` where
@@ -109,12 +122,13 @@ static mcor_status mcor_divide_cubes(mcor_context* context, const mcor_cubes* cu
     MCOR_BUFFER(&bricks->inactive), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]),
     MCOR_INT(finer.n[2]), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, children));
-  MCOR_RETURN_IF((int64_t)*children + added > INT32_MAX / MCOR_BLOCK_BRICKS, context,
-    MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large: there may be surface in %lld cubes of %d cells along each "
-    "axis, and %d is the limit. Use a larger cube size.",
-    (long long)*children + added, MCOR_BLOCK_CUBES << finer.doublings,
-    INT32_MAX / MCOR_BLOCK_BRICKS);
+  const double foreseen = mcor_foresee_blocks(context, *children + added, finer.doublings);
+  MCOR_RETURN_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "The virtual grid is too large: with cube size %g there may be surface in %s %.3g blocks of "
+    "%d^3 cells; "
+    "%d is the limit. Use a larger cube size.",
+    context->lattice.cube, foreseen > *children + added ? "more than" : "at least", foreseen,
+    MCOR_BLOCK_CUBES, MCOR_BLOCK_LIMIT);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)*children + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),

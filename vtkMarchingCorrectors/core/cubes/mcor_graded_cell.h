@@ -238,16 +238,13 @@ MCOR_GRADED_FUNCTION int mcor_graded_part(int a, int b)
 
 /* The third vertex of the triangle at side a-b of the part from a to b, and the part's cost without
  * that side. */
-MCOR_GRADED_FUNCTION int mcor_graded_apex(
-  const mcor_graded_loop* loop, const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
+MCOR_GRADED_FUNCTION int mcor_graded_apex(const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
 {
   int best = a + 1;
   *least = 1 << 30;
   for (int apex = a + 1; apex < b; ++apex)
   {
-    const int flat =
-      (loop->facets[a] & loop->facets[apex] & loop->facets[b]) >> 24 ? MCOR_GRADED_FLAT : 0;
-    const int cost = costs[mcor_graded_part(a, apex)] + costs[mcor_graded_part(apex, b)] + flat;
+    const int cost = costs[mcor_graded_part(a, apex)] + costs[mcor_graded_part(apex, b)];
     if (cost < *least)
     {
       *least = cost;
@@ -266,7 +263,7 @@ MCOR_GRADED_FUNCTION void mcor_graded_fill_costs(
     for (int a = b - 2; a >= 0; --a)
     {
       int cost;
-      mcor_graded_apex(loop, costs, a, b, &cost);
+      mcor_graded_apex(costs, a, b, &cost);
       cost += mcor_graded_cost(split, loop, a, b);
       costs[mcor_graded_part(a, b)] = (MCOR_TYPE(ushort))(cost < 0xffff ? cost : 0xffff);
     }
@@ -291,7 +288,7 @@ MCOR_GRADED_FUNCTION int mcor_graded_cut_loop(
       continue;
     }
     int least;
-    const int apex = mcor_graded_apex(loop, costs, a, b, &least);
+    const int apex = mcor_graded_apex(costs, a, b, &least);
     triangles[3 * count] = loop->slot[a];
     triangles[3 * count + 1] = loop->slot[apex];
     triangles[3 * count + 2] = loop->slot[b];

@@ -84,7 +84,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_MEDIUM,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_request_beside(context, &bricks->now.known));

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 #if !defined(_WIN32) && !defined(_DEFAULT_SOURCE)
-#define _DEFAULT_SOURCE /* for mkdir, statvfs */
+#define _DEFAULT_SOURCE /* for mkdir, statvfs, mkdtemp */
 #endif
 
 #include "mcor_cache.h"
@@ -19,6 +19,8 @@
 #else
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -143,7 +145,27 @@ static void mcor_remove_unused(const char* folder)
   (void)folder;
 }
 
+static FILE* mcor_open_own(const char* path)
+{
+  return fopen(path, "rb");
+}
+
 #else
+
+/* Opens a file to read, of this user and no link: what is in it, is run. */
+static FILE* mcor_open_own(const char* path)
+{
+  const int descriptor = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  struct stat status;
+  const bool own = descriptor >= 0 && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+    status.st_uid == geteuid();
+  FILE* file = own ? fdopen(descriptor, "rb") : NULL;
+  if (!file && descriptor >= 0)
+  {
+    close(descriptor);
+  }
+  return file;
+}
 
 #define MCOR_UNUSED_DAYS 90
 
@@ -182,7 +204,7 @@ void* mcor_cache_load(const mcor_cache_key* key, size_t* size)
 {
   char path[MCOR_PATH_LIMIT];
   mcor_cache_header header;
-  FILE* file = mcor_file_name(key, path) ? fopen(path, "rb") : NULL;
+  FILE* file = mcor_file_name(key, path) ? mcor_open_own(path) : NULL;
   unsigned char* data = NULL;
   if (file && fread(&header, sizeof header, 1, file) == 1 && header.size < (uint64_t)1 << 31)
   {
@@ -253,8 +275,47 @@ bool mcor_pocl_folder_fault(char* text, size_t size)
 
 #else
 
+/* Whether the folder is there, is this user's, and no link, and nobody else's to write to. */
+static bool mcor_is_private(const char* path)
+{
+  struct stat status;
+  return lstat(path, &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid() &&
+    (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+/* In the user's home, as the system has it, else a temporary one. */
+void mcor_own_pocl_folder(void)
+{
+  char path[MCOR_PATH_LIMIT], names[4096];
+  struct passwd user, *found = NULL;
+  if (mcor_variable("POCL_CACHE_DIR") || mcor_variable("XDG_CACHE_HOME") || mcor_variable("HOME"))
+  {
+    return;
+  }
+  if (getpwuid_r(geteuid(), &user, names, sizeof names, &found) == 0 && found &&
+    mcor_is_private(found->pw_dir) &&
+    snprintf(path, sizeof path, "%s/.cache/pocl/kcache", found->pw_dir) < (int)sizeof path &&
+    mcor_make_folders(path) && access(path, W_OK | X_OK) == 0)
+  {
+    setenv("POCL_CACHE_DIR", path, 1);
+    return;
+  }
+  snprintf(path, sizeof path, "/tmp/marching-correctors-%ld", (long)geteuid());
+  if (mcor_make_folder(path) && mcor_is_private(path))
+  {
+    setenv("POCL_CACHE_DIR", path, 1);
+    return;
+  }
+  snprintf(path, sizeof path, "/tmp/marching-correctors-XXXXXX");
+  if (mkdtemp(path))
+  {
+    setenv("POCL_CACHE_DIR", path, 1);
+  }
+}
+
 void mcor_pocl_folder(char* path, size_t size)
 {
+  mcor_own_pocl_folder();
   const char* own = mcor_variable("POCL_CACHE_DIR");
   const char* shared = mcor_variable("XDG_CACHE_HOME");
   const char* home = mcor_variable("HOME");
@@ -264,9 +325,8 @@ void mcor_pocl_folder(char* path, size_t size)
       : home ? home
              : "/tmp",
     own ? ""
-      : shared ? "/pocl/kcache"
-      : home ? "/.cache/pocl/kcache"
-             : "/pocl/kcache");
+      : home && !shared ? "/.cache/pocl/kcache"
+                        : "/pocl/kcache");
 }
 
 /* Bytes that PoCL needs there for one context, and somewhat more. */

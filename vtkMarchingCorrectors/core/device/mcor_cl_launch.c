@@ -138,6 +138,7 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
  * to do. Usual launches are in one part. More are not tried, as work-items beyond the next may have far
  * more to do. */
 #define MCOR_PART_TERMS (1 << 21)
+#define MCOR_FIRST_SHARE 32 /* of these, until it is known how long a kernel takes */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
 static bool mcor_is_cut(const mcor_context* context, mcor_load load)
@@ -184,7 +185,7 @@ static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, size_t global, size_t group)
 {
   const double limit = mcor_part_limit(context);
-  const double first = context->cl.is_cpu ? limit : MCOR_FIRST_PART;
+  const double first = context->cl.is_cpu ? limit / MCOR_FIRST_SHARE : MCOR_FIRST_PART;
   double part = fmin(kernel->part > 0 ? kernel->part : first, limit);
   size_t count = 0;
   for (size_t offset = 0; offset < global; offset += count)
@@ -201,9 +202,9 @@ static mcor_status mcor_enqueue_cut(
     MCOR_TRY(mcor_enqueue_part(context, kernel, offset, count, group));
     MCOR_TRY(mcor_finish(context));
     const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
-    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest     ? fmin(2 * part, limit)
-      : seconds > 2 * MCOR_PART_SECONDS && part > (double)group ? part / 2
-                                                                : part;
+    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest ? fmin(2 * part, limit)
+      : seconds > 2 * MCOR_PART_SECONDS ? fmax(part * MCOR_PART_SECONDS / seconds, (double)group)
+                                        : part;
     kernel->part = part;
     MCOR_TRY(mcor_report_launch(context));
   }

@@ -87,6 +87,10 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
   const int width = mcor_components(&job->run->input->attributes[component->attribute]);
   const double shift = component->shift, unscale = 1 / component->scale;
   const bool is_sum = job->run->is_sum;
+  /* Rounding of a mean does not take it beyond what it is of, unless the kernel itself does. */
+  const bool is_between = !is_sum && context->options->sph_kernel != MCOR_M_PRIME_4;
+  const double low = is_between ? component->low : -INFINITY;
+  const double high = is_between ? component->high : INFINITY;
   double* values = job->run->samples->values[component->attribute] + component->component;
   for (int i = 0; i < chunk->count; ++i)
   {
@@ -95,8 +99,8 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
       const double sum =
         mcor_get_real(context, job->views.sums, (chunk->first + i) * attributes->count + c);
       const double weight = chunk->weight[i];
-      values[chunk->to[i] * width] =
-        is_sum ? sum * unscale + shift * weight : sum / weight * unscale + shift;
+      const double value = is_sum ? sum * unscale + shift * weight : sum / weight * unscale + shift;
+      values[chunk->to[i] * width] = value < low ? low : value > high ? high : value;
     }
   }
 }

@@ -104,6 +104,11 @@ static void mcor_read_points(
     {
       at[a][i] = at[a][i] / lattice->cube - origin;
     }
+    /* The gradient of its kernel is 0 exactly at a particle, and near by not: points round as those do. */
+    for (int i = 0; i < count && run->context->options->sph_kernel == MCOR_QUADRATIC; ++i)
+    {
+      at[a][i] = ldexp(floor(ldexp(at[a][i], lattice->fix_bits) + 0.5), -lattice->fix_bits);
+    }
     for (int i = 0; i < count && lattice->period[a] > 0; ++i)
     {
       at[a][i] = mcor_wrap_point(run->context, a, at[a][i]);

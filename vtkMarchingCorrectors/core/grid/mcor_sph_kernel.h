@@ -59,9 +59,10 @@ MCOR_OF_Q mcor_w_quadratic(realv q)
   return a * a;
 }
 
+/* 0 where it has no direction: at 0, as far as positions of large supports are rounded. */
 MCOR_OF_Q mcor_dw_quadratic(realv q)
 {
-  return (real)-2 * fmax((real)2 - q, (realv)0);
+  return q < (real)1e-6 ? (realv)0 : (real)-2 * fmax((real)2 - q, (realv)0);
 }
 
 MCOR_OF_Q mcor_ddw_quadratic(realv q)

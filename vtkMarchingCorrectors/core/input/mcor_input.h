@@ -48,6 +48,10 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
  * finite. */
 double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count, int component);
 
+/* Where what failed is for a lattice that is too large, and one smoothing length is far from the others: adds
+ * which one to the sentence. */
+void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
+
 /* mcor_check.c. The first particle, solids left out, of which a component is not finite; -1 if there
  * is none. */
 int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count);

@@ -11,6 +11,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Support radius in cubes at least: below, no node is likely to see a particle. */
@@ -314,6 +315,16 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
 
 #define MCOR_FARTHEST 1e15 /* from the origin, in cubes: nodes are whole numbers of them */
 
+mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube)
+{
+  const double farthest = fmax(fabs(low), fabs(high));
+  MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
+    "The particles are about %g away from the origin, but a number has no digits for cubes of size "
+    "%g there. Move the particles towards the origin.",
+    farthest, cube);
+  return MCOR_OK;
+}
+
 /* The virtual grid that covers what the particles' supports reach. */
 static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
 {
@@ -341,12 +352,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
       "Use a larger cube size, or remove particles that are far away from the rest.",
       cube, last - first, a, MCOR_LATTICE_LIMIT);
-    MCOR_RETURN_IF(!(fabs(first) < MCOR_FARTHEST) || !(fabs(last) < MCOR_FARTHEST), context,
-      MCOR_OUT_OF_CAPACITY,
-      "The particles are about %g away from the origin, but a number has no digits for cubes of "
-      "size "
-      "%g there. Move the particles towards the origin.",
-      fmax(fabs(m->low[a]), fabs(m->high[a])), cube);
+    MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], cube));
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
     if (unit > 0)
     {
@@ -445,4 +451,36 @@ mcor_status mcor_measure_input(
   }
   MCOR_TRY(mcor_check_derived(context, input));
   return mcor_measure_lattice(context, options);
+}
+
+/* Smoothing lengths that differ from the median by this factor are named. */
+#define MCOR_OUTLIER 100
+
+void mcor_blame_outlier(mcor_context* context, const mcor_input* input)
+{
+  const mcor_measure* m = &context->measure;
+  const double below = m->h_median / m->h_min, above = m->h_max / m->h_median;
+  const double outlier = below > above ? m->h_min : m->h_max;
+  double h[MCOR_CHUNK];
+  int64_t particle = -1;
+  if (!(m->h_median > 0) || m->fluid_count < 2 || !(fmax(below, above) > MCOR_OUTLIER))
+  {
+    return;
+  }
+  for (int64_t i = 0; i < input->count && particle < 0; i += MCOR_CHUNK)
+  {
+    const int n = (int)(input->count - i < MCOR_CHUNK ? input->count - i : MCOR_CHUNK);
+    mcor_read_smoothing_length(context, input, i, n, h);
+    for (int k = 0; k < n && particle < 0; ++k)
+    {
+      particle = h[k] == outlier && !(input->solid && input->solid[i + k]) ? i + k : -1;
+    }
+  }
+  if (particle >= 0)
+  {
+    const size_t length = strlen(context->error);
+    snprintf(context->error + length, sizeof context->error - length,
+      " Particle %lld has a smoothing length of %g, where the median is %g.", (long long)particle,
+      outlier, m->h_median);
+  }
 }

@@ -82,6 +82,11 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   {
     return false;
   }
+  if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
+  {
+    return mcor_say(s, "All %lld fluid particles are at one point. Is that the array of positions?",
+      (long long)n->fluid_particles);
+  }
   const char* why = few && s->input->smoothing_length_is_support_radius
     ? "Perhaps what is read as the support radius is the smoothing length, or it is not in the "
       "unit "
@@ -205,6 +210,51 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
                : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
 }
 
+/* As a share of the smallest smoothing length: residuals then are off by about as much of the range. */
+#define MCOR_MOST_POSITION_ERROR 5e-6
+
+/* As a share of the cube size; less where the grid is short. */
+#define MCOR_LONG_GRID_ERROR 1e-6
+
+static bool mcor_warn_precision(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const double share = n->position_error / n->smoothing_length_min;
+  if (s->options->precision != MCOR_FLOAT32 || n->smoothing_length_min == 0 ||
+    share <= MCOR_MOST_POSITION_ERROR || n->position_error < MCOR_LONG_GRID_ERROR * n->cube_size)
+  {
+    return false;
+  }
+  return mcor_say(s,
+    "The virtual grid is so long, with cubes of %.3g, that positions in single precision are "
+    "rounded by up "
+    "to %.3g, %.2g of the smallest smoothing length: surfaces near the smallest particles are off "
+    "by about "
+    "as much. Try double precision.",
+    n->cube_size, n->position_error, share);
+}
+
+/* Vertices that the correction could not bring to the iso value. A preview does not try. */
+static bool mcor_warn_tolerance(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const mcor_options* o = s->options;
+  const double range = n->scalar_max - n->scalar_min;
+  if (o->preview || n->vertices_above_tolerance == 0)
+  {
+    return false;
+  }
+  return mcor_say(s,
+    "%lld of %lld vertices are off the iso value by more than the tolerance %.3g, by %.3g at most, "
+    "of a "
+    "range of %.4g. Try %s.",
+    (long long)n->vertices_above_tolerance, (long long)n->correction_count, o->tolerance * range,
+    n->residual_max, range,
+    n->iterations_max >= o->iteration_limit ? "a higher iteration limit"
+      : o->precision == MCOR_FLOAT32        ? "double precision"
+                                            : "a larger tolerance");
+}
+
 static char* mcor_copy_text(const char* text)
 {
   const size_t size = strlen(text) + 1;
@@ -216,7 +266,8 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
   bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
-    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed };
+    mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_precision,
+    mcor_warn_tolerance };
   /* With globals the input is a part of the particles. */
   if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
     input->count == 0 || options->globals)

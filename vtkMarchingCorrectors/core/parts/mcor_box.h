@@ -10,6 +10,8 @@
 
 /* mcor_period.c. Periods in cubes, which are made smaller so that these are whole numbers, and the
  * bounds of all images that may be needed. */
+/* Whether numbers have the digits for cubes so far from the origin. */
+mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
 mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double* cube);
 
 /* The cells that the call owns; the lattice is known. */

@@ -71,6 +71,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
 {
   mcor_measure* m = &context->measure;
   mcor_lattice* lattice = &context->lattice;
+  const double asked = *cube;
   double length[3];
   int axis = -1;
   for (int a = 2; a >= 0; --a)
@@ -84,7 +85,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     return MCOR_OK;
   }
   const double least = ceil(length[axis] / *cube * (1 - MCOR_PERIOD_ERROR));
-  MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_INVALID_ARGUMENT,
+  MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
     "With cube size %g there would be %.3g cubes in the period along %c; %d is the limit. Use a "
     "larger cube size, or a shorter period.",
     *cube, least, 'x' + axis, MCOR_LATTICE_LIMIT);
@@ -104,9 +105,15 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
   {
     if (length[a] > 0)
     {
-      MCOR_RETURN_IF(reach > MCOR_MOST_PERIODS * length[a], context, MCOR_INVALID_ARGUMENT,
+      const double most = MCOR_MOST_PERIODS * length[a];
+      MCOR_RETURN_IF(reach - 8 * *cube > most, context, MCOR_INVALID_ARGUMENT,
         "The period along %c is %g, too little for support radii of up to %g.", 'x' + a, length[a],
         m->support_max);
+      MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
+        "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "
+        "%.3g.",
+        asked, length[a], 'x' + a, (most - (reach - 8 * *cube)) / 8);
+      MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], *cube));
       lattice->period[a] = (int)round(length[a] / *cube);
       m->low[a] = options->periodic[2 * a] - reach - margin - m->support_max;
       m->high[a] = options->periodic[2 * a + 1] + reach + margin + m->support_max;

@@ -53,8 +53,9 @@ static void mcor_list_varying(
     }
     if (*not_finite < 0 && found.varies)
     {
-      attributes->varying[attributes->varying_count++] =
-        (mcor_component){ a, c, 0, mcor_component_scale(found.largest) };
+      attributes->varying[attributes->varying_count++] = (mcor_component){
+        .attribute = a, .component = c, .scale = mcor_component_scale(found.largest)
+      };
     }
   }
 }
@@ -162,7 +163,9 @@ static mcor_component mcor_scale_component(int attribute, int component, const d
   return (mcor_component){ .attribute = attribute,
     .component = component,
     .shift = 0.5 * high + 0.5 * low,
-    .scale = half > 0 ? ldexp(1, exponent > -1000 ? -exponent : 1000) : 1 };
+    .scale = half > 0 ? ldexp(1, exponent > -1000 ? -exponent : 1000) : 1,
+    .low = low,
+    .high = high };
 }
 
 /* Finds the attributes to leave out, and of the others all components, with the shift and scale that

@@ -338,8 +338,15 @@ static mcor_status mcor_cap_squares(mcor_cap_job* job, const mcor_cap_face* face
 {
   for (int v = 0; v + 1 < face->count[1]; ++v)
   {
+    const int32_t* tile = face->tile + (int64_t)(v / MCOR_CAP_TILE) * face->tiles[0];
+    MCOR_TRY(mcor_report_launch(job->context));
     for (int u = 0; u + 1 < face->count[0]; ++u)
     {
+      if (tile[u / MCOR_CAP_TILE] == 0)
+      {
+        u = u / MCOR_CAP_TILE * MCOR_CAP_TILE + MCOR_CAP_TILE - 1;
+        continue;
+      }
       mcor_begin_cap_square(job, face, u, v);
       MCOR_TRY(mcor_cap_square(job, face, u, v));
     }

@@ -41,12 +41,21 @@ typedef struct mcor_cap_face
   int axis, upper; /* upper: the higher one of the two sides */
   int plane;       /* nodes along the axis; of the next ones within; cells beside */
   int inner, cell;
-  int across[2];           /* the other axes: right-handed, this one being the third */
-  int first[2], count[2];  /* of nodes along these */
-  int owned[2], end[2];    /* squares of the box, from there; others are of the ring around it */
-  uint8_t *state, *within; /* [count[1]][count[0]] of the nodes, and of the next ones within */
-  double* margin;          /* how far nodes above are inside of what trimming leaves */
+  int across[2];          /* the other axes: right-handed, this one being the third */
+  int first[2], count[2]; /* of nodes along these */
+  int owned[2], end[2];   /* squares of the box, from there; others are of the ring around it */
+  /* Of tiles, MCOR_CAP_TILE nodes along an edge: how many there might be along these; the number of each,
+   * 0 of those that no particle reaches; how many others; where each of these is. */
+  int tiles[2];
+  int32_t* tile; /* [tiles[1]][tiles[0]] */
+  int tile_count;
+  int32_t* place; /* [tile_count + 1] */
+  /* See mcor_cap_index: of the nodes, and of the next ones within. */
+  uint8_t *state, *within;
+  double* margin; /* how far nodes above are inside of what trimming leaves */
 } mcor_cap_face;
+
+#define MCOR_CAP_TILE 16
 
 /* Where points are evaluated. */
 typedef struct mcor_cap_points
@@ -54,10 +63,20 @@ typedef struct mcor_cap_points
   mcor_buffer node, offset, value, gradient, weight, eigenvalue;
 } mcor_cap_points;
 
+/* Of all nodes that no particle reaches the same, below MCOR_CAP_TILE^2. */
 static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
 {
-  return (int64_t)v * face->count[0] + u;
+  const int64_t tile =
+    face->tile[(int64_t)(v / MCOR_CAP_TILE) * face->tiles[0] + u / MCOR_CAP_TILE];
+  return tile * (MCOR_CAP_TILE * MCOR_CAP_TILE) + (v % MCOR_CAP_TILE) * MCOR_CAP_TILE +
+    u % MCOR_CAP_TILE;
 }
+
+/* mcor_cap_tile.c. iso_value: of the field itself. */
+mcor_status mcor_make_cap_face(
+  mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face);
+/* Whether there is room for the caps. */
+mcor_status mcor_check_caps(mcor_context* context);
 
 /* Axis a's lower or upper side; opposite: the other one, where that is known. */
 mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,

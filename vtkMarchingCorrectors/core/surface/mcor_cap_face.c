@@ -9,55 +9,11 @@
 #include "mcor_cap.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
-
-/* As MCOR_LEAST_WEIGHT of mcor_node.cl. */
-#define MCOR_LEAST_MEAN_WEIGHT 1e-3
 
 /* Points evaluated at a time. */
 #define MCOR_CAP_BATCH (1 << 18)
-
-static mcor_status mcor_make_cap_face(
-  mcor_context* context, int axis, int upper, mcor_cap_face* face)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const mcor_box* box = &context->box;
-  const int side = upper ? lattice->period[axis] : 0;
-  *face = (mcor_cap_face){ .axis = axis,
-    .upper = upper,
-    .plane = lattice->period_first[axis] + side,
-    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
-  face->inner = face->plane + (upper ? -1 : 1);
-  face->cell = face->plane - upper;
-  for (int i = 0; i < 2; ++i)
-  {
-    const int a = face->across[i], low = box->first[a] - MCOR_BOX_RING,
-              high = box->last[a] + MCOR_BOX_RING;
-    const int first = lattice->period[a] > 0 ? lattice->period_first[a] : (int)lattice->first[a];
-    const int last = lattice->period[a] > 0 ? first + lattice->period[a] : (int)lattice->last[a];
-    face->first[i] = low > first ? low : first;
-    face->count[i] = (high < last ? high : last) - face->first[i] + 1;
-    face->owned[i] = box->first[a] - face->first[i];
-    face->end[i] = box->last[a] - face->first[i];
-  }
-  const size_t nodes = (size_t)face->count[0] * (size_t)face->count[1];
-  MCOR_RETURN_IF(nodes > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "A side of the period has %zu nodes; a cap may have %d. Use a larger cube size, or no caps.",
-    nodes, MCOR_COUNT_LIMIT);
-  face->state = calloc(nodes, 1);
-  face->within = calloc(nodes, 1);
-  face->margin = calloc(nodes, sizeof(double));
-  MCOR_RETURN_IF(!face->state || !face->within || !face->margin, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %zu nodes of a cap could not be allocated.", nodes);
-  return MCOR_OK;
-}
-
-void mcor_free_cap_face(mcor_cap_face* face)
-{
-  free(face->state);
-  free(face->within);
-  free(face->margin);
-}
 
 /* ---- what marching knows ------------------------------------------------------------------- */
 
@@ -90,7 +46,8 @@ static void mcor_mark_plane(
     const int bit = at << step | (n & 3) << step_u | n >> 2 << step_v;
     if (u >= 0 && u < face->count[0] && v >= 0 && v < face->count[1] && mask >> bit & 1)
     {
-      to[mcor_cap_index(face, u, v)] |= (uint8_t)flag;
+      const int64_t index = mcor_cap_index(face, u, v);
+      to[index] |= (uint8_t)(index >= MCOR_CAP_TILE * MCOR_CAP_TILE ? flag : 0);
     }
   }
 }
@@ -193,13 +150,18 @@ typedef struct mcor_cap_values
 static double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)
 {
   const double weight = mcor_get_real(context, v->weight, i), share = mcor_fluid_share(context);
-  const double fluid = share > 0 ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
+  const double fluid =
+    context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
   const double quantity = v->eigenvalue ? mcor_get_real(context, v->eigenvalue, i) : weight;
   const double threshold = context->options->field == MCOR_WEIGHT_SUM
     ? DBL_MAX
-    : quantity - mcor_real_of(context, context->options->vertex_threshold);
+    : quantity - mcor_real_of(context, mcor_vertex_threshold(context));
   const double ends = share > 0 ? fluid - share * weight : DBL_MAX;
-  return threshold < ends ? threshold : ends;
+  const double margin = threshold < ends ? threshold : ends;
+  return fluid > mcor_real_of(context, mcor_least_fluid(context)) ||
+      context->options->field != MCOR_SHEPARD
+    ? margin
+    : fmin(margin, 0);
 }
 
 static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
@@ -210,7 +172,7 @@ static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values
     context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
   return options->field == MCOR_WEIGHT_SUM ||
     (weight >= mcor_real_of(context, options->node_threshold) &&
-      (options->field == MCOR_SUM || fluid >= mcor_real_of(context, MCOR_LEAST_MEAN_WEIGHT)));
+      (options->field == MCOR_SUM || fluid >= mcor_real_of(context, MCOR_LEAST_NODE_WEIGHT)));
 }
 
 /* Takes point i, which is node number `to`: of the side itself, or of those within. */
@@ -274,36 +236,44 @@ static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, i
     (face->state[at] & MCOR_CAP_VALID);
 }
 
-/* Evaluates what is needed, by squares of 4 x 4 nodes, which are near each other. */
+/* Lists the nodes of tile t that are to be evaluated, by squares of 4 x 4 nodes, which are near each other.
+ * Returns the new count. */
+static int mcor_list_cap_nodes(
+  const mcor_cap_face* face, int t, bool within, cl_int* nodes, int64_t* to, int count)
+{
+  const int u0 = face->place[t] % face->tiles[0] * MCOR_CAP_TILE,
+            v0 = face->place[t] / face->tiles[0] * MCOR_CAP_TILE;
+  for (int n = 0; n < MCOR_CAP_TILE * MCOR_CAP_TILE; ++n)
+  {
+    const int u = u0 + (n & 3) + (n >> 4 & 3) * 4, v = v0 + (n >> 2 & 3) + (n >> 6) * 4;
+    if (u < face->count[0] && v < face->count[1] && mcor_needs_cap_node(face, within, u, v))
+    {
+      cl_int* node = nodes + 4 * (size_t)count;
+      node[face->axis] = within ? face->inner : face->plane;
+      node[face->across[0]] = face->first[0] + u;
+      node[face->across[1]] = face->first[1] + v;
+      node[3] = 0;
+      to[count++] = mcor_cap_index(face, u, v);
+    }
+  }
+  return count;
+}
+
+/* Evaluates what is needed. */
 static mcor_status mcor_fill_cap_nodes(
   mcor_context* context, bool within, double iso, mcor_cap_points* p, mcor_cap_face* face)
 {
-  cl_int* nodes = malloc((size_t)(MCOR_CAP_BATCH + 16) * 4 * sizeof *nodes);
-  int64_t* to = malloc((size_t)(MCOR_CAP_BATCH + 16) * sizeof *to);
+  const size_t room = MCOR_CAP_BATCH + MCOR_CAP_TILE * MCOR_CAP_TILE;
+  cl_int* nodes = malloc(room * 4 * sizeof *nodes);
+  int64_t* to = malloc(room * sizeof *to);
   mcor_status status = nodes && to
     ? MCOR_OK
     : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
-  const int64_t tiles_u = (face->count[0] + 3) / 4 + 1, tiles_v = (face->count[1] + 3) / 4 + 1;
   int count = 0;
-  for (int64_t tile = 0; tile < tiles_u * tiles_v && status == MCOR_OK; ++tile)
+  for (int t = 1; t <= face->tile_count && status == MCOR_OK; ++t)
   {
-    const int u0 = (int)(tile % tiles_u) * 4 - (face->first[0] & 3);
-    const int v0 = (int)(tile / tiles_u) * 4 - (face->first[1] & 3);
-    for (int n = 0; n < 16; ++n)
-    {
-      const int u = u0 + (n & 3), v = v0 + (n >> 2);
-      if (u >= 0 && v >= 0 && u < face->count[0] && v < face->count[1] &&
-        mcor_needs_cap_node(face, within, u, v))
-      {
-        cl_int* node = nodes + 4 * (size_t)count;
-        node[face->axis] = within ? face->inner : face->plane;
-        node[face->across[0]] = face->first[0] + u;
-        node[face->across[1]] = face->first[1] + v;
-        node[3] = 0;
-        to[count++] = mcor_cap_index(face, u, v);
-      }
-    }
-    if (count >= MCOR_CAP_BATCH || tile + 1 == tiles_u * tiles_v)
+    count = mcor_list_cap_nodes(face, t, within, nodes, to, count);
+    if (count >= MCOR_CAP_BATCH || t == face->tile_count)
     {
       status = mcor_take_cap_nodes(context, nodes, to, count, within, iso, p, face);
       count = 0;
@@ -315,22 +285,26 @@ static mcor_status mcor_fill_cap_nodes(
 }
 
 /* A period apart the sums have the same bits: takes from the side opposite what marching does not know of
- * this one's nodes, and how far they are inside. */
+ * this one's nodes, and how far they are inside. A tile that it has not is one that no particle reaches. */
 static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* face)
 {
-  const int64_t nodes = (int64_t)face->count[0] * face->count[1];
-  for (int64_t i = 0; i < nodes; ++i)
+  const int64_t nodes = MCOR_CAP_TILE * MCOR_CAP_TILE;
+  for (int t = 1; t <= face->tile_count; ++t)
   {
-    const int signs = opposite->state[i] & (MCOR_CAP_ABOVE | MCOR_CAP_VALID);
-    face->state[i] |= (uint8_t)(face->state[i] & MCOR_CAP_KNOWN ? 0 : signs);
-    face->margin[i] = opposite->margin[i];
+    const int64_t from = opposite->tile[face->place[t]] * nodes, to = t * nodes;
+    for (int64_t i = 0; i < nodes; ++i)
+    {
+      const int signs = opposite->state[from + i] & (MCOR_CAP_ABOVE | MCOR_CAP_VALID);
+      face->state[to + i] |= (uint8_t)(face->state[to + i] & MCOR_CAP_KNOWN ? 0 : signs);
+      face->margin[to + i] = opposite->margin[from + i];
+    }
   }
 }
 
 mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face)
 {
-  MCOR_TRY(mcor_make_cap_face(context, axis, upper, face));
+  MCOR_TRY(mcor_make_cap_face(context, axis, upper, iso + context->value_shift, face));
   MCOR_TRY(mcor_take_bricks(context, face));
   if (opposite)
   {

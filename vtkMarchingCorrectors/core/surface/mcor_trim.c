@@ -6,6 +6,8 @@
 #include "mcor_box.h"
 #include "mcor_graded.h"
 
+#include <math.h>
+
 #define MCOR_TRIM_STEPS 25
 
 /* Evaluates the boundary eigenvalue at vertices: on lattice edges, or of the trim boundary. */
@@ -51,15 +53,38 @@ double mcor_fluid_share(const mcor_context* context)
   return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
 }
 
+double mcor_least_fluid(const mcor_context* context)
+{
+  return context->options->field == MCOR_SHEPARD
+    ? MCOR_LEAST_VERTEX_WEIGHT(context->options->sph_kernel == MCOR_M_PRIME_4)
+    : 0;
+}
+
+/* Whether a vertex may be within the threshold, and yet lack the fluid that a mean needs. */
+static bool mcor_may_lack_fluid(const mcor_context* context)
+{
+  return mcor_least_fluid(context) > 0 &&
+    (context->grid.has_solids || mcor_trims_by_eigenvalue(context));
+}
+
+/* Of the weight or the boundary eigenvalue. */
+double mcor_vertex_threshold(const mcor_context* context)
+{
+  const double threshold = context->options->vertex_threshold;
+  return mcor_may_lack_fluid(context) ? threshold : fmax(threshold, mcor_least_fluid(context));
+}
+
 /* What is trimmed by, and where it ends. */
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
-  return mcor_ends_at_solids(context) ? &context->trim.margin : mcor_threshold_quantity(context);
+  return mcor_ends_at_solids(context) || mcor_may_lack_fluid(context)
+    ? &context->trim.margin
+    : mcor_threshold_quantity(context);
 }
 
 double mcor_trim_threshold(const mcor_context* context)
 {
-  return mcor_ends_at_solids(context) ? 0 : context->options->vertex_threshold;
+  return mcor_ends_at_solids(context) ? 0 : mcor_vertex_threshold(context);
 }
 
 /* The free surface has no threshold. */
@@ -79,13 +104,13 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
     MCOR_TRY(mcor_reserve(context, &trim->eigenvalue, (size_t)count * context->cl.real_size));
     MCOR_TRY(mcor_evaluate_boundary(context, false, &trim->eigenvalue));
   }
-  if (!mcor_ends_at_solids(context))
+  if (mcor_trim_quantity(context) != &trim->margin)
   {
     return MCOR_OK;
   }
   MCOR_TRY(mcor_reserve(context, &trim->margin, (size_t)count * context->cl.real_size));
   return MCOR_LAUNCH(context, "mcor_trim_margin", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(mcor_threshold_quantity(context)), MCOR_REAL(context->options->vertex_threshold),
+    MCOR_BUFFER(mcor_threshold_quantity(context)), MCOR_REAL(mcor_vertex_threshold(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient),
     MCOR_REAL(mcor_fluid_share(context)), MCOR_BUFFER(&trim->margin));
 }
@@ -161,8 +186,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
     MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset),
-    MCOR_BUFFER(mcor_trim_quantity(context))));
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
   if (mcor_is_graded(context))
   {
     MCOR_TRY(mcor_find_cut_levels(context, cut_count));
@@ -175,13 +200,14 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     mcor_level_vertices(context, true, l, &first, &count);
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
-    MCOR_TRY(MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-      MCOR_REAL(iso), MCOR_REAL(options->tolerance * range), MCOR_REAL(options->vertex_threshold),
-      MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
-      MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+    MCOR_TRY(
+      MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context), MCOR_INT(groups),
+        MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
+        MCOR_REAL(options->tolerance * range), MCOR_REAL(mcor_vertex_threshold(context)),
+        MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
+        MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+        MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+        MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   }
   return mcor_view_level(context, 0);
 }

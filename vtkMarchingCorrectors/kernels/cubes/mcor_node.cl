@@ -54,11 +54,6 @@ MCOR_ONE_COPY mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int 
   return query;
 }
 
-/* A Shepard mean needs this fluid weight. Where solids make up the rest, cells would otherwise
- * reach over voids without any fluid, and rounding noise of a kernel's rim would count as a
- * value. */
-#define MCOR_LEAST_WEIGHT ((real)1e-3)
-
 /* Writes the field's values and the trimming weights (-1: no valid value) at the nodes of a
  * work-item, from its first on. */
 void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global real* weight)
@@ -73,7 +68,7 @@ void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global 
     const real t = w;
 #endif
 #if MCOR_FIELD == 0
-    const bool defined = w >= MCOR_LEAST_WEIGHT;
+    const bool defined = w >= (real)MCOR_LEAST_NODE_WEIGHT;
     value[n] = defined ? s / w : (real)0;
     weight[n] = defined ? t : (real)-1;
 #else

@@ -110,6 +110,22 @@ void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, rea
   mcor_points_bound(grid, from, to, points, query);
 }
 
+/* What has the field's sign, against the iso value, but for a mean's pole, where a kernel with negative
+ * lobes lets the weight pass 0: the sum of the terms against it. Between nodes of a positive weight it is
+ * that which passes 0. */
+realv mcor_correct_side(const mcor_field_at* at)
+{
+#if MCOR_FIELD == 0 && MCOR_TENSOR
+#if MCOR_SOLIDS
+  return at->fluid < 0 ? -at->value : at->value;
+#else
+  return at->weight < 0 ? -at->value : at->value;
+#endif
+#else
+  return at->value;
+#endif
+}
+
 /* Moves all vertices of a group along their edges, from t0, until each is on the surface or `limit`
  * steps were made. `evaluations` counts how many each needed. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
@@ -142,7 +158,8 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       return;
     }
-    const fixv before = rising ? at->value < 0 : at->value >= 0;
+    const realv side = mcor_correct_side(at);
+    const fixv before = rising ? side < 0 : side >= 0;
     low = before ? *t : low;
     high = before ? high : *t;
     realv next = i == 0

@@ -134,12 +134,19 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
   }
 }
 
+/* Where what is wa and wb at the ends of an edge, and linear between, is w: off the ends. */
+real mcor_trim_fraction(real wa, real wb, real w)
+{
+  return clamp((w - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
+}
+
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold: node of the lower vertex, offset. It keeps off the ends, as cut
- * vertices of several edges would meet there. */
+ * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the lower vertex, offset. It
+ * keeps off the ends, as cut vertices of several edges would meet there. Writes in place of its gradient how
+ * far the end inside is, and whether it is the fluid that ends. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
-  __global const real* weight)
+  __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
 {
   const int i = get_global_id(0);
   if (i >= cut_count)
@@ -147,8 +154,18 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
     return;
   }
   const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
-  const real wa = weight[a], wb = weight[b];
-  const real s = clamp((threshold - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
+  const bool inside = trimmed_by[a] > threshold;
+  real s = mcor_trim_fraction(trimmed_by[a], trimmed_by[b], threshold);
+  bool lacks = false;
+#if MCOR_FIELD == 0
+  const real fa = mcor_trim_fluid(weight, gradient, a), fb = mcor_trim_fluid(weight, gradient, b);
+  if (!(fmin(fa, fb) > MCOR_LEAST_FLUID))
+  {
+    const real t = mcor_trim_fraction(fa, fb, MCOR_LEAST_FLUID);
+    lacks = inside ? t < s : t > s;
+    s = lacks ? t : s;
+  }
+#endif
   /* In cells of a's level; b's, of adaptive cubes, may be higher. */
   const int4 n = node[a];
   const int level = n.w >> MCOR_LEVEL_SHIFT, above = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
@@ -156,12 +173,25 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const real4 to = offset[b] * (real)(1 << above) + (real4)(d.x, d.y, d.z, 0);
   node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
   offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
+  const real4 along = inside ? -s * (to - offset[a]) : ((real)1 - s) * (to - offset[a]);
+  gradient[vertex_count + i] = (real4)(along.x, along.y, along.z, lacks);
 }
 #endif
 
 #if MCOR_OF_FIELD
-/* One work-item = one vertex. Writes how far it is inside, of a threshold of `quantity` and of the
- * fluid's share of the weight, whichever is nearer: what is trimmed by, its threshold being 0. */
+/* What a Shepard mean at a vertex needs of the fluid's own weight. */
+#define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
+
+/* The fluid's own weight at vertex v. */
+real mcor_trim_fluid(__global const real* weight, __global const real4* gradient, int v)
+{
+  return MCOR_SOLIDS ? gradient[v].w : weight[v];
+}
+
+/* One work-item = one vertex. Writes what is trimmed by: `quantity`, or where the fluid needs a share of
+ * the weight, how far the vertex is inside of that and of the threshold of `quantity`, whichever is
+ * nearer, the threshold then being 0. A vertex where there is no mean is outside at any rate: at the
+ * threshold, if it was inside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -170,7 +200,14 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   if (i < count)
   {
     const real share = gradient[i].w - fluid_share * weight[i];
-    margin[i] = MCOR_FIELD == 2 ? share : fmin(quantity[i] - threshold, share);
+    real m = fluid_share <= 0 ? quantity[i]
+      : MCOR_FIELD == 2       ? share
+                              : fmin(quantity[i] - threshold, share);
+    if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
+    {
+      m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
+    }
+    margin[i] = m;
   }
 }
 
@@ -178,16 +215,56 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
+/* Steps back to where there is a mean, at most, each half of the way that is left to the edge's end, where
+ * cuts would meet. */
+#define MCOR_TRIM_RETREATS 12
+
 /* |w - threshold| of a cut vertex, at most. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
 /* What is trimmed by: thresholds of the weight or the boundary eigenvalue and, above 0, of the
- * fluid's share of the weight. */
+ * fluid's share of the weight; where points lie on an edge whose one end lacks fluid, its weight. */
 typedef struct
 {
   real threshold, fluid_share;
   bool by_eigenvalue;
+  fixv lacking;
+  realv inside[3]; /* from the linear cut, the edge's end inside */
 } mcor_trim_limits;
+
+/* The fluid's own weight at all points. */
+realv mcor_fluid_of(const mcor_field_at* at)
+{
+#if MCOR_SOLIDS
+  return at->fluid;
+#else
+  return at->weight;
+#endif
+}
+
+/* Where the weight is the threshold, the fluid's own may yet be too low. */
+fixv mcor_lacks_fluid(const mcor_field_at* at)
+{
+  return mcor_fluid_of(at) < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
+}
+
+#if MCOR_FIELD == 0
+void mcor_trim_bound_fluid(const mcor_field_at* at, fixv lacking, mcor_boundary_at* bound)
+{
+  const realv least = mcor_fluid_of(at) - MCOR_LEAST_FLUID;
+  const fixv nearer = lacking && least < bound->value;
+  bound->value = nearer ? least : bound->value;
+#if MCOR_SOLIDS
+  bound->gx = nearer ? at->fx : bound->gx;
+  bound->gy = nearer ? at->fy : bound->gy;
+  bound->gz = nearer ? at->fz : bound->gz;
+#else
+  bound->gx = nearer ? at->wx : bound->gx;
+  bound->gy = nearer ? at->wy : bound->gy;
+  bound->gz = nearer ? at->wz : bound->gz;
+#endif
+}
+#endif
 
 #if MCOR_SOLIDS
 /* Where the fluid's share is the nearer limit, or the only one, it is the one that counts. */
@@ -224,6 +301,9 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
   {
     mcor_trim_bound_share(at, limits->fluid_share, bound);
   }
+#endif
+#if MCOR_FIELD == 0
+  mcor_trim_bound_fluid(at, limits->lacking, bound);
 #endif
 }
 
@@ -274,11 +354,36 @@ fixv mcor_trim_step(
   return tangent;
 }
 
+/* Moves points that stay at the linear cut, where there is no mean, towards the edge's end inside until
+ * there is one. */
+void mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
+  const mcor_trim_limits* limits, fixv back, mcor_points* points, mcor_reach* reach,
+  mcor_field_at* at)
+{
+  const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
+  const realv most =
+    fmax(fabs(limits->inside[0]), fmax(fabs(limits->inside[1]), fabs(limits->inside[2])));
+  const realv scale = MCOR_TRIM_REACH / fmax(most, (realv)MCOR_TRIM_REACH);
+  real share = 1;
+  for (int i = 0; i < MCOR_TRIM_RETREATS; ++i)
+  {
+    const fixv move = back && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
+    if (!MCOR_ANY(move))
+    {
+      return;
+    }
+    share *= (real)0.5;
+    points->ox = move ? x0 + (1 - share) * scale * limits->inside[0] : points->ox;
+    points->oy = move ? y0 + (1 - share) * scale * limits->inside[1] : points->oy;
+    points->oz = move ? z0 + (1 - share) * scale * limits->inside[2] : points->oz;
+    mcor_evaluate(grid, query, reach, points, iso, at);
+  }
+}
+
 /* Moves a group of points to where field = iso and weight = threshold; points for which that does
  * not succeed nearby stay where they were. Returns the latter. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  const mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach,
-  mcor_field_at* at)
+  mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
   mcor_boundary_at bound;
@@ -288,7 +393,10 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   {
     mcor_evaluate(grid, query, reach, points, iso, at);
     mcor_trim_bound(grid, query, reach, points, at, limits, &bound);
-    done = done || (fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE);
+    const fixv met = fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE;
+    const fixv lacks = MCOR_FIELD == 0 && met && mcor_lacks_fluid(at);
+    limits->lacking = limits->lacking || lacks;
+    done = done || (met && !lacks);
     if (i == steps || !MCOR_ANY(!(done || failed)))
     {
       break;
@@ -310,6 +418,10 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     points->oy = back ? y0 : points->oy;
     points->oz = back ? z0 : points->oz;
     mcor_evaluate(grid, query, reach, points, iso, at);
+    if (MCOR_FIELD == 0 && steps > 0) /* not in a preview */
+    {
+      mcor_trim_retreat(grid, query, iso, limits, back, points, reach, at);
+    }
   }
   return back;
 }
@@ -336,9 +448,23 @@ void mcor_trim_solve_group(
   mcor_query query;
   mcor_reach reach;
   mcor_field_at at;
+  realv lacks = 0;
   mcor_group_load(
     grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
-  const mcor_trim_limits limits = { threshold, fluid_share, by_eigenvalue };
+  mcor_trim_limits limits;
+  limits.threshold = threshold;
+  limits.fluid_share = fluid_share;
+  limits.by_eigenvalue = by_eigenvalue;
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int v = points.index[lane];
+    const real4 along = v >= 0 ? gradient[v] : (real4)(0, 0, 0, 0);
+    MCOR_SET(limits.inside[0], lane) = along.x;
+    MCOR_SET(limits.inside[1], lane) = along.y;
+    MCOR_SET(limits.inside[2], lane) = along.z;
+    MCOR_SET(lacks, lane) = along.w;
+  }
+  limits.lacking = lacks != 0;
   const fixv linear =
     mcor_trim_group(grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
   if (attribute_count > 0)

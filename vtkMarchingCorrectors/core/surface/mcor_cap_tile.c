@@ -1,0 +1,219 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* One side of a period, and its tiles: squares of nodes that some particle reaches. Where none does there is
+ * nothing to close, so that a side takes memory and time as far as there is something at it. */
+
+#include "mcor_box.h"
+#include "mcor_cap.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Tiles of a side at most, 64 million nodes; of which its directory has places. */
+#define MCOR_CAP_TILE_LIMIT (1 << 18)
+#define MCOR_CAP_PLACE_LIMIT (1 << 24)
+
+void mcor_free_cap_face(mcor_cap_face* face)
+{
+  free(face->tile);
+  free(face->place);
+  free(face->state);
+  free(face->within);
+  free(face->margin);
+}
+
+static void mcor_set_cap_extent(
+  const mcor_context* context, int axis, int upper, mcor_cap_face* face)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const int side = upper ? lattice->period[axis] : 0;
+  *face = (mcor_cap_face){ .axis = axis,
+    .upper = upper,
+    .plane = lattice->period_first[axis] + side,
+    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
+  face->inner = face->plane + (upper ? -1 : 1);
+  face->cell = face->plane - upper;
+  for (int i = 0; i < 2; ++i)
+  {
+    const int a = face->across[i], low = box->first[a] - MCOR_BOX_RING,
+              high = box->last[a] + MCOR_BOX_RING;
+    const int first = lattice->period[a] > 0 ? lattice->period_first[a] : (int)lattice->first[a];
+    const int last = lattice->period[a] > 0 ? first + lattice->period[a] : (int)lattice->last[a];
+    face->first[i] = low > first ? low : first;
+    face->count[i] = (high < last ? high : last) - face->first[i] + 1;
+    face->owned[i] = box->first[a] - face->first[i];
+    face->end[i] = box->last[a] - face->first[i];
+    face->tiles[i] = (face->count[i] - 1) / MCOR_CAP_TILE + 1;
+  }
+}
+
+/* Notes the tiles with nodes from low to high, so far as there are any. */
+static mcor_status mcor_note_tiles(
+  mcor_context* context, mcor_cap_face* face, const double low[2], const double high[2])
+{
+  int from[2], to[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    from[i] = (int)(fmin(fmax(low[i], 0), face->count[i]) / MCOR_CAP_TILE);
+    to[i] = (int)(fmin(fmax(high[i], -1), face->count[i] - 1) / MCOR_CAP_TILE);
+    to[i] = high[i] < 0 ? -1 : to[i];
+  }
+  for (int64_t v = from[1]; v <= to[1]; ++v)
+  {
+    for (int64_t u = from[0]; u <= to[0]; ++u)
+    {
+      int32_t* tile = &face->tile[v * face->tiles[0] + u];
+      face->tile_count += *tile == 0;
+      *tile = 1;
+    }
+  }
+  MCOR_RETURN_IF(face->tile_count > MCOR_CAP_TILE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "Particles reach more than %d nodes of a side of the period along %c, with cube size %g; a cap "
+    "may have "
+    "no more. Use a larger cube size, or no caps.",
+    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, 'x' + face->axis, context->lattice.cube);
+  return MCOR_OK;
+}
+
+/* Notes the tiles that a particle reaches, where it is in nodes from the lattice's origin. A square is
+ * looked at from its lowest node: that is one less. */
+static mcor_status mcor_note_particle(
+  mcor_context* context, mcor_cap_face* face, const double x[3], double reach)
+{
+  const double away = fabs(x[face->axis] - face->plane);
+  const bool is_cube = context->options->sph_kernel == MCOR_M_PRIME_4;
+  if (away > reach)
+  {
+    return MCOR_OK;
+  }
+  const double across = is_cube ? reach : sqrt(reach * reach - away * away);
+  double low[2], high[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    const double at = x[face->across[i]] - face->first[i];
+    low[i] = at - across - 2;
+    high[i] = at + across + 2;
+  }
+  return mcor_note_tiles(context, face, low, high);
+}
+
+/* Views of the particles on the device. */
+typedef struct mcor_cap_particles
+{
+  void* views[4]; /* positions along x, y, z; 1 / scaled smoothing length */
+} mcor_cap_particles;
+
+static mcor_status mcor_map_particles(
+  mcor_context* context, bool map, mcor_cap_particles* particles)
+{
+  const mcor_grid* g = &context->grid;
+  const mcor_buffer* buffers[4] = { &g->px, &g->py, &g->pz, &g->inv_h };
+  const size_t n = (size_t)g->count * context->cl.real_size; /* fixed-point numbers are as long */
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < 4; ++i)
+  {
+    const mcor_status one = map ? mcor_map(context, buffers[i], n, false, &particles->views[i])
+                                : mcor_unmap(context, buffers[i], &particles->views[i]);
+    status = status == MCOR_OK ? one : status;
+  }
+  return status;
+}
+
+static mcor_status mcor_note_particles(
+  mcor_context* context, const mcor_cap_particles* particles, mcor_cap_face* face)
+{
+  const double unit = ldexp(1, -context->lattice.fix_bits);
+  const double support = mcor_support_factor(context->options->sph_kernel);
+  for (int64_t i = 0; i < context->grid.count; ++i)
+  {
+    double x[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const void* view = particles->views[a];
+      x[a] = unit *
+        (context->cl.real_size == sizeof(cl_double) ? (double)((const cl_long*)view)[i]
+                                                    : (double)((const cl_int*)view)[i]);
+    }
+    MCOR_TRY(mcor_note_particle(
+      context, face, x, support / mcor_get_real(context, particles->views[3], i) * 1.001));
+  }
+  return MCOR_OK;
+}
+
+/* Finds the tiles: those that particles reach, or all where empty space is above the iso value. */
+static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_cap_face* face)
+{
+  const bool empty_is_above = context->options->field != MCOR_SHEPARD && iso_value <= 0;
+  const double low[2] = { 0, 0 }, high[2] = { face->count[0], face->count[1] };
+  const size_t places = (size_t)face->tiles[0] * (size_t)face->tiles[1];
+  MCOR_RETURN_IF(places > MCOR_CAP_PLACE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "A side of the period has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
+    "caps.",
+    (long long)face->count[0], (long long)face->count[1]);
+  face->tile = calloc(places, sizeof *face->tile);
+  MCOR_RETURN_IF(
+    !face->tile, context, MCOR_OUT_OF_CAPACITY, "Host memory for a cap could not be allocated.");
+  if (empty_is_above)
+  {
+    return mcor_note_tiles(context, face, low, high);
+  }
+  mcor_cap_particles particles = { { NULL } };
+  mcor_status status = mcor_map_particles(context, true, &particles);
+  status = status == MCOR_OK ? mcor_note_particles(context, &particles, face) : status;
+  const mcor_status unmapped = mcor_map_particles(context, false, &particles);
+  return status == MCOR_OK ? unmapped : status;
+}
+
+mcor_status mcor_make_cap_face(
+  mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face)
+{
+  mcor_set_cap_extent(context, axis, upper, face);
+  MCOR_TRY(mcor_note_face(context, iso_value, face));
+  /* The first one is for the nodes in none. */
+  const size_t nodes = ((size_t)face->tile_count + 1) * MCOR_CAP_TILE * MCOR_CAP_TILE;
+  face->place = malloc(((size_t)face->tile_count + 1) * sizeof *face->place);
+  face->state = calloc(nodes, 1);
+  face->within = calloc(nodes, 1);
+  face->margin = calloc(nodes, sizeof(double));
+  MCOR_RETURN_IF(!face->place || !face->state || !face->within || !face->margin, context,
+    MCOR_OUT_OF_CAPACITY, "Host memory for %zu nodes of a cap could not be allocated.", nodes);
+  int count = 0;
+  for (int32_t p = 0; p < face->tiles[0] * face->tiles[1]; ++p)
+  {
+    if (face->tile[p] != 0)
+    {
+      face->tile[p] = ++count;
+      face->place[count] = p;
+    }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_check_caps(mcor_context* context)
+{
+  const mcor_options* options = context->options;
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  double least = INFINITY;
+  for (int i = 0; i < options->iso_count; ++i)
+  {
+    least = fmin(least, options->iso_values[i]);
+  }
+  mcor_status status = MCOR_OK;
+  for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
+  {
+    const int first = lattice->period_first[a];
+    const bool has_lower = box->first[a] == first,
+               has_upper = box->last[a] == first + lattice->period[a];
+    if (lattice->period[a] > 0 && !box->is_empty && (has_lower || has_upper))
+    {
+      mcor_cap_face face;
+      mcor_set_cap_extent(context, a, !has_lower, &face);
+      status = mcor_note_face(context, least, &face);
+      mcor_free_cap_face(&face);
+    }
+  }
+  return status;
+}

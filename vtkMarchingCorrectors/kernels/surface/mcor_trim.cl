@@ -133,6 +133,40 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
     }
   }
 }
+#endif
+
+#if MCOR_OF_FIELD
+/* What a Shepard mean at a vertex needs of the fluid's own weight. */
+#define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
+
+/* The fluid's own weight at vertex v. */
+real mcor_trim_fluid(__global const real* weight, __global const real4* gradient, int v)
+{
+  return MCOR_SOLIDS ? gradient[v].w : weight[v];
+}
+
+/* One work-item = one vertex. Writes what is trimmed by: `quantity`, or where the fluid needs a share of
+ * the weight, how far the vertex is inside of that and of the threshold of `quantity`, whichever is
+ * nearer, the threshold then being 0. A vertex where there is no mean is outside at any rate: at the
+ * threshold, if it was inside. */
+__kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
+  __global const real* weight, __global const real4* gradient, const real fluid_share,
+  __global real* margin)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    const real share = gradient[i].w - fluid_share * weight[i];
+    real m = fluid_share <= 0 ? quantity[i]
+      : MCOR_FIELD == 2       ? share
+                              : fmin(quantity[i] - threshold, share);
+    if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
+    {
+      m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
+    }
+    margin[i] = m;
+  }
+}
 
 /* Where what is wa and wb at the ends of an edge, and linear between, is w: off the ends. */
 real mcor_trim_fraction(real wa, real wb, real w)
@@ -175,40 +209,6 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
   const real4 along = inside ? -s * (to - offset[a]) : ((real)1 - s) * (to - offset[a]);
   gradient[vertex_count + i] = (real4)(along.x, along.y, along.z, lacks);
-}
-#endif
-
-#if MCOR_OF_FIELD
-/* What a Shepard mean at a vertex needs of the fluid's own weight. */
-#define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
-
-/* The fluid's own weight at vertex v. */
-real mcor_trim_fluid(__global const real* weight, __global const real4* gradient, int v)
-{
-  return MCOR_SOLIDS ? gradient[v].w : weight[v];
-}
-
-/* One work-item = one vertex. Writes what is trimmed by: `quantity`, or where the fluid needs a share of
- * the weight, how far the vertex is inside of that and of the threshold of `quantity`, whichever is
- * nearer, the threshold then being 0. A vertex where there is no mean is outside at any rate: at the
- * threshold, if it was inside. */
-__kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
-  __global const real* weight, __global const real4* gradient, const real fluid_share,
-  __global real* margin)
-{
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    const real share = gradient[i].w - fluid_share * weight[i];
-    real m = fluid_share <= 0 ? quantity[i]
-      : MCOR_FIELD == 2       ? share
-                              : fmin(quantity[i] - threshold, share);
-    if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
-    {
-      m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
-    }
-    margin[i] = m;
-  }
 }
 
 /* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */

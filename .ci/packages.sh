@@ -29,7 +29,7 @@ mcor_choose_sdk() { # "" | vtk | paraview
 }
 
 mcor_common_packages() {
-  echo cmake ninja-build gcc g++ pkg-config python3 python3-numpy \
+  echo cmake ninja-build gcc g++ clang pkg-config python3 python3-numpy \
     ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd \
     xvfb xauth libgl1-mesa-dri
 }

@@ -148,7 +148,7 @@ def main():
     module = python_module(header)
     (folder / "_structs.py").write_text(module, encoding="utf-8")
     (folder / "check_structs.c").write_text(c_checks(module, header), encoding="utf-8")
-    exports = header.functions + ["mcor_opencl_set_driver", "mcor_opencl_use_driver"]
+    exports = header.functions
     (folder / "exports.map").write_text(
         "{ global: " + "; ".join(exports) + "; local: *; };\n", encoding="utf-8")
 

@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How long the first surface takes: whole processes, with no kernel compiled yet; medians.
+"""How long the first surface takes: whole processes, with empty caches; medians.
 
-first_start.py PROGRAM [PARTICLES] [--runs N] [--alone | --kept]
+first_start.py PROGRAM [PARTICLES] [--runs N] [--device NAME]
 
-first: the free surface, with empty caches. next: the same with another kernel. warm: the first once
-more. --alone: without the second process that compiles. --kept: with kernels that the machine keeps,
-made before by `marching-correctors-compile --keep`.
+first: the free surface. next: the same with another kernel. warm: the first once more.
 """
 import argparse
 import os
@@ -32,34 +30,24 @@ def main():
     parser.add_argument("particles", nargs="?",
                         default=os.path.join(here, "..", "Data", "dam_break_45k.vtp"))
     parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--alone", action="store_true")
-    parser.add_argument("--kept", action="store_true")
-    arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as kept:
-        if arguments.kept:
-            compiler = os.path.join(os.path.dirname(os.path.abspath(arguments.program)), "..", "lib",
-                                    "marching-correctors-compile")
-            subprocess.run([compiler, "--keep"], env=dict(os.environ, MCOR_KERNEL_DIR=kept),
-                           check=True)
-        measure(arguments, kept if arguments.kept else "")
+    parser.add_argument("--device", default="built in")
+    measure(parser.parse_args())
 
 
-def measure(arguments, kept):
+def measure(arguments):
     taken = {name: [] for name, _ in RUNS}
     for _ in range(arguments.runs):
         with tempfile.TemporaryDirectory() as folder:
             cache = os.path.join(folder, "pocl")
             os.mkdir(cache)
-            environment = dict(os.environ, POCL_CACHE_DIR=cache, MCOR_KERNEL_DIR=kept,
+            environment = dict(os.environ, POCL_CACHE_DIR=cache,
                                XDG_CACHE_HOME=os.path.join(folder, "cache"))
             environment.pop("MCOR_CACHE_DIR", None)
-            if arguments.alone:
-                environment["MCOR_COMPILER"] = ""
             for name, options in RUNS:
                 taken[name].append(seconds(
                     [arguments.program, arguments.particles, os.path.join(folder, "o.vtp"),
-                     "--free-surface", "--fluid", "ParticleType=0", *options], environment))
-            time.sleep(1)  # what still compiles ends
+                     "--free-surface", "--fluid", "ParticleType=0",
+                     "--device", arguments.device, *options], environment))
     for name, _ in RUNS:
         print(f"{name:6} {statistics.median(taken[name]):.2f} s  "
               f"({', '.join(f'{t:.2f}' for t in taken[name])})")

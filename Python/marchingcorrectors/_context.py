@@ -17,7 +17,8 @@ from ._progress import callback_of
 class Context:
     """An OpenCL device, its compiled programs, and what is kept on it between calls.
 
-    device: a number or part of a name as in `devices()`; None: the first one. Calls on one context
+    device: a number or part of a name as in `devices()`; None: a GPU if there is one, else the built-in
+    device. Calls on one context
     from several threads wait for each other; contexts of their own run side by side.
 
     Particles that stay the same between calls can stay on the device: give them equal nonzero
@@ -30,12 +31,10 @@ class Context:
         self._used_by = None  # the thread that has the lock
         self._handle = ctypes.c_void_p()
         wanted = "" if device is None else str(device)
-        start(wanted)
+        start()
         if not _list():
             raise DeviceError(NO_DEVICE)
-        # What the core prefers by itself need not be what the loader lists first.
-        name = (_pocl_number(wanted) or "0").encode(errors="replace")
-        status = lib.mcor_create_context(name, ctypes.byref(self._handle))
+        status = lib.mcor_create_context(wanted.encode(errors="replace"), ctypes.byref(self._handle))
         if status:
             sentence = self._sentence()
             self.close()
@@ -104,11 +103,6 @@ class Context:
             watch.raise_it()
         if error:
             raise error
-
-
-def _pocl_number(wanted):
-    """"pocl" is what people call it; its platform has another name."""
-    return "portable computing" if wanted.lower() == "pocl" else wanted
 
 
 class Watch:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 # What the system trusts, where that is more than pip does by itself.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
-EXTRAS = "pocl,pyvista,vtk"
+EXTRAS = "pyvista,vtk"
 # What users have beside it: tests alone need these.
 OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel")
 SKIPPED = 77

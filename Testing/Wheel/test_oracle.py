@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sample of the oracle's random cases: their particles as NumPy arrays through isosurface() on the PoCL
-of the wheel's extra, the surface back to the oracle.
+"""A sample of the oracle's random cases: their particles as NumPy arrays through isosurface() on the
+built-in device, the surface back to the oracle.
 
     test_oracle.py LIBRARY RESULTS [COUNT]
 """

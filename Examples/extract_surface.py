@@ -46,9 +46,9 @@ def main(particles, free_surface, speed):
     surface.SetValue(0, 1.0)  # m/s
     mesh = write(surface, speed)
 
-    # Every other point array was interpolated to the surface; the statistics are field data.
+    # Every other point array was interpolated to the surface; the statistics are the filter's.
     pressure = mesh.GetPointData().GetArray("Pressure").GetRange()
-    cells = mesh.GetFieldData().GetArray("CellsUsed").GetValue(0)
+    cells = surface.GetRunStatistics().GetArray("CellsUsed").GetValue(0)
     print(f"pressure on it: {pressure[0]:.0f} .. {pressure[1]:.0f} Pa; {cells:.0f} cells used")
 
 

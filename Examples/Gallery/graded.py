@@ -67,7 +67,7 @@ def free_surface(data):
     extract.Update()
     if extract.GetErrorMessage() or extract.GetOutput().GetNumberOfCells() == 0:
         sys.exit(extract.GetErrorMessage() or "the surface is empty")
-    return extract.GetOutput()
+    return extract.GetOutput(), extract.GetRunStatistics()
 
 
 def caption(text):
@@ -104,8 +104,8 @@ def look(surface, zoom, viewport):
 
 def main(directory):
     rows = particles()
-    surface = free_surface(poly_data(rows))
-    by_level = vtk_to_numpy(surface.GetFieldData().GetArray("TrianglesOfLevel"))
+    surface, statistics = free_surface(poly_data(rows))
+    by_level = vtk_to_numpy(statistics.GetArray("TrianglesOfLevel"))
     print(f"{len(rows)} particles of spacing {rows[:, 3].min():.2g} to {rows[:, 3].max():.2g}, "
           f"{surface.GetNumberOfCells()} triangles, by level: {', '.join(str(int(n)) for n in by_level)}")
     thirds = [(i / 3, 0, (i + 1) / 3, 1) for i in range(3)]

@@ -118,7 +118,6 @@ mcor_status mcor_prepare(
     .field = options->field,
     .precision = options->precision,
     .solids = context->grid.has_solids };
-  MCOR_TRY(mcor_settle_device(context, &build));
   MCOR_TRY(mcor_choose_build(context, &build));
   if (!context->grid_valid)
   {

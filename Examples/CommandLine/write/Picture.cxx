@@ -231,7 +231,7 @@ public:
     vtkNew<vtkDataSetMapper> mapper;
     mapper->SetInputDataObject(data);
     mapper->SetScalarModeToUsePointFieldData();
-    vtkDataArray* scalars = data->GetPointData()->GetScalars(); // of a surface its iso value
+    vtkDataArray* scalars = data->GetPointData()->GetArray("IsoValue"); // of a surface its iso value
     double range[2] = { 0.0, 0.0 };
     if (colors.ArrayOf(data))
     {

@@ -283,7 +283,8 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    const bool isHeld = array == arrays->GetNormals() || array == arrays->GetScalars() ||
+    const bool isHeld = array == arrays->GetNormals() ||
+      std::string(array->GetName()) == "IsoValue" ||
       (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
   }

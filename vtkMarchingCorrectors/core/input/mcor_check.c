@@ -331,5 +331,9 @@ mcor_status mcor_check_input(
     const mcor_array* attribute = &input->attributes[a];
     MCOR_TRY(mcor_check_form(context, attribute, "attribute", mcor_components(attribute)));
   }
-  return MCOR_OK;
+  const mcor_build build = { .sph_kernel = options->sph_kernel,
+    .field = options->field,
+    .precision = options->precision,
+    .solids = mcor_uses_solids(input, options) && input->solid };
+  return mcor_settle_device(context, &build);
 }

@@ -58,9 +58,7 @@ class Benchmark:
         """Machine, device, versions."""
         out = self.report
         found = self.program.run(self.sets.get(sets.tank(self.sizes[0])), comparison.ISOSURFACE)
-        device = {"compute_units": os.cpu_count(), "platform_version": "", "driver_version": "none"}
-        if found["platform"] != "built in":
-            device = self.program.helper("benchmark-limits", found["device"], found["platform"], 1)
+        device = self.program.helper("benchmark-limits", found["device"], found["platform"], 1)
         facts = {"machine": report.machine(),
                  "device": f"{found['device']}, {device['compute_units']} compute units",
                  "platform": f"{found['platform']}, {device['platform_version']}",

@@ -80,7 +80,7 @@ static bool find_on_platform(cl_platform_id platform, const char* name, cl_devic
   for (cl_uint i = 0; i < count && i < DEVICE_LIMIT; ++i)
   {
     check(clGetDeviceInfo(devices[i], CL_DEVICE_NAME, sizeof text, text, NULL), "device name");
-    if (strcmp(text, name) == 0)
+    if (strcmp(text, name) == 0 || strncmp(name, "built in", 8) == 0) /* any is this CPU, too */
     {
       *found = devices[i];
       return true;
@@ -100,7 +100,7 @@ static cl_device_id find_device(const char* device_name, const char* platform_na
   {
     check(
       clGetPlatformInfo(platforms[i], CL_PLATFORM_NAME, sizeof text, text, NULL), "platform name");
-    if (strcmp(text, platform_name) == 0 && find_on_platform(platforms[i], device_name, &device))
+    if ((strcmp(text, platform_name) == 0 || strcmp(platform_name, "built in") == 0) && find_on_platform(platforms[i], device_name, &device))
     {
       return device;
     }

@@ -31,7 +31,7 @@ static int fails(const char* name, int kind)
   {
     return 0;
   }
-  snprintf(failed_call, sizeof failed_call, "%s", name);
+  snprintf(failed_call, sizeof failed_call, "%s", strncmp(name, "mcor_", 5) == 0 ? name + 5 : name);
   return 1;
 }
 

@@ -335,9 +335,12 @@ static cl_program core_make_program(mcor_context* context, const char* source)
 {
   const mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  const int count = mcor_program_sources(cl, MCOR_PROGRAM_FIELD, sources);
+  /* What the field's topology is made of belongs to the lattice's program. */
+  const mcor_program base =
+    strstr(source, "mcor_topology_") ? MCOR_PROGRAM_LATTICE : MCOR_PROGRAM_FIELD;
+  const int count = mcor_program_sources(cl, base, sources);
   char options[512];
-  mcor_program_options(cl, MCOR_PROGRAM_FIELD, options, sizeof options);
+  mcor_program_options(cl, base, options, sizeof options);
   sources[count] = source;
   cl_int error;
   cl_program program =

@@ -299,6 +299,7 @@ static void expect_scan(mcor_context* context)
   mcor_buffer buffer = { 0 };
   const int counts[4] = { 1, 2, 3, 0 };
   int total = 0;
+  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
   CORE_OK(context, mcor_write(context, &buffer, counts, sizeof counts));
   CORE_OK(context, mcor_scan(context, &buffer, 3, &total));
   assert_int_equal(total, 6);

@@ -47,7 +47,7 @@ const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComp
 // What the next update would find, and the panel shows elsewhere, or begins with.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
   "NextFluid", "NextCells" };
-const char* const HIDDEN[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents" };
+const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents" };
 
 // "-" for what is not known: nothing was drawn, or the free surface has no such thing.
 QString textOf(vtkSMProperty* property)

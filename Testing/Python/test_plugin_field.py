@@ -126,7 +126,7 @@ def check_slices(reader):
     data, found = arrays_of(volume)
     assert data.IsA("vtkImageData") and data.GetDimensions() == (20, 21, 22)
     assert 0 < numpy.isnan(found["Height"]).sum() < data.GetNumberOfPoints()
-    volume.NaNOutside = 0
+    volume.NaNOutsideOfTheFluid = 0
     assert not numpy.isnan(arrays_of(volume)[1]["Height"]).any()
     Delete(volume)
 

@@ -128,6 +128,7 @@
 #include "vtkSPHAlgorithm.h"
 #include "vtkTimeStamp.h" // For members
 
+#include <limits> // For members
 #include <vector> // For members
 
 class vtkMarchingCorrectorsInput;
@@ -673,7 +674,7 @@ protected:
   double UsedCubeSize = 0.0;
   double EstimatedCells = 0.0;
   double NextScalarRange[2] = { 0.0, 0.0 };
-  double NextIsoValue = 0.0;
+  double NextIsoValue = std::numeric_limits<double>::quiet_NaN();
   int NextComponents = 0;
   double NextCells = 0.0;
   std::string NextFluid, NextArray;

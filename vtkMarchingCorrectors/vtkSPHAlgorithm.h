@@ -430,6 +430,8 @@ protected:
    * mcor_view_rank(), else the array that is fittest.
    */
   vtkSPHRequest FindFirstRequest(vtkPointSet* particles);
+  /** The same on all ranks together; these are one's own. */
+  vtkSPHRequest FindFirstRequestTogether(vtkSPHRanks& ranks, vtkPointSet* particles);
 
   /**
    * Calls the core: `call` gets a context for the device and returns the core's status. False if

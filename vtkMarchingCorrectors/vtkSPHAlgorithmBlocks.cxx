@@ -9,8 +9,10 @@
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHAlgorithmInternals.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #if MCOR_HAS_RANKS
@@ -19,6 +21,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 //------------------------------------------------------------------------------
 // Each block is a run that all processes take part in.
@@ -126,6 +129,56 @@ void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* part
 }
 
 #if MCOR_HAS_RANKS
+//------------------------------------------------------------------------------
+// All have the same arrays; what varies on one of them varies.
+vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestTogether(vtkSPHRanks& ranks, vtkPointSet* particles)
+{
+  vtkSPHRequest request = this->FindRequest(0, particles);
+  if (!request.Name.empty())
+  {
+    return request;
+  }
+  vtkPointData* data = particles->GetPointData();
+  std::vector<double> ends; // least value, and minus the greatest, of each component
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
+    {
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (array->GetNumberOfTuples() > 0)
+      {
+        array->GetRange(range, c);
+      }
+      ends.insert(ends.end(), { range[0], -range[1] });
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size()));
+  vtkSPHArrayChoice all, active;
+  const double* end = ends.data();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    bool varies = false;
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c, end += 2)
+    {
+      varies = varies || end[0] < -end[1];
+    }
+    vtkSPHArrayChoice& choice = array && array == request.Array ? active : all;
+    if (array && array->GetName())
+    {
+      choice.Consider(array->GetName(), array->GetNumberOfComponents(),
+        array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE, varies);
+    }
+  }
+  const std::string& best = active.Best.empty() ? all.Best : active.Best;
+  if (!best.empty())
+  {
+    request.Array = data->GetAbstractArray(best.c_str());
+  }
+  return request;
+}
+
 //------------------------------------------------------------------------------
 // All have the same arrays, or no particles.
 void vtkSPHAlgorithm::FindFluidTogether(

@@ -73,6 +73,8 @@ const std::vector<Case> Cases = {
       f->SetBoundaryDetectionToEigenvalue();
       f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
     } },
+  { "array, value and fluid that are found", "dam_break_45k",
+    [](vtkMarchingCorrectors* f) { f->DetectFluidOn(); } },
   { "computed volumes, estimated smoothing length", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
     {

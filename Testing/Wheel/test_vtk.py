@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """PyVista and VTK of PyPI: the accessor, the filter beside the functions and the program, a picture."""
+import json
 import os
 import re
 import subprocess
@@ -20,6 +21,7 @@ DATA = Path(os.environ["MCOR_TEST_DATA"])
 DAM = DATA / "dam_break_45k.vtp"
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 FLUID = ("ParticleType", 0)
+COSTS = ("bricks", "nodes_evaluated", "march_rounds", "device_bytes_peak", "seed_cells", "seed_cells_not_intersected")
 
 
 def run_filter(particles, **properties):
@@ -121,15 +123,23 @@ class Test(unittest.TestCase):
                   {"scalar": "Pressure", "value": 2000.0, "Kernel": 4})]
         with tempfile.TemporaryDirectory() as folder:
             for arguments, properties in cases:
-                file = Path(folder) / "program.vtp"
-                subprocess.run([os.environ["MCOR_TEST_PROGRAM"], DAM, file, "--fluid", "ParticleType=0",
+                file, told = Path(folder) / "program.vtp", Path(folder) / "statistics.json"
+                subprocess.run([os.environ["MCOR_TEST_PROGRAM"], DAM, file, "--fluid", "ParticleType=0", "--stats", told,
                                 *arguments], check=True, stdout=subprocess.DEVNULL)
                 program = pyvista.read(file)
                 _, found = run_filter(self.dam, FluidArrayName="ParticleType", **properties)
                 self.assert_same(found, program)
-                for name in program.field_data.keys():
-                    self.assertEqual(np.asarray(found.field_data[name]).tolist(),
-                                     np.asarray(program.field_data[name]).tolist(), name)
+                run = extract.GetRunStatistics()
+                for group in ("parameters", "statistics"):
+                    for name, value in statistics[group].items():
+                        array = run.GetAbstractArray("".join(part.capitalize() for part in name.split("_")))
+                        if name in COSTS or array is None:
+                            self.assertIn(name, COSTS)
+                        elif isinstance(value, str):
+                            self.assertEqual(array.GetValue(0), value, name)
+                        else:
+                            values = [array.GetVariantValue(i).ToDouble() for i in range(array.GetNumberOfValues())]
+                            self.assertEqual(values, [float(v) for v in (value if isinstance(value, list) else [value])], name)
                 # The input's own time is the data set's, which the program writes elsewhere.
                 self.assertEqual(sorted(set(found.field_data.keys()) - {"TimeValue"}),
                                  sorted(set(program.field_data.keys()) - {"TimeValue"}))

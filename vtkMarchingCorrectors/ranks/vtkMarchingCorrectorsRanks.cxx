@@ -84,6 +84,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   this->FillOptions(options);
   this->FillChoice(choice, own);
   this->FindFluidTogether(ranks, choice, own);
+  choice.Scalar = this->FindFirstRequestTogether(ranks, own);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput mine(choice, own);
   std::string message = mine.Collect() ? "" : mine.Error;
@@ -126,7 +127,14 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
                                             : vtkSPHCountWork(mine.Core, options);
   const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
   const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
+  const bool isNamed =
+    choice.Scalar.Name.empty() && choice.Scalar.Array && choice.Scalar.Array->GetName();
+  const std::string scalarName = isNamed ? choice.Scalar.Array->GetName() : "";
   this->FillRequests(choice, near);
+  if (isNamed)
+  {
+    choice.Scalar.Array = near->GetPointData()->GetAbstractArray(scalarName.c_str());
+  }
   vtkMarchingCorrectorsInput input(choice, near);
   message = input.Collect() ? "" : input.Error;
   if (!ranks.Agree(message))

@@ -82,7 +82,8 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
-    const bool usable = mine.CollectArray(this->FindFirstRequest(own)) && mine.CollectParticles();
+    const bool usable =
+      mine.CollectArray(this->FindFirstRequestTogether(ranks, own)) && mine.CollectParticles();
     std::string message = usable ? "" : mine.Error;
     this->SetUsedNames(&mine);
     if (!ranks.Agree(message))

@@ -1,5 +1,5 @@
 # The kernels of the built-in device: mcor_ahead_sources are the object files, and the C file that lists
-# them (mcor_native_programs, see mcor_native.h). Sets MCOR_AHEAD to OFF where there is no clang.
+# them (mcor_native_programs, see mcor_native.h): none where there is no clang.
 set(MCOR_AHEAD usual CACHE STRING
   "Kernels compiled for the built-in device: usual, all (double precision, too), or OFF")
 set_property(CACHE MCOR_AHEAD PROPERTY STRINGS usual all OFF)

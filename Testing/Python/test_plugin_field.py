@@ -122,7 +122,7 @@ def check_slices(reader):
     data, found = arrays_of(line)
     assert data.GetNumberOfPoints() == 50 and abs(found["arc_length"][-1] - numpy.linalg.norm(high - low)) < 1e-6
     Delete(line)
-    volume = SPHVolume(Input=reader, Dimensions=[20, 21, 22])  # noqa: F821
+    volume = SPHVolume(Input=reader, Dimensions=[20, 21, 22], WeightThreshold=0.4)  # noqa: F821
     data, found = arrays_of(volume)
     assert data.IsA("vtkImageData") and data.GetDimensions() == (20, 21, 22)
     assert 0 < numpy.isnan(found["Height"]).sum() < data.GetNumberOfPoints()
@@ -182,7 +182,8 @@ def content(proxy):
 
 
 def same(found, expected):
-    return found.keys() == expected.keys() and all((found[key] == expected[key]).all() for key in expected)
+    """To the bit: outside of the fluid there are no numbers."""
+    return found.keys() == expected.keys() and all(found[key].tobytes() == expected[key].tobytes() for key in expected)
 
 
 def check_trace_and_state(name, inputs, path):
@@ -249,7 +250,7 @@ def main():
         plane = Plane(registrationName="plane", Origin=[-1.0, -1.0, 0.0], Point1=[1.0, -1.0, 0.0],
                       Point2=[-1.0, 1.0, 0.0], XResolution=20, YResolution=20)
         check_probe(reader, plane)
-    check_slices(reader)
+        check_slices(reader)
         check_derivatives(reader)
         check_interpolator(reader)
         state = os.path.join(folder, "state.pvsm")

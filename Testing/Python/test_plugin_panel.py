@@ -101,9 +101,9 @@ def later_applies(folder):
         REDO, shown("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "text", "1"), *save_state(f"{folder}/redone.pvsm"),
         change("FreeSurface/CheckBox", "set_boolean", "false"),
         change("SelectInputScalars/ComboBox", "set_string", "Velocity"),
-        change("DotProductWith/ComboBox", "set_string", "Vorticity"),
+        change("DotProductWith/ComboBox", "set_string", "Vorticity"), PAUSE,
         APPLY, *save_state(f"{folder}/dot.pvsm"),
-        change("DotProductWith/ComboBox", "set_string", "(none)"),
+        change("DotProductWith/ComboBox", "set_string", "(none)"), PAUSE,
         APPLY, *save_state(f"{folder}/none.pvsm"),
     ]
 
@@ -137,7 +137,8 @@ def check_states(states):
     assert not differing(states, "applied", "undone") and not differing(states, "changed", "redone")
     assert states["dot"]["DotProductWith"][4] == "Vorticity" and states["dot"]["SelectInputScalars"][4] == "Velocity"
     # The iso value follows until it is touched.
-    assert differing(states, "dot", "none") == {"DotProductWith", "ContourValues"} and states["none"]["DotProductWith"][4] == "(none)"
+    assert differing(states, "dot", "none") == {"DotProductWith", "ContourValues"}, differing(states, "dot", "none")
+    assert states["none"]["DotProductWith"][4] == "(none)" and states["none"]["ContourValues"] == applied["ContourValues"]
 
 
 def main(paraview):

@@ -70,7 +70,8 @@ def by_plugin(mode):
     if mode == "Slice":
         plane = simple.Plane(Origin=[0.0, 0.0, 0.1], Point1=[3.22, 0.0, 0.1], Point2=[0.0, 1.0, 0.1],
                              XResolution=322, YResolution=100)
-        extract = globals()["SPHProbe"](Points=plane, Particles=reader, FluidArray="ParticleType", NaNOutside=0)
+        extract = globals()["SPHProbe"](Points=plane, Particles=reader, FluidArray="ParticleType",
+                                        NaNOutsideOfTheFluid=0)
     else:
         extract = globals()["MarchingCorrectors"](
             Input=reader, ContourBy=["POINTS", "Velocity"], Isosurfaces=SPEEDS if mode == "Speed" else [0.7],

@@ -8,6 +8,8 @@
 #include "OptionValue.h"
 #include "SafeText.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
 
 namespace
@@ -319,6 +321,9 @@ const Options DeviceAndHelp = {
         filter->SetDevice(v.c_str());
       }
     } },
+  { "--threads", "N", "most threads of the built-in device (default: one for each processor)",
+    [](Job&, Text n, Text v)
+    { vtksys::SystemTools::PutEnv("MCOR_THREADS=" + std::to_string(ToCount(n, v, 1))); } },
   { "--memory-limit", "MIB", "most device memory used (default all)",
     [](Job& j, Text n, Text v)
     { SetAll(j, &vtkSPHAlgorithm::SetDeviceMemoryLimit, ToCount(n, v, 1)); } },

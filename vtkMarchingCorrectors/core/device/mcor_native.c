@@ -123,12 +123,10 @@ cl_platform_id mcor_native_platform(void)
   return NULL;
 }
 
-/* Threads that compute, the calling one included; MCOR_THREADS of the environment: at most. */
+/* Threads that compute, the calling one included. */
 static cl_uint mcor_units(cl_uint units)
 {
-  const char* text = getenv("MCOR_THREADS");
-  const int limit = text ? atoi(text) : 0, usable = units > 0 ? (int)units : mcor_processors(1);
-  return (cl_uint)(limit > 0 && limit < usable ? limit : usable);
+  return (cl_uint)mcor_limit_threads(units > 0 ? (int)units : mcor_processors(1));
 }
 
 /* Of the machine. What other programs use, nobody can know. */

@@ -9,6 +9,15 @@
 
 #include "mcor_parallel.h"
 
+#include <stdlib.h>
+
+int mcor_limit_threads(int usable)
+{
+  const char* text = getenv("MCOR_THREADS");
+  const int limit = text ? atoi(text) : 0;
+  return limit > 0 && limit < usable ? limit : usable;
+}
+
 static int mcor_slice_count(int64_t count, int64_t grain)
 {
   const int64_t slices = count / grain;
@@ -40,7 +49,7 @@ int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* 
 #include <stdatomic.h>
 #include <unistd.h>
 
-#define MCOR_THREADS 16 /* at most, the calling one included */
+#define MCOR_LOOP_THREADS 16 /* at most, the calling one included */
 
 typedef struct mcor_loop
 {
@@ -77,8 +86,8 @@ int mcor_processors(int count)
 
 static int mcor_thread_limit(void)
 {
-  const int processors = mcor_processors(1);
-  return processors < MCOR_THREADS ? processors : MCOR_THREADS;
+  const int threads = mcor_limit_threads(mcor_processors(1));
+  return threads < MCOR_LOOP_THREADS ? threads : MCOR_LOOP_THREADS;
 }
 
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
@@ -88,7 +97,7 @@ int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* 
   };
   atomic_init(&loop.next, 0);
   const int limit = loop.slices > 1 ? mcor_thread_limit() : 1;
-  pthread_t threads[MCOR_THREADS];
+  pthread_t threads[MCOR_LOOP_THREADS];
   int made = 0;
   /* Without a further thread, or when the first have done everything, these go on alone. */
   while (made + 1 < limit && atomic_load(&loop.next) + 1 < loop.slices &&

@@ -28,4 +28,8 @@ int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* 
  * may use; at least 1. */
 int mcor_processors(int count);
 
+/* The threads to use where there are processors for `usable`: not more than the environment's
+ * MCOR_THREADS, if that is a number above 0. */
+int mcor_limit_threads(int usable);
+
 #endif

@@ -45,8 +45,8 @@ void SetFluid(Job& job, Text option, Text text)
 void SetSolids(Job& job, Text option, Text text)
 {
   const int solids = ToChoice(option, text,
-    { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT }, { "ignore", Filter::SOLIDS_IGNORE },
-      { "wall", Filter::SOLIDS_WALL } });
+    { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT },
+      { "ignore", Filter::SOLIDS_IGNORE }, { "wall", Filter::SOLIDS_WALL } });
   SetAll<vtkTypeBool>(job, &vtkSPHAlgorithm::SetIgnoreSolids, solids == Filter::SOLIDS_IGNORE);
   job.Surface->SetSolids(solids);
 }
@@ -173,7 +173,8 @@ const Options TheParticles = {
     [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
   { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
   { "--solids", "auto|weight|ignore|wall",
-    "count in the weight that trims, not at all, or end the surface; auto (default): the last for a "
+    "count in the weight that trims, not at all, or end the surface; auto (default): the last for "
+    "a "
     "scalar, the first for the free surface",
     SetSolids },
   { "--wall-share", "S|measured",

@@ -291,6 +291,21 @@ static mcor_status mcor_start_device(
   return mcor_write(context, &context->case_table, table, sizeof table);
 }
 
+static mcor_status mcor_fail_without_device(mcor_context* context, const mcor_device_list* list)
+{
+  const mcor_build usual = { 0 };
+  char fault[1200];
+  MCOR_RETURN_IF(mcor_pocl_folder_fault(fault, sizeof fault), context, MCOR_DEVICE_ERROR,
+    "No OpenCL device was found. If PoCL is installed: %s", fault);
+  MCOR_RETURN_IF(mcor_choose_device(list, &usual) >= 0, context, MCOR_DEVICE_ERROR,
+    "The built-in device has no kernels for double precision: they were not compiled with this "
+    "library. Use single precision, install an OpenCL driver (PoCL, Debian package "
+    "pocl-opencl-icd, runs on the CPU), or build with MCOR_AHEAD=all.");
+  return mcor_fail(context, MCOR_DEVICE_ERROR,
+    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
+    "runs on the CPU.");
+}
+
 /* A device where none was named. */
 static mcor_status mcor_start_default(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
@@ -298,16 +313,10 @@ static mcor_status mcor_start_default(
   mcor_cl* cl = &context->cl;
   const mcor_build usual = { 0 };
   const int best = mcor_choose_device(list, &usual), chosen = mcor_choose_device(list, build);
-  char fault[1200];
-  MCOR_RETURN_IF(chosen < 0 && mcor_pocl_folder_fault(fault, sizeof fault), context,
-    MCOR_DEVICE_ERROR, "No OpenCL device was found. If PoCL is installed: %s", fault);
-  MCOR_RETURN_IF(chosen < 0 && best >= 0, context, MCOR_DEVICE_ERROR,
-    "The built-in device has no kernels for double precision: they were not compiled with this "
-    "library. Use single precision, install an OpenCL driver (PoCL, Debian package "
-    "pocl-opencl-icd, runs on the CPU), or build with MCOR_AHEAD=all.");
-  MCOR_RETURN_IF(chosen < 0, context, MCOR_DEVICE_ERROR,
-    "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
-    "runs on the CPU.");
+  if (chosen < 0)
+  {
+    return mcor_fail_without_device(context, list);
+  }
   int place = cl->place, count = cl->count;
   cl->is_replaced = chosen != best;
   const int own = mcor_take_turn(list, chosen, &place, &count);
@@ -343,14 +352,20 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
-  if (!cl->is_default || (!cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
+  const bool is_open = cl->timed_queue != NULL; /* not where the last change of devices failed */
+  if (!cl->is_default ||
+    (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
   {
     return MCOR_OK;
   }
   mcor_device_list list;
   mcor_find_devices(&list);
   const int chosen = mcor_choose_device(&list, build);
-  if (chosen >= 0 && list.platforms[chosen] == cl->platform)
+  if (chosen < 0)
+  {
+    return mcor_fail_without_device(context, &list);
+  }
+  if (is_open && list.platforms[chosen] == cl->platform)
   {
     return MCOR_OK;
   }
@@ -360,8 +375,9 @@ mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
   context->grid_valid = context->value_valid = context->nodes_valid = false;
   *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
   const mcor_status status = mcor_start_default(context, &list, build);
-  cl->memory_limit =
-    before.memory_limit < cl->device_memory ? before.memory_limit : cl->device_memory;
+  cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory
+    ? before.memory_limit
+    : cl->device_memory;
   return status;
 }
 

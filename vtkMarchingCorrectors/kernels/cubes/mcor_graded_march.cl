@@ -181,7 +181,38 @@ uint mcor_leaf_corner_nodes(int corners)
   return above;
 }
 
-/* Notes that a cell uses its crossed edges. */
+/* Notes that these cells, which have no finer nodes, use their crossed edges. */
+void mcor_leaf_mark_plain(const mcor_leaf* leaf, ulong cells, __global uint* quadrants)
+{
+  for (int k = 0; k < 12; ++k)
+  {
+    /* In quadrant q around an edge are the cells whose lower corner of it is this one. */
+    const int axis = k >> 2, q = k & 3, b = axis == 0 ? 2 : 1, c = axis == 2 ? 2 : 4;
+    const int corner = (q & 1) * b | (q >> 1) * c;
+    const ulong crossed =
+      cells & (leaf->corners_above[corner] ^ leaf->corners_above[corner | 1 << axis]);
+    for (int d = 0; d < 8 && crossed; ++d)
+    {
+      ulong part = (d & ~corner) == 0 ? crossed : 0; /* by lower node, in the brick up by d */
+      for (int a = 0; a < 3; ++a)
+      {
+        part = !(corner >> a & 1) ? part
+          : d >> a & 1            ? mcor_from_last(a, 0, part)
+                                  : mcor_from_last(a, part, 0);
+      }
+      for (int w = 0; w < 2 && part; ++w)
+      {
+        const uint bits = (uint)(part >> 32 * w);
+        if (bits)
+        {
+          atomic_or(quadrants + leaf->slots[d] * (long)MCOR_QUADRANT_WORDS + 2 * k + w, bits);
+        }
+      }
+    }
+  }
+}
+
+/* The same of a cell that has. */
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
 {
@@ -221,8 +252,9 @@ void mcor_leaf_mark(
 /* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
  * `used`, and writes which edges they use; counts triangles, and of owned cells loops that lie in one
  * face between leaves. */
-__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global const ulong* owned,
-  __global uint* quadrants, __global ulong* used, __global int* triangle_count, __global int* flat)
+__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+  __global const ulong* owned, __global uint* quadrants, __global ulong* used,
+  __global int* triangle_count, __global int* flat)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -243,29 +275,25 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
     used[i];
   const ulong within = owned[i]; /* which may be `used` */
   int triangles = 0, flat_caps = 0;
-  for (ulong rest = cells; rest; rest &= rest - 1)
+  for (ulong rest = cells & graded; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    if (graded >> cell & 1)
+    const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
+    int caps = 0;
+    if (!nodes.used)
     {
-      const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
-      if (!nodes.used)
-      {
-        cells &= ~(1UL << cell);
-        continue;
-      }
-      int caps = 0;
-      triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
-      flat_caps += within >> cell & 1 ? caps : 0;
-      mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
+      cells &= ~(1UL << cell);
+      continue;
     }
-    else
-    {
-      const int corners = mcor_march_case(leaf.corners_above, cell);
-      triangles += case_table[corners * 16 + 15];
-      mcor_leaf_mark(&leaf, cell, 0, mcor_leaf_corner_nodes(corners), quadrants);
-    }
+    triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
+    flat_caps += within >> cell & 1 ? caps : 0;
+    mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
   }
+  for (ulong rest = cells & ~graded; rest; rest &= rest - 1)
+  {
+    triangles += case_table[mcor_march_case(leaf.corners_above, mcor_ctz(rest)) * 16 + 15];
+  }
+  mcor_leaf_mark_plain(&leaf, cells & ~graded, quadrants);
   used[i] = cells;
   triangle_count[i] = triangles;
   flat[i] = flat_caps;
@@ -446,9 +474,8 @@ __kernel void mcor_graded_clip(
  * wanted, the keys of their cells. */
 __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
   MCOR_LEAF_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
-  __global ulong* triangle_cells,
-  __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
-  __global const int* triangle_base, __global int* triangles)
+  __global ulong* triangle_cells, __global const ulong* used, __global const ulong* edges,
+  __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
 {
   const int i = get_global_id(0);
   if (i >= count || used[i] == 0)
@@ -458,6 +485,11 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
   const ulong key = mcor_graded_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
+  int numbers[3][MCOR_CELL_NODES];
+  if (used[i] & ~graded)
+  {
+    mcor_march_numbers(leaf.slots + 1, edges, vertex_base, leaf.slots[0], numbers);
+  }
   __global int* to = triangles + triangle_base[i] * 3L;
   for (ulong rest = used[i]; rest; rest &= rest - 1)
   {
@@ -485,11 +517,7 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
         row = decided->edges;
         made = decided->triangles;
       }
-      for (int k = 0; k < 3 * made; ++k)
-      {
-        const int c = row[k] & 7, lower = 2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2);
-        *to++ = mcor_leaf_vertex(&leaf, cell, 0, row[k] >> 3, lower, edges, vertex_base);
-      }
+      to = mcor_march_emit(row, made, numbers, cell, to);
     }
     const ulong ring = mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) ? 0 : MCOR_RING_CELL;
     for (long t = begin; follows && t < (to - triangles) / 3; ++t)

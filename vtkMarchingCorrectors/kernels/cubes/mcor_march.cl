@@ -286,13 +286,13 @@ int mcor_march_rank(__global const ulong* e, int n)
 }
 
 /* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched
- * edge, -1 less the first of the two. */
-void mcor_march_numbers(__global const int* neighbours, __global const ulong* edges,
+ * edge, -1 less the first of the two. upper: slots of its upper neighbours, or -1. */
+void mcor_march_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {
   for (int d = 0; d < 8; ++d)
   {
-    const int owner = d ? neighbours[slot * 14L + d - 1] : slot;
+    const int owner = d ? upper[d - 1] : slot;
     if (owner < 0)
     {
       continue;
@@ -352,7 +352,7 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
   int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
+  mcor_march_numbers(neighbours + slot * 14L, edges, vertex_base, slot, numbers);
   __global int* to = triangles + triangle_base[slot] * 3L;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {

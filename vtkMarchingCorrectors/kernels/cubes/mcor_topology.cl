@@ -350,7 +350,7 @@ __kernel void mcor_topology_triangles(const int brick_count, __global const int*
   int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
+  mcor_march_numbers(neighbours + slot * 14L, edges, vertex_base, slot, numbers);
   __global int* to = triangles + triangle_base[slot] * 3L;
   int tunnel;
   for (ulong rest = used[slot]; rest; rest &= rest - 1)

@@ -175,10 +175,11 @@ typedef struct mcor_graded
   int count;                                 /* leaves where there may be surface */
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
+  int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
   mcor_buffer rungs;                       /* mcor_rung, of all levels of leaves */
   mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
   mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
-  mcor_buffer states, chosen;              /* uchar: of all leaves */
+  mcor_buffer states, chosen;              /* int, uchar: of all leaves */
   mcor_buffer proofs, mixed;           /* uchar: of slots; of leaves where there may be surface */
   mcor_buffer cells;                   /* int4: those where there may be surface, in order */
   mcor_buffer finer;                   /* uint: where their neighbours are finer */
@@ -188,6 +189,7 @@ typedef struct mcor_graded
   mcor_buffer tables;    /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
   mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
   mcor_buffer flat;      /* int, of each leaf, scanned */
+  mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
 } mcor_graded;
 
 /* Of adaptive cubes, which cells pairs reach; see mcor_graded_pair.c. Masks are of the leaves where there

@@ -4,10 +4,10 @@
 /* Adaptive cubes: marching the leaves of the tree.
  *
  * The cells of leaves where there may be surface (mcor_graded_seed.c) are all examined, and no more than
- * these: nodes that they share with a leaf that is certain are evaluated for them. The rest is as on
- * the uniform lattice: values of nodes in slots, masks, edges, vertices, triangles. Slots are sorted by
- * level, and so are vertices; what evaluates the field goes level by level, and sees the search grid
- * in cells of that level (mcor_view_level). */
+ * these. Nodes that are certain have a side without a value; it is evaluated where a cell is crossed that
+ * has them. The rest is as on the uniform lattice: values of nodes in slots, masks, edges, vertices,
+ * triangles. Slots are sorted by level, and so are vertices; what evaluates the field goes level by level,
+ * and sees the search grid in cells of that level (mcor_view_level). */
 
 #include "mcor_graded.h"
 #include "mcor_box.h"
@@ -24,6 +24,11 @@
 #define MCOR_SLOT_ARGS(c)                                                                          \
   MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->graded.bucket_shift),                             \
     MCOR_BUFFER(&(c)->graded.keys), MCOR_BUFFER(&(c)->graded.buckets)
+
+#define MCOR_LEAF_ARGS(c)                                                                          \
+  MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
+    MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
+    MCOR_BUFFER(&(c)->case_table)
 
 /* Keys of all bricks whose nodes the leaves need. */
 static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
@@ -101,8 +106,8 @@ static mcor_status mcor_move_nodes(mcor_context* context, const mcor_brick_data*
     MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
 }
 
-/* Evaluates the nodes of all slots that are neither known nor proven to lie inside; then the signs of all
- * are known. iso: relative to A0. */
+/* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. iso:
+ * relative to A0. */
 static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 {
   const mcor_graded* graded = &context->graded;
@@ -129,7 +134,7 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
-/* Finds the leaves that have nodes on both sides, and evaluates all of these. */
+/* Finds the leaves in which there is surface, and evaluates what they need. */
 static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
 {
   mcor_graded* graded = &context->graded;
@@ -141,9 +146,12 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
     MCOR_INT(count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells),
     MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_need", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->bricks.now.valid),
     MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(&graded->proofs)));
-  return mcor_evaluate_slots(context, iso);
+  MCOR_TRY(mcor_evaluate_slots(context, iso));
+  return MCOR_LAUNCH(context, "mcor_graded_mixed", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&graded->mixed));
 }
 
 /* Leaves whose nodes are evaluated along with their states: more take much memory. */
@@ -166,6 +174,13 @@ static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_node
   if (status == MCOR_OK && slots > 0)
   {
     status = mcor_take_leaf_nodes(context, found);
+  }
+  if (status == MCOR_OK && found)
+  {
+    int taken;
+    const mcor_buffer* known = &context->bricks.now.known;
+    status = mcor_count_bits(context, known, known, slots, &taken);
+    graded->dropped = graded->evaluated - taken;
   }
   if (status == MCOR_OK && slots > 0)
   {
@@ -191,6 +206,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
     context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE;
+  context->graded.dropped = context->bricks.now.count == 0 ? 0 : context->graded.dropped;
   mcor_leaf_nodes found = { 0 };
   mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
   if (status == MCOR_OK)
@@ -205,10 +221,20 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
 
 /* ---- Cells ---- */
 
-#define MCOR_LEAF_ARGS(c)                                                                          \
-  MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
-    MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
-    MCOR_BUFFER(&(c)->case_table)
+/* Counts the cells of the box that are in mixed leaves, or between pairs there: whatever states told, or values
+ * of earlier calls, they are the same ones. */
+static mcor_status mcor_count_seeds(mcor_context* context, int* count)
+{
+  mcor_graded* graded = &context->graded;
+  const bool pairs = mcor_uses_pairs(context), part = context->box.is_part;
+  const mcor_buffer* owned = part ? &context->box.clipped : &context->mesh.used;
+  MCOR_TRY(mcor_reserve(context, &graded->seeds, (size_t)graded->count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_seeds", MCOR_MEDIUM, graded->count,
+    MCOR_INT(graded->count), MCOR_BUFFER(&graded->mixed),
+    MCOR_BUFFER(pairs ? &context->graded_pairs.seeds : owned), MCOR_BUFFER(&graded->seeds)));
+  return mcor_count_bits(
+    context, &graded->seeds, part ? owned : &graded->seeds, graded->count, count);
+}
 
 /* Finds the used cells; counts vertices and triangles. */
 static mcor_status mcor_count_leaves(mcor_context* context, double iso)
@@ -217,16 +243,15 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   mcor_mesh* mesh = &context->mesh;
   const int count = graded->count, slots = context->bricks.now.count;
   const size_t n = (size_t)count, s = (size_t)slots;
-  int64_t seeds;
+  int seeds;
   MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_limit_leaves(context, &seeds));
+  MCOR_TRY(mcor_limit_leaves(context));
   if (mcor_uses_pairs(context))
   {
-    int marked;
-    MCOR_TRY(mcor_keep_reached(context, iso, &marked));
-    seeds = marked;
+    MCOR_TRY(mcor_keep_reached(context, iso));
   }
+  MCOR_TRY(mcor_count_seeds(context, &seeds));
   context->statistics->seed_cells += seeds;
   context->statistics->seed_cells_not_intersected += seeds;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
@@ -366,7 +391,7 @@ void mcor_release_graded(mcor_context* context)
   MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys,
     &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
     &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
-    &context->grid.view_levels, &context->grid.view_inv_h);
+    &g->seeds, &context->grid.view_levels, &context->grid.view_inv_h);
   mcor_release_graded_pairs(context);
   mcor_release_tree(&context->tree);
 }

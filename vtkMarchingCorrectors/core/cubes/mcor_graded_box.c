@@ -7,25 +7,20 @@
 
 #include "mcor_graded_box.h"
 
-/* Limits the cells that may be used; *owned: how many are in the box. */
-mcor_status mcor_limit_leaves(mcor_context* context, int64_t* owned)
+/* Limits the cells that may be used; box.clipped: those in the box, where there is one. */
+mcor_status mcor_limit_leaves(mcor_context* context)
 {
   const mcor_graded* graded = &context->graded;
   const size_t bytes = (size_t)graded->count * sizeof(cl_ulong);
   mcor_buffer *used = &context->mesh.used, *clipped = &context->box.clipped;
-  *owned = 64 * (int64_t)graded->count;
   if (!context->box.is_part)
   {
     return mcor_fill(context, used, 0xff, bytes);
   }
-  int count;
   MCOR_TRY(mcor_reserve(context, used, bytes));
   MCOR_TRY(mcor_reserve(context, clipped, bytes));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_BOX_ARGS(context), MCOR_INT(graded->count), MCOR_BUFFER(used), MCOR_BUFFER(clipped)));
-  MCOR_TRY(mcor_count_bits(context, clipped, clipped, graded->count, &count));
-  *owned = count;
-  return MCOR_OK;
+  return MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, graded->count,
+    MCOR_LEAF_BOX_ARGS(context), MCOR_INT(graded->count), MCOR_BUFFER(used), MCOR_BUFFER(clipped));
 }
 
 /* Counts the used cells in the box; bit_counts end with those before each leaf. */

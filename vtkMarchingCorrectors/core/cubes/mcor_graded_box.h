@@ -14,7 +14,7 @@
     MCOR_BUFFER(&(c)->graded.cells)
 #define MCOR_LEAF_BOX_ARGS(c) MCOR_LEAF_SIDES_ARGS(c, (c)->box.halves)
 
-mcor_status mcor_limit_leaves(mcor_context* context, int64_t* owned);
+mcor_status mcor_limit_leaves(mcor_context* context);
 mcor_status mcor_count_owned(mcor_context* context, int* count);
 
 #endif

@@ -235,18 +235,15 @@ mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int co
   return MCOR_OK;
 }
 
-mcor_status mcor_keep_reached(mcor_context* context, double iso, int* seeds)
+mcor_status mcor_keep_reached(mcor_context* context, double iso)
 {
   mcor_graded_pairs* pairs = &context->graded_pairs;
   const int count = context->graded.count;
   const size_t bytes = (size_t)count * sizeof(cl_ulong);
-  const mcor_box* box = &context->box;
   MCOR_TRY(mcor_find_places(context));
   MCOR_TRY(mcor_mark_pairs(context, iso));
   MCOR_TRY(mcor_reserve(context, &pairs->seeds, bytes));
   MCOR_TRY(mcor_copy(context, &pairs->reached, &pairs->seeds, 0, bytes));
-  MCOR_TRY(mcor_count_bits(
-    context, &pairs->seeds, box->is_part ? &box->clipped : &pairs->seeds, count, seeds));
   MCOR_TRY(mcor_limit_growth(context));
   mcor_end_rounds(context);
   for (bool grown = true; grown;)

@@ -249,6 +249,43 @@ void mcor_leaf_mark(
   const int count, __global const uint *finer, __global const int *tables,                         \
     __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
 
+/* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
+ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong graded)
+{
+  return mcor_cell_some(leaf->corners_above) & ~mcor_cell_all(leaf->corners_above) &
+    mcor_cell_all(leaf->corners_valid) & ~graded;
+}
+
+/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes whether it is: whether any of
+ * its cells is valid at all nodes and has nodes on both sides. */
+__kernel void mcor_graded_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
+{
+  const int i = get_global_id(0);
+  if (i >= count || !mixed[i])
+  {
+    return;
+  }
+  const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
+  const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
+  bool some = mcor_leaf_crossed(&leaf, graded) != 0;
+  for (ulong rest = graded; rest && !some; rest &= rest - 1)
+  {
+    some = mcor_leaf_cell(&leaf, mcor_ctz(rest)).used;
+  }
+  mixed[i] = some;
+}
+
+/* One work-item = one leaf. Writes which of these cells are of mixed leaves. */
+__kernel void mcor_graded_seeds(
+  const int count, __global const uchar* mixed, __global const ulong* cells, __global ulong* seeds)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    seeds[i] = mixed[i] ? cells[i] : 0;
+  }
+}
+
 /* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
  * `used`, and writes which edges they use; counts triangles, and of owned cells loops that lie in one
  * face between leaves. */
@@ -269,10 +306,7 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  ulong cells = ((mcor_cell_some(leaf.corners_above) & ~mcor_cell_all(leaf.corners_above) &
-                   mcor_cell_all(leaf.corners_valid)) |
-                  graded) &
-    used[i];
+  ulong cells = (mcor_leaf_crossed(&leaf, graded) | graded) & used[i];
   const ulong within = owned[i]; /* which may be `used` */
   int triangles = 0, flat_caps = 0;
   for (ulong rest = cells & graded; rest; rest &= rest - 1)

@@ -65,8 +65,10 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* evalu
   if (slot < brick_count && evaluated[slot])
   {
     known[slot] |= evaluated[slot];
-    mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold,
-      above + slot, valid + slot);
+    const ulong2 signs =
+      mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold);
+    above[slot] = signs.x;
+    valid[slot] = signs.y;
   }
 }
 #endif

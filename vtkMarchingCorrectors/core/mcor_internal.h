@@ -490,8 +490,6 @@ mcor_status mcor_find_side_flags(mcor_context* context, double iso);
 mcor_status mcor_begin_topology(mcor_context* context);
 mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
-mcor_status mcor_count_resolved(mcor_context* context);
-mcor_status mcor_emit_resolved(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(
   mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
@@ -617,5 +615,16 @@ extern const char mcor_source_mcor_graded_pair_cl[];
 
 #define MCOR_BRICK_ARGS(c)                                                                         \
   MCOR_BLOCK_ARGS(c), MCOR_BUFFER(&(c)->bricks.bits), MCOR_BUFFER(&(c)->bricks.base)
+
+static inline bool mcor_is_resolved(const mcor_context* context)
+{
+  return context->options->topology == MCOR_TOPOLOGY_FIELD;
+}
+
+/* Kernel arguments of MCOR_DECISION_PARAMS. */
+#define MCOR_DECISION_ARGS(c)                                                                      \
+  MCOR_INT(mcor_is_resolved(c)), MCOR_BUFFER(&(c)->bricks.neighbours),                             \
+    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->topology.cases),                      \
+    MCOR_BUFFER(&(c)->topology.rows)
 
 #endif

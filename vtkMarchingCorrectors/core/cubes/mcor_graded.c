@@ -11,7 +11,6 @@
 
 #include "mcor_graded.h"
 #include "mcor_box.h"
-#include "mcor_graded_box.h"
 #include "mcor_graded_pair.h"
 #include "mcor_graded_seed.h"
 #include "mcor_graded_topology.h"
@@ -226,14 +225,13 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
 static mcor_status mcor_count_seeds(mcor_context* context, int* count)
 {
   mcor_graded* graded = &context->graded;
-  const bool pairs = mcor_uses_pairs(context), part = context->box.is_part;
-  const mcor_buffer* owned = part ? &context->box.clipped : &context->mesh.used;
+  const mcor_buffer* cells =
+    mcor_uses_pairs(context) ? &context->graded_pairs.seeds : &context->mesh.used;
   MCOR_TRY(mcor_reserve(context, &graded->seeds, (size_t)graded->count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_seeds", MCOR_MEDIUM, graded->count,
-    MCOR_INT(graded->count), MCOR_BUFFER(&graded->mixed),
-    MCOR_BUFFER(pairs ? &context->graded_pairs.seeds : owned), MCOR_BUFFER(&graded->seeds)));
-  return mcor_count_bits(
-    context, &graded->seeds, part ? owned : &graded->seeds, graded->count, count);
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_graded_seeds", MCOR_MEDIUM, graded->count, MCOR_INT(graded->count),
+      MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(cells), MCOR_BUFFER(&graded->seeds)));
+  return mcor_count_cells(context, &graded->seeds, &graded->seeds, count);
 }
 
 /* Finds the used cells; counts vertices and triangles. */
@@ -243,25 +241,23 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   mcor_mesh* mesh = &context->mesh;
   const int count = graded->count, slots = context->bricks.now.count;
   const size_t n = (size_t)count, s = (size_t)slots;
+  const mcor_buffer* owned;
   int seeds;
   MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_limit_leaves(context));
-  if (mcor_uses_pairs(context))
-  {
-    MCOR_TRY(mcor_keep_reached(context, iso));
-  }
+  MCOR_TRY(mcor_fill(context, &mesh->used, 0xff, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_clip_used(context));
+  MCOR_TRY(mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_seeds(context, &seeds));
+  MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
   context->statistics->seed_cells += seeds;
   context->statistics->seed_cells_not_intersected += seeds;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&graded->mixed),
-    MCOR_BUFFER(context->box.is_part ? &context->box.clipped : &mesh->used),
-    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&graded->flat)));
+    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&graded->quadrants),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&graded->flat)));
   return MCOR_LAUNCH(context, "mcor_graded_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
     MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
 }
@@ -281,7 +277,7 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   mcor_statistics* s = context->statistics;
   int caps, used, hits;
   MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
-  MCOR_TRY(mcor_count_owned(context, &used));
+  MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
   s->flat_caps += caps;
   s->cells_used += used;
   cl_int cells[2] = { 0, 0 };
@@ -296,7 +292,9 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   }
   mesh->level_first[0][0] = 0;
   hits = used;
-  MCOR_TRY(mcor_uses_pairs(context) ? mcor_count_pair_hits(context, &hits) : MCOR_OK);
+  MCOR_TRY(mcor_uses_pairs(context)
+      ? mcor_count_cells(context, &mesh->used, &context->graded_pairs.seeds, &hits)
+      : MCOR_OK);
   s->seed_cells_not_intersected -= hits;
   return MCOR_OK;
 }
@@ -311,10 +309,10 @@ static mcor_status mcor_emit_leaf_triangles(
   const size_t count = follows ? (size_t)mesh->triangle_count : 1;
   MCOR_TRY(mcor_reserve(context, cells, count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_LEAF_SIDES_ARGS(context, sides), MCOR_LEAF_DECISION_ARGS(context),
-    MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
+    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&graded->cells), MCOR_SIDES_ARGS(sides),
+    MCOR_DECISION_ARGS(context), MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }
 
 static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
@@ -330,16 +328,7 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
     MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  MCOR_TRY(mcor_emit_leaf_triangles(context, context->box.halves, &context->box.cells));
-  if (!context->box.is_part || !context->options->ranks)
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer shared = { 0 };
-  mcor_status status = mcor_emit_leaf_triangles(context, context->box.whole_halves, &shared);
-  status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
-  mcor_release(context, &shared);
-  return status;
+  return mcor_emit_in_box(context, mcor_emit_leaf_triangles);
 }
 
 /* Counts the triangles of each level, in the box where there is one. */

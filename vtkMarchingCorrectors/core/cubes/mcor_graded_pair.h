@@ -13,8 +13,6 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso);
 /* Adds `count` cells of this box, int4 with their level last, that others have reached; *fresh: whether one is
  * new. */
 mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh);
-/* How many of the seeds are used. */
-mcor_status mcor_count_pair_hits(mcor_context* context, int* hits);
 void mcor_release_graded_pairs(mcor_context* context);
 
 #endif

@@ -443,71 +443,10 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }
 
-/* A box [x0, x1) x ..., in halves of the finest cubes. is_part: whether it matters. */
-#define MCOR_LEAF_BOX_PARAMS                                                                       \
-  const int is_part, const int x0, const int y0, const int z0, const int x1, const int y1,         \
-    const int z1, __global const int4 *cells
-
-/* Whether a leaf's cell has its centre there. */
-bool mcor_leaf_owns(MCOR_LEAF_BOX_PARAMS, int i, int cell)
-{
-  const int4 leaf = cells[i];
-  const int x = (2 * (4 * leaf.x + (cell & 3)) + 1) << leaf.w;
-  const int y = (2 * (4 * leaf.y + (cell >> 2 & 3)) + 1) << leaf.w;
-  const int z = (2 * (4 * leaf.z + (cell >> 4)) + 1) << leaf.w;
-  return !is_part || (x >= x0 && x < x1 && y >= y0 && y < y1 && z >= z0 && z < z1);
-}
-
-#define MCOR_LEAF_BOX_ARGS is_part, x0, y0, z0, x1, y1, z1, cells
-
-/* One work-item = one leaf. Writes its cells that are in the box or in the ring around it, and those
- * that are in it. */
-__kernel void mcor_graded_limit(
-  MCOR_LEAF_BOX_PARAMS, const int count, __global ulong* ring, __global ulong* owned)
-{
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
-  const int4 leaf = cells[i];
-  const int edge = 2 << leaf.w;
-  ulong near = 0, within = 0;
-  for (int cell = 0; cell < 64; ++cell)
-  {
-    const int x = (4 * leaf.x + (cell & 3)) * edge, y = (4 * leaf.y + (cell >> 2 & 3)) * edge;
-    const int z = (4 * leaf.z + (cell >> 4)) * edge;
-    const bool is_near = x + 2 * edge >= x0 && x - edge <= x1 && y + 2 * edge >= y0 &&
-      y - edge <= y1 && z + 2 * edge >= z0 && z - edge <= z1;
-    near |= (ulong)is_near << cell;
-    within |= (ulong)mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) << cell;
-  }
-  ring[i] = near;
-  owned[i] = within;
-}
-
-/* One work-item = one leaf. Writes which of its used cells are in the box. */
-__kernel void mcor_graded_clip(
-  MCOR_LEAF_BOX_PARAMS, const int count, __global const ulong* used, __global ulong* clipped)
-{
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
-  ulong within = 0;
-  for (ulong rest = used[i]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    within |= (ulong)mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) << cell;
-  }
-  clipped[i] = within;
-}
-
 /* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, if
  * wanted, the keys of their cells. */
-__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
-  MCOR_LEAF_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
+__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const int4* cells, MCOR_SIDES_PARAMS,
+  MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
   __global ulong* triangle_cells, __global const ulong* used, __global const ulong* edges,
   __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
 {
@@ -519,6 +458,7 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
   const ulong key = mcor_graded_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
+  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, cells[i]);
   int numbers[3][MCOR_CELL_NODES];
   if (used[i] & ~graded)
   {
@@ -542,18 +482,11 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
     }
     else
     {
-      __global const uchar* row = case_table + mcor_march_case(leaf.corners_above, cell) * 16;
-      int made = row[15], tunnel;
-      if (resolved)
-      {
-        __global const mcor_cell_row* decided = mcor_topology_cell(
-          leaf.corners_above, neighbours, decisions, cases, rows, leaf.slots[0], cell, &tunnel);
-        row = decided->edges;
-        made = decided->triangles;
-      }
-      to = mcor_march_emit(row, made, numbers, cell, to);
+      const mcor_cell_cut cut =
+        mcor_cell_cut_of(leaf.corners_above, case_table, MCOR_DECISION_ARGS, leaf.slots[0], cell);
+      to = mcor_march_emit(cut.edges, cut.triangles, numbers, cell, to);
     }
-    const ulong ring = mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) ? 0 : MCOR_RING_CELL;
+    const ulong ring = owned >> cell & 1 ? 0 : MCOR_RING_CELL;
     for (long t = begin; follows && t < (to - triangles) / 3; ++t)
     {
       triangle_cells[t] = key << 6 | (ulong)cell | ring;

@@ -137,7 +137,7 @@ __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int cou
 #if MCOR_LEAF_PROOFS
   if (proofs[slot] == MCOR_UNTRIED)
   {
-    mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_LEAF_SHARE);
+    mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_INSIDE_SHARE);
     mcor_tile tile;
     mcor_tile_init(&tile);
     proofs[slot] = mcor_brick_is_inside(&grid, &close, &tile, iso) ? MCOR_ABOVE : MCOR_EXAMINE;

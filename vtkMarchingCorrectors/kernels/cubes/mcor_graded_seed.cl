@@ -37,10 +37,6 @@ __kernel void mcor_graded_scale(
 /* Whether that proof is tried: where a work-item evaluates whole bricks. */
 #define MCOR_LEAF_PROOFS (MCOR_FIELD == 2 && !MCOR_TENSOR && MCOR_LANES > 1)
 
-/* Of each particle's support: within are a fifth of the particles, and in the midst of others four fifths
- * of the weight sum. */
-#define MCOR_LEAF_SHARE 0.6f
-
 /* Of a slot a state is known, MCOR_EXAMINE where its nodes' values are needed, or MCOR_UNTRIED. */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
@@ -102,7 +98,7 @@ bool mcor_points_are_inside(const mcor_tile* tile, real x, real y, real z, real 
   {
     const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
       MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), x + e, y + e, z + ez, e, e, ez,
-      MCOR_LEAF_SHARE);
+      MCOR_INSIDE_SHARE);
     int list[MCOR_LANES];
     const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
     for (int k = 0; k < count; ++k)
@@ -172,7 +168,7 @@ int mcor_leaf_proof(const mcor_grid* grid, int4 leaf, uint finer, const mcor_til
 {
   mcor_query query = mcor_seed_query(grid, leaf, MCOR_LEAF_EXTENT(finer));
   mcor_tile tile;
-  query.radius = -MCOR_LEAF_SHARE;
+  query.radius = -MCOR_INSIDE_SHARE;
   mcor_tile_init(&tile);
   if (wide->complete)
   {
@@ -196,7 +192,7 @@ uint mcor_region_proofs(const mcor_grid* grid, int4 brick, int begin, int end,
   uint left = (1u << (end - begin)) - 1;
 #if MCOR_LEAF_PROOFS
   mcor_query query = mcor_seed_query(grid, brick, MCOR_REGION_CUBES);
-  query.radius = -MCOR_LEAF_SHARE;
+  query.radius = -MCOR_INSIDE_SHARE;
   mcor_tile_init(wide);
   mcor_tile_next(grid, &query, wide, true);
   for (int i = begin; i < end && wide->count > 0; ++i)

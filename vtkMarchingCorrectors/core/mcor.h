@@ -376,8 +376,10 @@ extern "C"
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
-    /* Complete seeds: cells that bounds over 8 x 8 x 8 nodes do not exclude. And those that
-     * the surface does not use. Summed over iso values, as are the next. */
+    /* Complete seeds: of uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not exclude; of
+     * adaptive ones, those in leaves that the surface passes through. Pairs: the cells between them, of
+     * adaptive cubes in such leaves alone. And those that the surface does not use. Summed over iso
+     * values, as are the next. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */

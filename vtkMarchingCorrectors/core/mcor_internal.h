@@ -175,10 +175,11 @@ typedef struct mcor_graded
   int count;                                 /* leaves where there may be surface */
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
+  int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
   mcor_buffer rungs;                       /* mcor_rung, of all levels of leaves */
   mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
   mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
-  mcor_buffer states, chosen;              /* uchar: of all leaves */
+  mcor_buffer states, chosen;              /* int, uchar: of all leaves */
   mcor_buffer proofs, mixed;           /* uchar: of slots; of leaves where there may be surface */
   mcor_buffer cells;                   /* int4: those where there may be surface, in order */
   mcor_buffer finer;                   /* uint: where their neighbours are finer */
@@ -188,6 +189,7 @@ typedef struct mcor_graded
   mcor_buffer tables;    /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
   mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
   mcor_buffer flat;      /* int, of each leaf, scanned */
+  mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
 } mcor_graded;
 
 /* Of adaptive cubes, which cells pairs reach; see mcor_graded_pair.c. Masks are of the leaves where there
@@ -504,8 +506,6 @@ mcor_status mcor_find_side_flags(mcor_context* context, double iso);
 mcor_status mcor_begin_topology(mcor_context* context);
 mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
-mcor_status mcor_count_resolved(mcor_context* context);
-mcor_status mcor_emit_resolved(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(
   mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
@@ -633,5 +633,16 @@ extern const char mcor_source_mcor_graded_pair_cl[];
 
 #define MCOR_BRICK_ARGS(c)                                                                         \
   MCOR_BLOCK_ARGS(c), MCOR_BUFFER(&(c)->bricks.bits), MCOR_BUFFER(&(c)->bricks.base)
+
+static inline bool mcor_is_resolved(const mcor_context* context)
+{
+  return context->options->topology == MCOR_TOPOLOGY_FIELD;
+}
+
+/* Kernel arguments of MCOR_DECISION_PARAMS. */
+#define MCOR_DECISION_ARGS(c)                                                                      \
+  MCOR_INT(mcor_is_resolved(c)), MCOR_BUFFER(&(c)->bricks.neighbours),                             \
+    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->topology.cases),                      \
+    MCOR_BUFFER(&(c)->topology.rows)
 
 #endif

@@ -70,12 +70,22 @@ typedef struct mcor_level
 #define MCOR_SIDE_PARTICLES 16
 #define MCOR_PAIR_VECTORS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 
-/* What is known of the nodes of a brick, a region or a larger cube. */
+/* On which sides of the iso value the nodes of a brick, a region or a larger cube may be. */
 #define MCOR_VOID 0 /* below the node threshold: no cell there is valid */
 #define MCOR_ABOVE 1
 #define MCOR_BELOW 2
-#define MCOR_EXAMINE 3 /* not enough; evaluate */
-#define MCOR_INSIDE 4  /* above, but for the far sides of a leaf */
+#define MCOR_EXAMINE 3 /* both, as far as is known; evaluate */
+#define MCOR_UNTRIED 7 /* the same, and nobody has looked */
+/* Of a leaf this is said, in two bits each, of its own nodes, and of those that the leaf down from it by d
+ * has, bits x, y, z: times MCOR_EVERYWHERE it is the same of all. Beside that: of its nodes the values are
+ * known; of those that cells of other levels have on its sides nothing is. */
+#define MCOR_EVERYWHERE 0x5555
+#define MCOR_EVALUATED (1 << 16)
+#define MCOR_OPEN_SIDES (1 << 17)
+
+/* Of a leaf: it is to be examined; its nodes' values are known. */
+#define MCOR_CHOSEN 1
+#define MCOR_CHOSEN_EVALUATED 2
 
 /* Masks per brick: of lattice edges with a vertex, see mcor_march_count, and of decisions about the
  * topology: ambiguous faces with their lowest node in the brick, by axis of their normal, of which

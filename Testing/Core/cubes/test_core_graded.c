@@ -139,6 +139,9 @@ static void order_form_and_reuse(void** state)
   mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
   mcor_surface surface = core_extract(*state, &input, &options);
   const uint64_t hash = core_hash(&surface);
+  const int64_t seeds = surface.statistics.seed_cells;
+  assert_in_range(
+    seeds, surface.statistics.cells_used, 64 * (int64_t)((mcor_context*)*state)->graded.count - 1);
   mcor_free_surface(&surface);
   surface = core_extract(*state, &other, &options);
   assert_true(core_hash(&surface) == hash);
@@ -150,6 +153,8 @@ static void order_form_and_reuse(void** state)
     core_create_form(&context, forms[f]);
     surface = core_extract(context, &input, &options);
     assert_true(core_hash(&surface) == hash);
+    assert_int_equal(
+      surface.statistics.seed_cells, seeds); /* though the one form evaluates earlier */
     mcor_free_surface(&surface);
     mcor_free_context(context);
   }
@@ -161,11 +166,34 @@ static void order_form_and_reuse(void** state)
   input.particles_version = input.scalar_version = 0;
   surface = core_extract(*state, &input, &options);
   assert_true(core_hash(&surface) == core_hash(&reused) && surface.point_count > 100);
+  assert_int_equal(surface.statistics.seed_cells, reused.statistics.seed_cells);
   mcor_free_surface(&surface);
   mcor_free_surface(&reused);
   free(order);
   core_free_set(&set);
   core_free_set(&shuffled);
+}
+
+/* Of a lattice on which values are above in one half and below in the other, nodes are evaluated between
+ * both alone, and where the weight is low; those of leaves that are certain next to these where an edge is
+ * crossed. */
+static void few_nodes_are_evaluated(void** state)
+{
+  static const double iso = 0.1;
+  mcor_context* context = *state;
+  core_set set = core_make_graded(16, 0.4);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = set.position[3 * i + 2] > 0.3 ? 1 : -1;
+  }
+  const mcor_input input = core_input(&set);
+  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_surface surface = core_extract(context, &input, &options);
+  const int64_t nodes = surface.statistics.nodes_evaluated;
+  assert_in_range(nodes, 64, 38 * (int64_t)context->tree.leaf_count); /* of 64 */
+  assert_true(surface.statistics.cells_used > 100);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
 }
 
 /* Two groups whose sizes, and distance, differ by thousands: nothing is of the size of the finest
@@ -267,7 +295,8 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(closed_across_levels),
     cmocka_unit_test(trimmed), cmocka_unit_test(one_level_is_uniform),
     cmocka_unit_test(roots_of_the_finest_lattice), cmocka_unit_test(order_form_and_reuse),
-    cmocka_unit_test(far_apart), cmocka_unit_test(boxes_make_the_whole),
-    cmocka_unit_test(too_many_leaves), cmocka_unit_test(refusal) };
+    cmocka_unit_test(few_nodes_are_evaluated), cmocka_unit_test(far_apart),
+    cmocka_unit_test(boxes_make_the_whole), cmocka_unit_test(too_many_leaves),
+    cmocka_unit_test(refusal) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

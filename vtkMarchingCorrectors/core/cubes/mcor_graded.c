@@ -4,14 +4,13 @@
 /* Adaptive cubes: marching the leaves of the tree.
  *
  * The cells of leaves where there may be surface (mcor_graded_seed.c) are all examined, and no more than
- * these: nodes that they share with a leaf that is certain are evaluated for them. The rest is as on
- * the uniform lattice: values of nodes in slots, masks, edges, vertices, triangles. Slots are sorted by
- * level, and so are vertices; what evaluates the field goes level by level, and sees the search grid
- * in cells of that level (mcor_view_level). */
+ * these. Nodes that are certain have a side without a value; it is evaluated where a cell is crossed that
+ * has them. The rest is as on the uniform lattice: values of nodes in slots, masks, edges, vertices,
+ * triangles. Slots are sorted by level, and so are vertices; what evaluates the field goes level by level,
+ * and sees the search grid in cells of that level (mcor_view_level). */
 
 #include "mcor_graded.h"
 #include "mcor_box.h"
-#include "mcor_graded_box.h"
 #include "mcor_graded_pair.h"
 #include "mcor_graded_seed.h"
 #include "mcor_graded_topology.h"
@@ -24,6 +23,11 @@
 #define MCOR_SLOT_ARGS(c)                                                                          \
   MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->graded.bucket_shift),                             \
     MCOR_BUFFER(&(c)->graded.keys), MCOR_BUFFER(&(c)->graded.buckets)
+
+#define MCOR_LEAF_ARGS(c)                                                                          \
+  MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
+    MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
+    MCOR_BUFFER(&(c)->case_table)
 
 /* Keys of all bricks whose nodes the leaves need. */
 static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
@@ -101,8 +105,8 @@ static mcor_status mcor_move_nodes(mcor_context* context, const mcor_brick_data*
     MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
 }
 
-/* Evaluates the nodes of all slots that are neither known nor proven to lie inside; then the signs of all
- * are known. iso: relative to A0. */
+/* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. iso:
+ * relative to A0. */
 static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 {
   const mcor_graded* graded = &context->graded;
@@ -129,7 +133,7 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
-/* Finds the leaves that have nodes on both sides, and evaluates all of these. */
+/* Finds the leaves in which there is surface, and evaluates what they need. */
 static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
 {
   mcor_graded* graded = &context->graded;
@@ -141,9 +145,12 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
     MCOR_INT(count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells),
     MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_need", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->bricks.now.valid),
     MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(&graded->proofs)));
-  return mcor_evaluate_slots(context, iso);
+  MCOR_TRY(mcor_evaluate_slots(context, iso));
+  return MCOR_LAUNCH(context, "mcor_graded_mixed", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&graded->mixed));
 }
 
 /* Leaves whose nodes are evaluated along with their states: more take much memory. */
@@ -166,6 +173,13 @@ static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_node
   if (status == MCOR_OK && slots > 0)
   {
     status = mcor_take_leaf_nodes(context, found);
+  }
+  if (status == MCOR_OK && found)
+  {
+    int taken;
+    const mcor_buffer* known = &context->bricks.now.known;
+    status = mcor_count_bits(context, known, known, slots, &taken);
+    graded->dropped = graded->evaluated - taken;
   }
   if (status == MCOR_OK && slots > 0)
   {
@@ -191,6 +205,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
     context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE;
+  context->graded.dropped = context->bricks.now.count == 0 ? 0 : context->graded.dropped;
   mcor_leaf_nodes found = { 0 };
   mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
   if (status == MCOR_OK)
@@ -205,10 +220,19 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
 
 /* ---- Cells ---- */
 
-#define MCOR_LEAF_ARGS(c)                                                                          \
-  MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
-    MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
-    MCOR_BUFFER(&(c)->case_table)
+/* Counts the cells of the box that are in mixed leaves, or between pairs there: whatever states told, or values
+ * of earlier calls, they are the same ones. */
+static mcor_status mcor_count_seeds(mcor_context* context, int* count)
+{
+  mcor_graded* graded = &context->graded;
+  const mcor_buffer* cells =
+    mcor_uses_pairs(context) ? &context->graded_pairs.seeds : &context->mesh.used;
+  MCOR_TRY(mcor_reserve(context, &graded->seeds, (size_t)graded->count * sizeof(cl_ulong)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_graded_seeds", MCOR_MEDIUM, graded->count, MCOR_INT(graded->count),
+      MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(cells), MCOR_BUFFER(&graded->seeds)));
+  return mcor_count_cells(context, &graded->seeds, &graded->seeds, count);
+}
 
 /* Finds the used cells; counts vertices and triangles. */
 static mcor_status mcor_count_leaves(mcor_context* context, double iso)
@@ -217,26 +241,23 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   mcor_mesh* mesh = &context->mesh;
   const int count = graded->count, slots = context->bricks.now.count;
   const size_t n = (size_t)count, s = (size_t)slots;
-  int64_t seeds;
+  const mcor_buffer* owned;
+  int seeds;
   MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_limit_leaves(context, &seeds));
-  if (mcor_uses_pairs(context))
-  {
-    int marked;
-    MCOR_TRY(mcor_keep_reached(context, iso, &marked));
-    seeds = marked;
-  }
+  MCOR_TRY(mcor_fill(context, &mesh->used, 0xff, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_clip_used(context));
+  MCOR_TRY(mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK);
+  MCOR_TRY(mcor_count_seeds(context, &seeds));
+  MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
   context->statistics->seed_cells += seeds;
   context->statistics->seed_cells_not_intersected += seeds;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&graded->mixed),
-    MCOR_BUFFER(context->box.is_part ? &context->box.clipped : &mesh->used),
-    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&graded->flat)));
+    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&graded->quadrants),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&graded->flat)));
   return MCOR_LAUNCH(context, "mcor_graded_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
     MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
 }
@@ -256,7 +277,7 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   mcor_statistics* s = context->statistics;
   int caps, used, hits;
   MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
-  MCOR_TRY(mcor_count_owned(context, &used));
+  MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
   s->flat_caps += caps;
   s->cells_used += used;
   cl_int cells[2] = { 0, 0 };
@@ -271,7 +292,9 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   }
   mesh->level_first[0][0] = 0;
   hits = used;
-  MCOR_TRY(mcor_uses_pairs(context) ? mcor_count_pair_hits(context, &hits) : MCOR_OK);
+  MCOR_TRY(mcor_uses_pairs(context)
+      ? mcor_count_cells(context, &mesh->used, &context->graded_pairs.seeds, &hits)
+      : MCOR_OK);
   s->seed_cells_not_intersected -= hits;
   return MCOR_OK;
 }
@@ -286,10 +309,10 @@ static mcor_status mcor_emit_leaf_triangles(
   const size_t count = follows ? (size_t)mesh->triangle_count : 1;
   MCOR_TRY(mcor_reserve(context, cells, count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_LEAF_SIDES_ARGS(context, sides), MCOR_LEAF_DECISION_ARGS(context),
-    MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
+    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&graded->cells), MCOR_SIDES_ARGS(sides),
+    MCOR_DECISION_ARGS(context), MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }
 
 static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
@@ -305,16 +328,7 @@ static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
     MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  MCOR_TRY(mcor_emit_leaf_triangles(context, context->box.halves, &context->box.cells));
-  if (!context->box.is_part || !context->options->ranks)
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer shared = { 0 };
-  mcor_status status = mcor_emit_leaf_triangles(context, context->box.whole_halves, &shared);
-  status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
-  mcor_release(context, &shared);
-  return status;
+  return mcor_emit_in_box(context, mcor_emit_leaf_triangles);
 }
 
 /* Counts the triangles of each level, in the box where there is one. */
@@ -366,7 +380,7 @@ void mcor_release_graded(mcor_context* context)
   MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys,
     &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
     &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
-    &context->grid.view_levels, &context->grid.view_inv_h);
+    &g->seeds, &context->grid.view_levels, &context->grid.view_inv_h);
   mcor_release_graded_pairs(context);
   mcor_release_tree(&context->tree);
 }

@@ -14,6 +14,12 @@ static inline bool mcor_is_graded(const mcor_context* context)
   return context->lattice.top > 0;
 }
 
+/* Bricks that are marched, or leaves where there may be surface. */
+static inline int mcor_marched_count(const mcor_context* context)
+{
+  return mcor_is_graded(context) ? context->graded.count : context->bricks.now.count;
+}
+
 /* The leaves where there may be surface, with their nodes' values; then their vertices and
  * triangles. iso: relative to A0. */
 mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);

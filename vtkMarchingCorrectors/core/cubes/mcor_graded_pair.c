@@ -12,7 +12,6 @@
 
 #include "mcor_graded_pair.h"
 #include "mcor_box.h"
-#include "mcor_graded_box.h"
 #include "mcor_tree.h"
 
 #include <stdlib.h>
@@ -212,12 +211,7 @@ static mcor_status mcor_limit_growth(mcor_context* context)
   const size_t bytes = (size_t)count * sizeof(cl_ulong);
   MCOR_TRY(mcor_reserve(context, &pairs->grown, bytes));
   MCOR_TRY(mcor_fill(context, &pairs->domain, 0xff, bytes));
-  if (mcor_is_limited(context))
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_limit", MCOR_MEDIUM, count,
-      MCOR_LEAF_SIDES_ARGS(context, context->box.near), MCOR_INT(count),
-      MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown))); /* the second is not needed */
-  }
+  MCOR_TRY(mcor_clip_near(context, &pairs->domain));
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
@@ -235,18 +229,15 @@ mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int co
   return MCOR_OK;
 }
 
-mcor_status mcor_keep_reached(mcor_context* context, double iso, int* seeds)
+mcor_status mcor_keep_reached(mcor_context* context, double iso)
 {
   mcor_graded_pairs* pairs = &context->graded_pairs;
   const int count = context->graded.count;
   const size_t bytes = (size_t)count * sizeof(cl_ulong);
-  const mcor_box* box = &context->box;
   MCOR_TRY(mcor_find_places(context));
   MCOR_TRY(mcor_mark_pairs(context, iso));
   MCOR_TRY(mcor_reserve(context, &pairs->seeds, bytes));
   MCOR_TRY(mcor_copy(context, &pairs->reached, &pairs->seeds, 0, bytes));
-  MCOR_TRY(mcor_count_bits(
-    context, &pairs->seeds, box->is_part ? &box->clipped : &pairs->seeds, count, seeds));
   MCOR_TRY(mcor_limit_growth(context));
   mcor_end_rounds(context);
   for (bool grown = true; grown;)
@@ -256,13 +247,6 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso, int* seeds)
   }
   return MCOR_LAUNCH(context, "mcor_graded_pair_keep", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&context->mesh.used));
-}
-
-mcor_status mcor_count_pair_hits(mcor_context* context, int* hits)
-{
-  const mcor_box* box = &context->box;
-  return mcor_count_bits(context, box->is_part ? &box->clipped : &context->mesh.used,
-    &context->graded_pairs.seeds, context->graded.count, hits);
 }
 
 void mcor_release_graded_pairs(mcor_context* context)

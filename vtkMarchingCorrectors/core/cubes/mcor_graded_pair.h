@@ -7,14 +7,12 @@
 
 #include "mcor_internal.h"
 
-/* Leaves the cells that pairs reach, of those in mesh.used; *seeds: how many of the owned ones pairs mark. iso:
- * relative to A0. */
-mcor_status mcor_keep_reached(mcor_context* context, double iso, int* seeds);
+/* Leaves the cells that pairs reach, of those in mesh.used; graded_pairs.seeds: those that pairs mark. iso: relative
+ * to A0. */
+mcor_status mcor_keep_reached(mcor_context* context, double iso);
 /* Adds `count` cells of this box, int4 with their level last, that others have reached; *fresh: whether one is
  * new. */
 mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh);
-/* How many of the seeds are used. */
-mcor_status mcor_count_pair_hits(mcor_context* context, int* hits);
 void mcor_release_graded_pairs(mcor_context* context);
 
 #endif

@@ -2,8 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: which leaves there may be surface in. Of each, bounds of the sums or a proof from the
- * particles nearby tell whether all its nodes are on one side of the iso value, or of too low a weight.
- * Particles are gathered for all parts of a brick at once. */
+ * particles nearby tell whether all its nodes are on one side of the iso value, or of too low a weight, or
+ * their values do. A leaf is left out where it and the leaves up from it agree. Particles are gathered for
+ * all parts of a brick at once. */
 
 #include "mcor_graded_seed.h"
 #include "mcor_graded.h"
@@ -143,7 +144,8 @@ static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
     const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves), MCOR_SEED_ARGS(context, iso),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves),
+      MCOR_BUFFER(&graded->leaf_finer), MCOR_SEED_ARGS(context, iso),
       MCOR_BUFFER(&graded->states)));
   }
   return mcor_view_level(context, 0);
@@ -222,22 +224,24 @@ static mcor_status mcor_list_examined(mcor_context* context)
   uint8_t* chosen = malloc(n + 1);
   MCOR_RETURN_IF(!chosen, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   mcor_status status = mcor_read(context, &graded->chosen, 0, chosen, n);
-  size_t count = 0;
+  size_t count = 0, evaluated = 0;
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
   {
-    count += chosen[i];
+    count += chosen[i] & MCOR_CHOSEN;
+    evaluated += (chosen[i] & MCOR_CHOSEN_EVALUATED) != 0;
   }
   mcor_keyed_leaf* examined = malloc((count + 1) * sizeof *examined);
   cl_int(*cells)[4] = malloc((count + 1) * sizeof *cells);
   cl_uint* finer = malloc((count + 1) * sizeof *finer);
   graded->count = (int)count;
+  graded->evaluated = MCOR_BRICK_NODES * (int)evaluated;
   if (status == MCOR_OK && examined && cells && finer)
   {
     size_t to = 0;
     memset(graded->first_leaf, 0, sizeof graded->first_leaf);
     for (size_t i = 0; i < n; ++i)
     {
-      if (chosen[i])
+      if (chosen[i] & MCOR_CHOSEN)
       {
         const cl_int* leaf = tree->leaves + 4 * i;
         examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), i };
@@ -268,7 +272,7 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
   mcor_graded* graded = &context->graded;
   const mcor_tree* tree = &context->tree;
   const size_t n = (size_t)tree->leaf_count, values = n * 64 * context->cl.real_size;
-  MCOR_TRY(mcor_reserve(context, &graded->states, n));
+  MCOR_TRY(mcor_reserve(context, &graded->states, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &graded->chosen, n));
   if (found)
   {

@@ -21,10 +21,10 @@ static mcor_status mcor_find_plain_faces(mcor_context* context)
     MCOR_LAUNCH(context, "mcor_graded_plain", MCOR_MEDIUM, graded->count, MCOR_INT(graded->count),
       MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->mesh.used),
       MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain), MCOR_BUFFER(&topology->used)));
-  return MCOR_LAUNCH(context, "mcor_graded_faces", MCOR_MEDIUM, slots, MCOR_INT(slots),
-    MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain), MCOR_BUFFER(&topology->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
-    MCOR_BUFFER(&topology->sample_base));
+  return MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, slots, MCOR_INT(slots),
+    MCOR_BUFFER(neighbours), MCOR_INT(false), MCOR_BUFFER(&topology->plain),
+    MCOR_BUFFER(&topology->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base));
 }
 
 /* Decides, and counts the triangles of each leaf anew. iso: relative to A0. */

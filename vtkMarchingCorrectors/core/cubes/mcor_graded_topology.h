@@ -7,17 +7,6 @@
 
 #include "mcor_internal.h"
 
-static inline bool mcor_is_resolved(const mcor_context* context)
-{
-  return context->options->topology == MCOR_TOPOLOGY_FIELD;
-}
-
-/* Kernel arguments of MCOR_LEAF_DECISION_PARAMS. */
-#define MCOR_LEAF_DECISION_ARGS(c)                                                                 \
-  MCOR_INT(mcor_is_resolved(c)), MCOR_BUFFER(&(c)->bricks.neighbours),                             \
-    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->topology.cases),                      \
-    MCOR_BUFFER(&(c)->topology.rows)
-
 mcor_status mcor_resolve_leaves(mcor_context* context, double iso);
 
 #endif

@@ -79,15 +79,45 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   return MCOR_OK;
 }
 
-static mcor_status mcor_emit_triangles(mcor_context* context)
+/* Edges with vertices; numbers of vertices and of triangles. */
+static mcor_status mcor_count_edges(mcor_context* context)
 {
-  const mcor_bricks* bricks = &context->bricks;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* tunnels = &context->topology.counts;
+  const int count = context->bricks.now.count;
+  const size_t n = (size_t)count, of_tunnels = mcor_is_resolved(context) ? n + 1 : 1;
+  int tunnel_count = 0;
+  MCOR_TRY(mcor_reserve(context, &mesh->edges, n * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, tunnels, of_tunnels * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_DECISION_ARGS(context), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
+  MCOR_TRY(mcor_is_resolved(context) ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
+  context->statistics->tunnels += tunnel_count;
+  MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
+  MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
+  mesh->vertex_count = mesh->march_count;
+  return MCOR_OK;
+}
+
+/* Triangles, and their cells, of which those between the sides are owned. */
+static mcor_status mcor_emit_triangles(
+  mcor_context* context, const int sides[6], mcor_buffer* cells)
+{
+  const mcor_brick_data* now = &context->bricks.now;
   const mcor_mesh* mesh = &context->mesh;
-  const int count = bricks->now.count;
-  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
+  const bool follows = mcor_follows_cells(context);
+  const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
+  MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_DECISION_ARGS(context), MCOR_SIDES_ARGS(sides), MCOR_INT(follows),
+    MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
+    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&now->above),
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
 }
 
 /* Vertices and triangles. iso: relative to A0. */
@@ -95,36 +125,20 @@ mcor_status mcor_march(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
+  int owned;
   MCOR_TRY(mcor_find_cells(context, iso));
-  const int count = bricks->now.count;
-  const size_t n = (size_t)count;
-  const bool resolved = context->options->topology == MCOR_TOPOLOGY_FIELD;
-  MCOR_TRY(mcor_reserve(context, &mesh->edges, n * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base)));
-  if (resolved)
-  {
-    MCOR_TRY(mcor_resolve_topology(context, iso));
-    MCOR_TRY(mcor_count_resolved(context));
-  }
-  MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
-  MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
-  mesh->vertex_count = mesh->march_count;
+  MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
+  MCOR_TRY(mcor_count_edges(context));
   const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
   MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  MCOR_TRY(resolved ? mcor_emit_resolved(context) : mcor_emit_triangles(context));
-  int owned;
-  MCOR_TRY(mcor_mark_owned(context, &owned));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, bricks->now.count,
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
+  MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
   context->statistics->triangles_before_trimming += owned;
   return MCOR_OK;
 }

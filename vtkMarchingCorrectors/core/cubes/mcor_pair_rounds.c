@@ -65,14 +65,11 @@ static mcor_status mcor_add_cell(
 static bool mcor_is_near_side(const mcor_context* context, const int64_t at[3], int level)
 {
   const mcor_box* box = &context->box;
-  const bool graded = mcor_is_graded(context);
   const int64_t edge = INT64_C(2) << level; /* in halves of the smallest cubes */
   bool near = false;
   for (int a = 0; a < 3; ++a)
   {
-    const int64_t begin = graded ? box->near[a] : 2 * (int64_t)box->begin[a];
-    const int64_t end = graded ? box->near[3 + a] : 2 * (int64_t)box->end[a];
-    near = near || (at[a] - 1) * edge < begin || (at[a] + 2) * edge > end;
+    near = near || (at[a] - 1) * edge < box->near[a] || (at[a] + 2) * edge > box->near[3 + a];
   }
   return near;
 }
@@ -145,7 +142,7 @@ static mcor_status mcor_list_new_cells(mcor_context* context, mcor_cell_list* li
 static bool mcor_is_near(const mcor_context* context, int axis, int64_t at, int level)
 {
   const mcor_box* box = &context->box;
-  const int64_t edge = INT64_C(2) << level; /* see mcor_graded_limit */
+  const int64_t edge = INT64_C(2) << level; /* see mcor_box_clip */
   return mcor_is_graded(context)
     ? (at + 2) * edge >= box->near[axis] && (at - 1) * edge <= box->near[3 + axis]
     : at >= box->begin[axis] - MCOR_BOX_RING && at < box->end[axis] + MCOR_BOX_RING;

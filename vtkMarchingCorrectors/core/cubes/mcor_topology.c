@@ -137,42 +137,10 @@ mcor_status mcor_resolve_topology(mcor_context* context, double iso)
   const int count = context->bricks.now.count;
   MCOR_TRY(mcor_begin_topology(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
-    MCOR_BUFFER(&topology->sample_base)));
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_INT(true), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
   return mcor_decide_topology(context, &mesh->used, iso);
-}
-
-/* Counts the triangles of each brick anew. */
-mcor_status mcor_count_resolved(mcor_context* context)
-{
-  mcor_mesh* mesh = &context->mesh;
-  mcor_topology_data* topology = &context->topology;
-  const int count = context->bricks.now.count;
-  mcor_buffer* counts = &topology->counts;
-  int tunnels;
-  MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
-    MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(counts)));
-  MCOR_TRY(mcor_scan(context, counts, count, &tunnels));
-  context->statistics->tunnels += tunnels;
-  return MCOR_OK;
-}
-
-mcor_status mcor_emit_resolved(mcor_context* context)
-{
-  mcor_mesh* mesh = &context->mesh;
-  mcor_topology_data* topology = &context->topology;
-  const int count = context->bricks.now.count;
-  return MCOR_LAUNCH(context, "mcor_topology_triangles", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
 }
 
 /* The tables stay. */

@@ -123,24 +123,30 @@ typedef struct mcor_reached
 static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int cluster[3])
 {
   double square[3][MCOR_CLUSTER];
+  int first[3], last[3];
   for (int a = 0; a < 3; ++a)
   {
-    for (int i = 0; i < MCOR_CLUSTER; ++i)
+    first[a] = reached->first[a] > cluster[a] ? reached->first[a] - cluster[a] : 0;
+    last[a] = reached->last[a] - cluster[a];
+    last[a] = last[a] < MCOR_CLUSTER ? last[a] : MCOR_CLUSTER - 1;
+    for (int i = first[a]; i <= last[a]; ++i)
     {
-      const int b = cluster[a] + i;
-      square[a][i] = b < reached->first[a] || b > reached->last[a] ? INFINITY
-        : reached->is_cube                                         ? 0
-                           : mcor_interval_distance2(reached->x[a], b, reached->edge);
+      square[a][i] = reached->is_cube
+        ? 0
+        : mcor_interval_distance2(reached->x[a], cluster[a] + i, reached->edge);
     }
   }
   uint64_t bricks = 0;
-  for (int row = 0; row < 16; ++row)
+  for (int z = first[2]; z <= last[2]; ++z)
   {
-    const double y2 = square[1][row & 3], z2 = square[2][row >> 2];
-    for (int i = 0; i < MCOR_CLUSTER && y2 + z2 < INFINITY; ++i)
+    for (int y = first[1]; y <= last[1]; ++y)
     {
-      const bool in = square[0][i] + y2 + z2 <= reached->reach * reached->reach;
-      bricks |= (uint64_t)in << (4 * row + i);
+      for (int x = first[0]; x <= last[0]; ++x)
+      {
+        const bool in =
+          square[0][x] + square[1][y] + square[2][z] <= reached->reach * reached->reach;
+        bricks |= (uint64_t)in << (x + 4 * y + 16 * z);
+      }
     }
   }
   return bricks;

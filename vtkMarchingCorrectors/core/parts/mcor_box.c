@@ -21,6 +21,7 @@
  * mcor_pair_rounds.c. */
 
 #include "mcor_box.h"
+#include "mcor_graded.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_stage.h"
@@ -48,7 +49,6 @@
 /* How far apart particles of a pair may be, in smoothing lengths, and a little more. */
 #define MCOR_PAIR_REACH 1.001
 
-#define MCOR_BOX_ARGS(r, ring) MCOR_CELL_ARGS((r)->first, (r)->last, ring, ring)
 #define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->begin, (r)->end, MCOR_BOX_RING, MCOR_BOX_RING)
 
 /* ---- Cells ---- */
@@ -57,10 +57,17 @@
 #define MCOR_NO_SIDE (1 << 30)
 
 /* The sides of a box between `low` and `high` for cells of all levels, whose centres are at whole numbers of
- * halves; NULL, and where cells end at the lattice's sides: without end, as large cells stick out of it. */
+ * halves. If there are several levels, NULL, and where cells end at the lattice's sides: without end, as large
+ * cells stick out of it. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
+  if (lattice->top == 0)
+  {
+    halves[axis] = 2 * low;
+    halves[3 + axis] = 2 * high;
+    return;
+  }
   const bool periodic = lattice->period[axis] > 0;
   const int first = periodic ? lattice->period_first[axis] : (int)lattice->first[axis];
   const int last = periodic ? first + lattice->period[axis] : (int)lattice->last[axis];
@@ -150,11 +157,10 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
-    mcor_place_halves(
-      lattice, a, everywhere ? NULL : sides, box->first[a], box->last[a], box->near);
     mcor_place_whole(context, options, a, first, last);
     box->begin[a] = everywhere ? (int)first : box->first[a];
     box->end[a] = everywhere ? (int)last : box->last[a];
+    mcor_place_halves(lattice, a, everywhere ? NULL : sides, box->begin[a], box->end[a], box->near);
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
     box->is_empty = box->is_empty || side[0] >= side[1];
   }
@@ -196,45 +202,64 @@ mcor_status mcor_void_bricks(mcor_context* context)
         MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
 }
 
+/* Of the bricks that are marched, those cells that are in a box, made larger by so many cells below and above;
+ * of leaves all cells of a ring around it, whatever these are. */
+static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lower, int upper,
+  const mcor_buffer* cells, mcor_buffer* clipped)
+{
+  const bool graded = mcor_is_graded(context);
+  const int count = mcor_marched_count(context);
+  int s[6];
+  for (int a = 0; a < 3; ++a)
+  {
+    s[a] = sides[a] - (graded ? 0 : 2 * lower);
+    s[3 + a] = sides[3 + a] + (graded ? 0 : 2 * upper);
+  }
+  MCOR_TRY(mcor_reserve(context, clipped, (size_t)count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(graded ? &context->graded.cells : &context->bricks.now.bricks), MCOR_SIDES_ARGS(s),
+    MCOR_INT(graded && lower > 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
+}
+
 /* One more node than cells. */
 mcor_status mcor_void_nodes(mcor_context* context)
 {
-  const mcor_brick_data* now = &context->bricks.now;
-  const mcor_box* box = &context->box;
-  return !mcor_is_limited(context)
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-        MCOR_BUFFER(&now->bricks),
-        MCOR_CELL_ARGS(box->begin, box->end, MCOR_BOX_RING, MCOR_BOX_RING + 1),
-        MCOR_BUFFER(&now->valid), MCOR_BUFFER(&now->valid));
+  mcor_buffer* valid = &context->bricks.now.valid;
+  return mcor_is_limited(context)
+    ? mcor_clip(context, context->box.near, MCOR_BOX_RING, MCOR_BOX_RING + 1, valid, valid)
+    : MCOR_OK;
 }
 
-static mcor_status mcor_clip(
-  mcor_context* context, const mcor_buffer* cells, mcor_buffer* clipped, int ring)
+mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
 {
-  const mcor_brick_data* now = &context->bricks.now;
-  MCOR_TRY(mcor_reserve(context, clipped, (size_t)now->count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-    MCOR_BUFFER(&now->bricks), MCOR_BOX_ARGS(&context->box, ring), MCOR_BUFFER(cells),
-    MCOR_BUFFER(clipped));
+  return mcor_is_limited(context)
+    ? mcor_clip(context, context->box.near, MCOR_BOX_RING, MCOR_BOX_RING, cells, cells)
+    : MCOR_OK;
 }
 
 mcor_status mcor_clip_used(mcor_context* context)
 {
   mcor_buffer* used = &context->mesh.used;
-  return context->box.is_part ? mcor_clip(context, used, used, MCOR_BOX_RING) : MCOR_OK;
+  return context->box.is_part
+    ? mcor_clip(context, context->box.halves, MCOR_BOX_RING, MCOR_BOX_RING, used, used)
+    : MCOR_OK;
+}
+
+mcor_status mcor_find_owned(
+  mcor_context* context, const mcor_buffer* cells, const mcor_buffer** owned)
+{
+  mcor_buffer* clipped = &context->box.clipped;
+  *owned = context->box.is_part ? clipped : cells;
+  return context->box.is_part ? mcor_clip(context, context->box.halves, 0, 0, cells, clipped)
+                              : MCOR_OK;
 }
 
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count)
 {
-  mcor_buffer* clipped = &context->box.clipped;
-  if (!context->box.is_part)
-  {
-    return mcor_count_bits(context, cells, within, context->bricks.now.count, count);
-  }
-  MCOR_TRY(mcor_clip(context, cells, clipped, 0));
-  return mcor_count_bits(context, clipped, within, context->bricks.now.count, count);
+  const mcor_buffer* owned;
+  MCOR_TRY(mcor_find_owned(context, cells, &owned));
+  return mcor_count_bits(context, owned, within, mcor_marched_count(context), count);
 }
 
 /* ---- Particles ---- */

@@ -49,6 +49,11 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
 
+/* Kernel arguments of MCOR_SIDES_PARAMS: six halves of cubes. */
+#define MCOR_SIDES_ARGS(sides)                                                                     \
+  MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
+    MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
+
 /* Kernel arguments of MCOR_BOX_PARAMS: owned cells, those whose particles are at hand; some more on
  * the lower and the upper sides. */
 #define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
@@ -74,8 +79,13 @@ mcor_status mcor_void_bricks(mcor_context* context);
 /* Extraction: nodes off the box and its ring, of evaluated bricks, are no more valid; so that pairs
  * do not grow there. */
 mcor_status mcor_void_nodes(mcor_context* context);
-/* Leaves used cells of the box and its ring; counts owned ones of any cells that are within others. */
+/* Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned ones; of
+ * any, those whose particles are at hand. */
 mcor_status mcor_clip_used(mcor_context* context);
+mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
+/* Owned ones of any cells: their masks, and how many of them are within others. */
+mcor_status mcor_find_owned(
+  mcor_context* context, const mcor_buffer* cells, const mcor_buffer** owned);
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
@@ -86,7 +96,9 @@ mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 
 /* mcor_triangle_cell.c. Whether triangles carry their cells; those of [first, last) that are owned. */
 bool mcor_follows_cells(const mcor_context* context);
-mcor_status mcor_mark_owned(mcor_context* context, int* count);
+/* Emits triangles by `emit`, which writes their cells if they carry any; those between the sides are owned. */
+typedef mcor_status (*mcor_emit)(mcor_context* context, const int sides[6], mcor_buffer* cells);
+mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 mcor_status mcor_trim_cells(
   mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining);

@@ -20,54 +20,19 @@ bool mcor_follows_cells(const mcor_context* context)
 
 /* ---- Mesh ---- */
 
-/* Writes the triangles' cells; those from `first` to `last` are owned. */
-static mcor_status mcor_mark_cells(
-  mcor_context* context, const int first[3], const int last[3], mcor_buffer* cells)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
-  const mcor_topology_data* topology = &context->topology;
-  const int *blocks = context->lattice.blocks, bricks_now = bricks->now.count;
-  MCOR_TRY(mcor_reserve(context, cells, (size_t)mesh->triangle_count * sizeof(cl_ulong)));
-  if (context->options->topology == MCOR_TOPOLOGY_FIELD)
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark_resolved", MCOR_MEDIUM, bricks_now,
-      MCOR_INT(bricks_now), MCOR_INT(blocks[0]), MCOR_INT(blocks[1]),
-      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
-      MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&bricks->now.above),
-      MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->cases),
-      MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells)));
-  }
-  else
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_mark", MCOR_MEDIUM, bricks_now, MCOR_INT(bricks_now),
-      MCOR_INT(blocks[0]), MCOR_INT(blocks[1]), MCOR_BUFFER(&bricks->now.bricks),
-      MCOR_BUFFER(&bricks->neighbours), MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&mesh->used),
-      MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&context->case_table),
-      MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells)));
-  }
-  return MCOR_OK;
-}
-
-/* Writes the triangles' cells; *count: how many are owned. */
-mcor_status mcor_mark_owned(mcor_context* context, int* count)
+mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit)
 {
   mcor_box* box = &context->box;
-  *count = context->mesh.triangle_count;
-  if (!mcor_follows_cells(context))
+  MCOR_TRY(emit(context, box->halves, &box->cells));
+  if (!box->is_part || !context->options->ranks)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_mark_cells(context, box->first, box->last, &box->cells));
-  if (box->is_part && context->options->ranks)
-  {
-    mcor_buffer shared = { 0 };
-    mcor_status status = mcor_mark_cells(context, box->whole_first, box->whole_last, &shared);
-    status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
-    mcor_release(context, &shared);
-    MCOR_TRY(status);
-  }
-  return mcor_count_owned_triangles(context, 0, context->mesh.triangle_count, count);
+  mcor_buffer shared = { 0 };
+  mcor_status status = emit(context, box->whole_halves, &shared);
+  status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
+  mcor_release(context, &shared);
+  return status;
 }
 
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count)

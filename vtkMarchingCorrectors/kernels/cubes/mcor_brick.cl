@@ -270,6 +270,25 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
 }
 #endif
 
+/* A box [x0, x1) x ..., in halves of the smallest cubes. */
+#define MCOR_SIDES_PARAMS                                                                          \
+  const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
+#define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1
+
+/* Those of a brick's cells, of its level, whose centres are in the box. */
+ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
+{
+  ulong cells = ~0UL;
+  for (int i = 0; i < MCOR_BRICK; ++i)
+  {
+    const int4 at = (2 * (brick * MCOR_BRICK + i) + 1) << brick.w;
+    cells &= at.x >= x0 && at.x < x1 ? ~0UL : ~(MCOR_LOW_X << i);
+    cells &= at.y >= y0 && at.y < y1 ? ~0UL : ~(MCOR_LOW_Y << 4 * i);
+    cells &= at.z >= z0 && at.z < z1 ? ~0UL : ~(MCOR_LOW_Z << 16 * i);
+  }
+  return cells;
+}
+
 /* Gathers a mask of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
 MCOR_ONE_COPY void mcor_brick_masks(
   __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)

@@ -125,7 +125,7 @@ __kernel void mcor_graded_tables(MCOR_SLOT_PARAMS, const int count, __global con
 
 #if MCOR_OF_GRADED
 /* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, or
- * proven to lie inside, reads the particles that reach them; tries the proof first where it was not tried.
+ * certain, reads the particles that reach them; tries the proof first where it was not tried.
  * Writes their values and weights, or the proof. */
 __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
@@ -133,7 +133,7 @@ __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int cou
 {
   const long node = (long)get_global_id(0) * MCOR_ITEM_NODES;
   const int slot = first + (int)(node / 64);
-  if (node >= 64L * count || known[slot] || proofs[slot] == MCOR_PROVEN)
+  if (node >= 64L * count || known[slot] || MCOR_IS_CERTAIN(proofs[slot]))
   {
     return;
   }
@@ -141,11 +141,11 @@ __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int cou
 #if MCOR_LEAF_PROOFS
   if (proofs[slot] == MCOR_UNTRIED)
   {
-    mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_LEAF_SHARE);
+    mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_INSIDE_SHARE);
     mcor_tile tile;
     mcor_tile_init(&tile);
-    proofs[slot] = mcor_brick_is_inside(&grid, &close, &tile, iso) ? MCOR_PROVEN : MCOR_OPEN;
-    if (proofs[slot] == MCOR_PROVEN)
+    proofs[slot] = mcor_brick_is_inside(&grid, &close, &tile, iso) ? MCOR_ABOVE : MCOR_EXAMINE;
+    if (MCOR_IS_CERTAIN(proofs[slot]))
     {
       return;
     }
@@ -159,8 +159,8 @@ __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int cou
   mcor_node_store(&sums, node_value + 64L * first + node, node_weight + 64L * first + node);
 }
 
-/* One work-item = one slot. Writes which of its nodes are above the iso value and which are valid: all
- * those that were proven to lie inside. Others are known from now on. */
+/* One work-item = one slot. Writes which of its nodes are above the iso value and which are valid; of those
+ * that are certain all may be. Others are known from now on. */
 __kernel void mcor_graded_sign(const int slot_count, __global const uchar* proofs,
   __global const real* node_value, __global const real* node_weight, const real iso,
   const real node_threshold, __global ulong* known, __global ulong* above, __global ulong* valid)
@@ -170,22 +170,60 @@ __kernel void mcor_graded_sign(const int slot_count, __global const uchar* proof
   {
     return;
   }
-  if (proofs[slot] == MCOR_PROVEN)
+  if (!known[slot] && MCOR_IS_CERTAIN(proofs[slot]))
   {
-    above[slot] = valid[slot] = ~0UL;
+    above[slot] = proofs[slot] == MCOR_ABOVE ? ~0UL : 0;
+    valid[slot] = proofs[slot] == MCOR_VOID ? 0 : ~0UL;
     return;
   }
   known[slot] = ~0UL;
-  mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold,
-    above + slot, valid + slot);
+  const ulong2 signs =
+    mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold);
+  above[slot] = signs.x;
+  valid[slot] = signs.y;
 }
 #endif
 
 #if MCOR_OF_LATTICE
-/* One work-item = one leaf. Writes whether any of its slots has a node below: if none has, there is no
- * surface. If one has, values are needed, of the slots that were proven to lie inside, too. */
-__kernel void mcor_graded_need(const int count, __global const int* tables,
-  __global const ulong* above, __global uchar* mixed, __global uchar* proofs)
+/* Marks a slot whose nodes' values are needed after all; of those below the node threshold they never
+ * are. */
+void mcor_leaf_ask(__global uchar* proofs, int slot)
+{
+  if (slot >= 0 && (proofs[slot] == MCOR_ABOVE || proofs[slot] == MCOR_BELOW))
+  {
+    proofs[slot] = MCOR_EXAMINE;
+  }
+}
+
+/* The same of those that crossed cells of a leaf need, which has no finer ones around it; whether there are
+ * any. */
+bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
+  __global const ulong* valid, __global uchar* proofs)
+{
+  ulong a[8], v[8];
+  for (int d = 0; d < 8; ++d)
+  {
+    a[d] = above[slots[d]];
+    v[d] = valid[slots[d]];
+  }
+  mcor_cell_corners(a);
+  mcor_cell_corners(v);
+  const ulong crossed = mcor_cell_some(a) & ~mcor_cell_all(a) & mcor_cell_all(v);
+  for (int d = 0; d < 8 && crossed; ++d)
+  {
+    if (mcor_cells_reach(crossed, d))
+    {
+      mcor_leaf_ask(proofs, slots[d]);
+    }
+  }
+  return crossed != 0;
+}
+
+/* One work-item = one leaf. Writes whether its cells have nodes on both sides: if not, there is no surface.
+ * Then values are needed, of slots that were certain, too. */
+__kernel void mcor_graded_need(const int count, __global const uint* finer,
+  __global const int* tables, __global const ulong* above, __global const ulong* valid,
+  __global uchar* mixed, __global uchar* proofs)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -193,18 +231,21 @@ __kernel void mcor_graded_need(const int count, __global const int* tables,
     return;
   }
   __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
-  bool some = false;
-  for (int b = 0; b < MCOR_LEAF_SLOTS && !some; ++b)
+  if (finer[i] == 0)
   {
-    some = slots[b] >= 0 && above[slots[b]] != ~0UL;
+    mixed[i] = mcor_leaf_ask_plain(slots, above, valid, proofs);
+    return;
   }
-  mixed[i] = some;
-  for (int b = 0; b < MCOR_LEAF_SLOTS && some; ++b)
+  int sides = 0;
+  for (int b = 0; b < MCOR_LEAF_SLOTS && sides != MCOR_EXAMINE; ++b)
   {
-    if (slots[b] >= 0 && proofs[slots[b]] == MCOR_PROVEN)
-    {
-      proofs[slots[b]] = MCOR_OPEN;
-    }
+    const ulong a = slots[b] < 0 ? 0 : above[slots[b]], v = slots[b] < 0 ? 0 : valid[slots[b]];
+    sides |= (a & v ? MCOR_ABOVE : 0) | (~a & v ? MCOR_BELOW : 0);
+  }
+  mixed[i] = sides == MCOR_EXAMINE;
+  for (int b = 0; b < MCOR_LEAF_SLOTS && sides == MCOR_EXAMINE; ++b)
+  {
+    mcor_leaf_ask(proofs, slots[b]);
   }
 }
 

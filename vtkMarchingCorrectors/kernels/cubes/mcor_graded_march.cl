@@ -181,7 +181,38 @@ uint mcor_leaf_corner_nodes(int corners)
   return above;
 }
 
-/* Notes that a cell uses its crossed edges. */
+/* Notes that these cells, which have no finer nodes, use their crossed edges. */
+void mcor_leaf_mark_plain(const mcor_leaf* leaf, ulong cells, __global uint* quadrants)
+{
+  for (int k = 0; k < 12; ++k)
+  {
+    /* In quadrant q around an edge are the cells whose lower corner of it is this one. */
+    const int axis = k >> 2, q = k & 3, b = axis == 0 ? 2 : 1, c = axis == 2 ? 2 : 4;
+    const int corner = (q & 1) * b | (q >> 1) * c;
+    const ulong crossed =
+      cells & (leaf->corners_above[corner] ^ leaf->corners_above[corner | 1 << axis]);
+    for (int d = 0; d < 8 && crossed; ++d)
+    {
+      ulong part = (d & ~corner) == 0 ? crossed : 0; /* by lower node, in the brick up by d */
+      for (int a = 0; a < 3; ++a)
+      {
+        part = !(corner >> a & 1) ? part
+          : d >> a & 1            ? mcor_from_last(a, 0, part)
+                                  : mcor_from_last(a, part, 0);
+      }
+      for (int w = 0; w < 2 && part; ++w)
+      {
+        const uint bits = (uint)(part >> 32 * w);
+        if (bits)
+        {
+          atomic_or(quadrants + leaf->slots[d] * (long)MCOR_QUADRANT_WORDS + 2 * k + w, bits);
+        }
+      }
+    }
+  }
+}
+
+/* The same of a cell that has. */
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
 {
@@ -218,11 +249,49 @@ void mcor_leaf_mark(
   const int count, __global const uint *finer, __global const int *tables,                         \
     __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
 
+/* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
+ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong graded)
+{
+  return mcor_cell_some(leaf->corners_above) & ~mcor_cell_all(leaf->corners_above) &
+    mcor_cell_all(leaf->corners_valid) & ~graded;
+}
+
+/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes whether it is: whether any of
+ * its cells is valid at all nodes and has nodes on both sides. */
+__kernel void mcor_graded_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
+{
+  const int i = get_global_id(0);
+  if (i >= count || !mixed[i])
+  {
+    return;
+  }
+  const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
+  const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
+  bool some = mcor_leaf_crossed(&leaf, graded) != 0;
+  for (ulong rest = graded; rest && !some; rest &= rest - 1)
+  {
+    some = mcor_leaf_cell(&leaf, mcor_ctz(rest)).used;
+  }
+  mixed[i] = some;
+}
+
+/* One work-item = one leaf. Writes which of these cells are of mixed leaves. */
+__kernel void mcor_graded_seeds(
+  const int count, __global const uchar* mixed, __global const ulong* cells, __global ulong* seeds)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    seeds[i] = mixed[i] ? cells[i] : 0;
+  }
+}
+
 /* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
  * `used`, and writes which edges they use; counts triangles, and of owned cells loops that lie in one
  * face between leaves. */
-__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global const ulong* owned,
-  __global uint* quadrants, __global ulong* used, __global int* triangle_count, __global int* flat)
+__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+  __global const ulong* owned, __global uint* quadrants, __global ulong* used,
+  __global int* triangle_count, __global int* flat)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -237,35 +306,28 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  ulong cells = ((mcor_cell_some(leaf.corners_above) & ~mcor_cell_all(leaf.corners_above) &
-                   mcor_cell_all(leaf.corners_valid)) |
-                  graded) &
-    used[i];
+  ulong cells = (mcor_leaf_crossed(&leaf, graded) | graded) & used[i];
   const ulong within = owned[i]; /* which may be `used` */
   int triangles = 0, flat_caps = 0;
-  for (ulong rest = cells; rest; rest &= rest - 1)
+  for (ulong rest = cells & graded; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    if (graded >> cell & 1)
+    const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
+    int caps = 0;
+    if (!nodes.used)
     {
-      const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
-      if (!nodes.used)
-      {
-        cells &= ~(1UL << cell);
-        continue;
-      }
-      int caps = 0;
-      triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
-      flat_caps += within >> cell & 1 ? caps : 0;
-      mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
+      cells &= ~(1UL << cell);
+      continue;
     }
-    else
-    {
-      const int corners = mcor_march_case(leaf.corners_above, cell);
-      triangles += case_table[corners * 16 + 15];
-      mcor_leaf_mark(&leaf, cell, 0, mcor_leaf_corner_nodes(corners), quadrants);
-    }
+    triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
+    flat_caps += within >> cell & 1 ? caps : 0;
+    mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
   }
+  for (ulong rest = cells & ~graded; rest; rest &= rest - 1)
+  {
+    triangles += case_table[mcor_march_case(leaf.corners_above, mcor_ctz(rest)) * 16 + 15];
+  }
+  mcor_leaf_mark_plain(&leaf, cells & ~graded, quadrants);
   used[i] = cells;
   triangle_count[i] = triangles;
   flat[i] = flat_caps;
@@ -381,74 +443,12 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }
 
-/* A box [x0, x1) x ..., in halves of the finest cubes. is_part: whether it matters. */
-#define MCOR_LEAF_BOX_PARAMS                                                                       \
-  const int is_part, const int x0, const int y0, const int z0, const int x1, const int y1,         \
-    const int z1, __global const int4 *cells
-
-/* Whether a leaf's cell has its centre there. */
-bool mcor_leaf_owns(MCOR_LEAF_BOX_PARAMS, int i, int cell)
-{
-  const int4 leaf = cells[i];
-  const int x = (2 * (4 * leaf.x + (cell & 3)) + 1) << leaf.w;
-  const int y = (2 * (4 * leaf.y + (cell >> 2 & 3)) + 1) << leaf.w;
-  const int z = (2 * (4 * leaf.z + (cell >> 4)) + 1) << leaf.w;
-  return !is_part || (x >= x0 && x < x1 && y >= y0 && y < y1 && z >= z0 && z < z1);
-}
-
-#define MCOR_LEAF_BOX_ARGS is_part, x0, y0, z0, x1, y1, z1, cells
-
-/* One work-item = one leaf. Writes its cells that are in the box or in the ring around it, and those
- * that are in it. */
-__kernel void mcor_graded_limit(
-  MCOR_LEAF_BOX_PARAMS, const int count, __global ulong* ring, __global ulong* owned)
-{
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
-  const int4 leaf = cells[i];
-  const int edge = 2 << leaf.w;
-  ulong near = 0, within = 0;
-  for (int cell = 0; cell < 64; ++cell)
-  {
-    const int x = (4 * leaf.x + (cell & 3)) * edge, y = (4 * leaf.y + (cell >> 2 & 3)) * edge;
-    const int z = (4 * leaf.z + (cell >> 4)) * edge;
-    const bool is_near = x + 2 * edge >= x0 && x - edge <= x1 && y + 2 * edge >= y0 &&
-      y - edge <= y1 && z + 2 * edge >= z0 && z - edge <= z1;
-    near |= (ulong)is_near << cell;
-    within |= (ulong)mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) << cell;
-  }
-  ring[i] = near;
-  owned[i] = within;
-}
-
-/* One work-item = one leaf. Writes which of its used cells are in the box. */
-__kernel void mcor_graded_clip(
-  MCOR_LEAF_BOX_PARAMS, const int count, __global const ulong* used, __global ulong* clipped)
-{
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
-  ulong within = 0;
-  for (ulong rest = used[i]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    within |= (ulong)mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) << cell;
-  }
-  clipped[i] = within;
-}
-
 /* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, if
  * wanted, the keys of their cells. */
-__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
-  MCOR_LEAF_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
-  __global ulong* triangle_cells,
-  __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
-  __global const int* triangle_base, __global int* triangles)
+__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const int4* cells, MCOR_SIDES_PARAMS,
+  MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
+  __global ulong* triangle_cells, __global const ulong* used, __global const ulong* edges,
+  __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
 {
   const int i = get_global_id(0);
   if (i >= count || used[i] == 0)
@@ -458,6 +458,12 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
   const ulong key = mcor_graded_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
+  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, cells[i]);
+  int numbers[3][MCOR_CELL_NODES];
+  if (used[i] & ~graded)
+  {
+    mcor_march_numbers(leaf.slots + 1, edges, vertex_base, leaf.slots[0], numbers);
+  }
   __global int* to = triangles + triangle_base[i] * 3L;
   for (ulong rest = used[i]; rest; rest &= rest - 1)
   {
@@ -476,22 +482,11 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, MCOR_LEAF_BOX_PARAMS,
     }
     else
     {
-      __global const uchar* row = case_table + mcor_march_case(leaf.corners_above, cell) * 16;
-      int made = row[15], tunnel;
-      if (resolved)
-      {
-        __global const mcor_cell_row* decided = mcor_topology_cell(
-          leaf.corners_above, neighbours, decisions, cases, rows, leaf.slots[0], cell, &tunnel);
-        row = decided->edges;
-        made = decided->triangles;
-      }
-      for (int k = 0; k < 3 * made; ++k)
-      {
-        const int c = row[k] & 7, lower = 2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2);
-        *to++ = mcor_leaf_vertex(&leaf, cell, 0, row[k] >> 3, lower, edges, vertex_base);
-      }
+      const mcor_cell_cut cut =
+        mcor_cell_cut_of(leaf.corners_above, case_table, MCOR_DECISION_ARGS, leaf.slots[0], cell);
+      to = mcor_march_emit(cut.edges, cut.triangles, numbers, cell, to);
     }
-    const ulong ring = mcor_leaf_owns(MCOR_LEAF_BOX_ARGS, i, cell) ? 0 : MCOR_RING_CELL;
+    const ulong ring = owned >> cell & 1 ? 0 : MCOR_RING_CELL;
     for (long t = begin; follows && t < (to - triangles) / 3; ++t)
     {
       triangle_cells[t] = key << 6 | (ulong)cell | ring;

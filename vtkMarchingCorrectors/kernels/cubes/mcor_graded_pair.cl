@@ -157,8 +157,7 @@ mcor_leaf_faces mcor_leaf_plain_faces(const mcor_leaf* leaf, ulong graded)
 {
   const ulong* above = leaf->corners_above;
   mcor_leaf_faces faces;
-  faces.used = mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(leaf->corners_valid) &
-    ~graded;
+  faces.used = mcor_leaf_crossed(leaf, graded);
   for (int a = 0; a < 3; ++a)
   {
     faces.lower[a] = mcor_cell_faces(above, a, 0) & ~graded;
@@ -287,8 +286,8 @@ __kernel void mcor_graded_pair_grow(const int count, __global const uint* finer,
   for (int face = 0; face < 6 && fresh; ++face)
   {
     const int axis = face >> 1, side = face & 1;
-    const ulong at = side ? faces.upper[axis] & low[axis] << (3 << 2 * axis)
-                          : faces.lower[axis] & low[axis];
+    const ulong at =
+      side ? faces.upper[axis] & low[axis] << (3 << 2 * axis) : faces.lower[axis] & low[axis];
     if (fresh & at)
     {
       mcor_leaf_reach_across(

@@ -5,9 +5,9 @@
  *
  * A leaf is a brick of 4 x 4 x 4 cells of its level, (x, y, z; level). Its cells have the nodes of that
  * level, 5 along an edge, and where a leaf beside is finer those of the level below on its sides: 9
- * along an edge. A bound tells of all points of a leaf, sides included. Where that is not enough, the
- * weight sum has another proof, of the nodes of one brick: a leaf's first 4 along an edge. It needs
- * no surface where all nodes of its cells are proven to lie inside, in its own brick or others.
+ * along an edge. Where all leaves up from it are of its level, each tells of its own nodes, 4 along an
+ * edge: by a bound, a proof, or their values. Then there is no surface in it where it and they are on one
+ * side. Beside leaves of other levels a bound, or a proof, has to tell of all its points, sides included.
  * All lengths are in cells of the level, as which the search grid is seen (mcor_view_level). */
 
 /* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: of the 27 bricks in and around a leaf, those that are
@@ -35,10 +35,8 @@ __kernel void mcor_graded_scale(
 
 #endif
 
-/* What is known of a slot. */
-#define MCOR_UNTRIED 0
-#define MCOR_PROVEN 1 /* its nodes lie inside */
-#define MCOR_OPEN 2   /* its nodes' values are needed */
+/* Of a slot a state is known, MCOR_EXAMINE where its nodes' values are needed, or MCOR_UNTRIED. */
+#define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
 /* ---- Bounds and proofs ---- */
 
@@ -46,27 +44,32 @@ __kernel void mcor_graded_scale(
 /* Whether that proof is tried: where a work-item evaluates whole bricks. */
 #define MCOR_LEAF_PROOFS (MCOR_FIELD == 2 && !MCOR_TENSOR && MCOR_LANES > 1)
 
-/* Of each particle's support: within are a fifth of the particles, and in the midst of others four fifths
- * of the weight sum. */
-#define MCOR_LEAF_SHARE 0.6f
+/* The nodes of a leaf of which its state is to tell, as an extent. */
+#define MCOR_LEAF_EXTENT(finer) ((finer) ? MCOR_BRICK : MCOR_BRICK - 1)
+
+/* What is entered for a leaf of which a state is known. */
+int mcor_leaf_state(int state, uint finer)
+{
+  return state * MCOR_EVERYWHERE | (state == MCOR_EXAMINE && finer ? MCOR_OPEN_SIDES : 0);
+}
 
 #if MCOR_LANES == 1
-/* One work-item = one leaf, of `count` from `first` on. Reads the particles that reach it, sides
- * included. Writes its state. */
+/* One work-item = one leaf, of `count` from `first` on. Reads the particles that reach it. Writes its
+ * state. */
 __kernel void mcor_graded_states(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* leaves, MCOR_SEED_PARAMS, __global uchar* states)
+  __global const int4* leaves, __global const uint* finer, MCOR_SEED_PARAMS, __global int* states)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
+  const int i = first + get_global_id(0);
+  if (i >= first + count)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  mcor_query query = mcor_seed_query(&grid, leaves[first + i], MCOR_BRICK);
+  mcor_query query = mcor_seed_query(&grid, leaves[i], MCOR_LEAF_EXTENT(finer[i]));
   mcor_tile tile;
   mcor_tile_init(&tile);
-  states[first + i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
+  states[i] = mcor_leaf_state(mcor_seed_state(&grid, &query, &tile, false, &limits), finer[i]);
 }
 #else
 #if MCOR_LEAF_PROOFS
@@ -99,7 +102,7 @@ bool mcor_points_are_inside(const mcor_tile* tile, real x, real y, real z, real 
   {
     const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
       MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), x + e, y + e, z + ez, e, e, ez,
-      MCOR_LEAF_SHARE);
+      MCOR_INSIDE_SHARE);
     int list[MCOR_LANES];
     const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
     for (int k = 0; k < count; ++k)
@@ -163,13 +166,13 @@ bool mcor_sides_are_inside(
   return inside;
 }
 
-/* MCOR_ABOVE: the proof holds for a leaf with its sides, which is only asked where they are beside leaves
- * of other levels. MCOR_INSIDE: for its own nodes. wide: what is close to its region, if it is complete. */
+/* What the proof says of a leaf: if it holds for its own nodes, but not for its sides beside leaves of other
+ * levels, these are open. wide: what is close to its region, if it is complete. */
 int mcor_leaf_proof(const mcor_grid* grid, int4 leaf, uint finer, const mcor_tile* wide, real iso)
 {
-  mcor_query query = mcor_seed_query(grid, leaf, finer ? MCOR_BRICK : MCOR_BRICK - 1);
+  mcor_query query = mcor_seed_query(grid, leaf, MCOR_LEAF_EXTENT(finer));
   mcor_tile tile;
-  query.radius = -MCOR_LEAF_SHARE;
+  query.radius = -MCOR_INSIDE_SHARE;
   mcor_tile_init(&tile);
   if (wide->complete)
   {
@@ -177,29 +180,29 @@ int mcor_leaf_proof(const mcor_grid* grid, int4 leaf, uint finer, const mcor_til
   }
   if (!mcor_brick_is_inside(grid, &query, &tile, iso))
   {
-    return MCOR_EXAMINE;
+    return mcor_leaf_state(MCOR_EXAMINE, finer);
   }
-  return finer && tile.complete && mcor_sides_are_inside(grid, &query, &tile, finer, iso)
-    ? MCOR_ABOVE
-    : MCOR_INSIDE;
+  const bool all =
+    !finer || (tile.complete && mcor_sides_are_inside(grid, &query, &tile, finer, iso));
+  return MCOR_ABOVE * MCOR_EVERYWHERE | (all ? 0 : MCOR_OPEN_SIDES);
 }
 #endif
 
 /* Proves what can be of the leaves of a region, from `begin` to before `end`; returns which are left. */
 uint mcor_region_proofs(const mcor_grid* grid, int4 brick, int begin, int end,
   __global const int4* leaves, __global const uint* finer, real iso, mcor_tile* wide,
-  __global uchar* states)
+  __global int* states)
 {
   uint left = (1u << (end - begin)) - 1;
 #if MCOR_LEAF_PROOFS
   mcor_query query = mcor_seed_query(grid, brick, MCOR_REGION_CUBES);
-  query.radius = -MCOR_LEAF_SHARE;
+  query.radius = -MCOR_INSIDE_SHARE;
   mcor_tile_init(wide);
   mcor_tile_next(grid, &query, wide, true);
   for (int i = begin; i < end && wide->count > 0; ++i)
   {
-    states[i] = (uchar)mcor_leaf_proof(grid, leaves[i], finer[i], wide, iso);
-    left &= ~((uint)(states[i] != MCOR_EXAMINE) << (i - begin));
+    states[i] = mcor_leaf_proof(grid, leaves[i], finer[i], wide, iso);
+    left &= ~((uint)MCOR_IS_CERTAIN(states[i] & MCOR_EXAMINE) << (i - begin));
   }
 #endif
   return left;
@@ -212,12 +215,31 @@ int mcor_region_range(const mcor_grid* grid, mcor_query* query, const mcor_seed_
   return of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(grid, query, limits->side_flags) : 3];
 }
 
+/* The state of a leaf that is certain of nothing, by its nodes' values, which it writes. tile: what reaches
+ * them. */
+int mcor_leaf_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, uint finer,
+  const mcor_seed_limits* limits, __global real* value, __global real* weight)
+{
+  mcor_node_sums sums;
+  mcor_node_sum(grid, query, tile, &sums);
+  mcor_node_store(&sums, value, weight);
+  const ulong2 signs = mcor_node_signs(value, weight, limits->iso, limits->node_threshold);
+  int state = MCOR_EVALUATED | (finer ? MCOR_OPEN_SIDES : 0);
+  for (int d = 0; d < 8; ++d)
+  {
+    const ulong valid = signs.y & (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) &
+      (d & 4 ? MCOR_LOW_Z : ~0UL);
+    state |= ((valid & signs.x ? MCOR_ABOVE : 0) | (valid & ~signs.x ? MCOR_BELOW : 0)) << 2 * d;
+  }
+  return state;
+}
+
 /* One work-item = one region, of `count` from `first` on: the leaves that are parts of one brick, the
  * particles of which are gathered once. Reads the particles that reach it. Writes the leaves' states
  * and, of those to be examined, if `evaluates`, their nodes' values and weights. */
 __kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int* regions, __global const int4* leaves, __global const uint* finer,
-  MCOR_SEED_PARAMS, const int evaluates, __global uchar* states, __global real* node_value,
+  MCOR_SEED_PARAMS, const int evaluates, __global int* states, __global real* node_value,
   __global real* node_weight)
 {
   const int region = first + get_global_id(0);
@@ -231,37 +253,37 @@ __kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int c
   const int4 brick = leaves[begin] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
   mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES);
   mcor_tile wide, tile;
-  const int all = mcor_region_range(&grid, &query, &limits);
-  for (int i = begin; i < end; ++i)
-  {
-    states[i] = (uchar)all;
-  }
-  if (all != MCOR_EXAMINE)
-  {
-    return;
-  }
-  const uint left = mcor_region_proofs(&grid, brick, begin, end, leaves, finer, iso, &wide, states);
-  mcor_tile_init(&wide);
+  int all = mcor_region_range(&grid, &query, &limits);
+  uint left = all == MCOR_EXAMINE ? (1u << (end - begin)) - 1 : 0;
   if (left)
   {
-    mcor_tile_next(&grid, &query, &wide, true);
+    left = mcor_region_proofs(&grid, brick, begin, end, leaves, finer, iso, &wide, states);
+    mcor_tile_init(&wide);
+    all = left + 1 == 1u << (end - begin) ? mcor_seed_state(&grid, &query, &wide, false, &limits)
+                                          : MCOR_EXAMINE;
+    if (all == MCOR_EXAMINE && left)
+    {
+      mcor_tile_next(&grid, &query, &wide, true);
+    }
   }
-  for (uint rest = left; rest; rest &= rest - 1)
+  for (int i = begin; i < end && all != MCOR_EXAMINE; ++i)
+  {
+    states[i] = all * MCOR_EVERYWHERE;
+  }
+  for (uint rest = all == MCOR_EXAMINE ? left : 0; rest; rest &= rest - 1)
   {
     const int i = begin + mcor_ctz(rest);
-    query = mcor_seed_query(&grid, leaves[i], MCOR_BRICK);
+    query = mcor_seed_query(&grid, leaves[i], MCOR_LEAF_EXTENT(finer[i]));
     mcor_tile_init(&tile);
     if (wide.complete)
     {
       mcor_tile_narrow(&wide, &query, &tile);
     }
-    states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, false, &limits);
-    if (states[i] == MCOR_EXAMINE && evaluates)
-    {
-      mcor_node_sums sums;
-      mcor_node_sum(&grid, &query, &tile, &sums);
-      mcor_node_store(&sums, node_value + 64L * i, node_weight + 64L * i);
-    }
+    const int state = mcor_seed_state(&grid, &query, &tile, false, &limits);
+    states[i] = state == MCOR_EXAMINE && evaluates
+      ? mcor_leaf_evaluate(
+          &grid, &query, &tile, finer[i], &limits, node_value + 64L * i, node_weight + 64L * i)
+      : mcor_leaf_state(state, finer[i]);
   }
 }
 #endif
@@ -315,10 +337,10 @@ int mcor_leaf_of_region(
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = one region. Writes of its leaves whether they are to be examined: one whose own nodes
- * lie inside need not be if the others are in like bricks. */
+/* One work-item = one region. Writes of its leaves whether they are to be examined: nodes that cells of
+ * theirs may have are on both sides. */
 __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
-  __global const uchar* states, __global uchar* chosen)
+  __global const int* states, __global uchar* chosen)
 {
   const int r = get_global_id(0);
   if (r >= region_count)
@@ -335,20 +357,21 @@ __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
   }
   for (int i = regions[r]; i < regions[r + 1]; ++i)
   {
-    const bool inside = states[i] == MCOR_INSIDE;
-    bool open = states[i] == MCOR_EXAMINE || (inside && finer[i] != 0);
-    for (int d = 1; d < 8 && inside && !open; ++d)
+    int sides = states[i] & MCOR_EXAMINE;
+    const bool open = states[i] & MCOR_OPEN_SIDES, alone = open || finer[i] != 0;
+    for (int d = 1; d < 8 && !alone && sides != MCOR_EXAMINE; ++d)
     {
       const int x = leaves[i].x + (d & 1), y = leaves[i].y + (d >> 1 & 1),
                 z = leaves[i].z + (d >> 2);
       const int in =
         up[((x >> 1) - parent.x) | ((y >> 1) - parent.y) << 1 | ((z >> 1) - parent.z) << 2];
       const int other = mcor_leaf_of_region(regions, leaves, in, x, y, z);
-      open = other < 0 || (states[other] != MCOR_INSIDE && states[other] != MCOR_ABOVE);
+      sides |= other < 0 ? MCOR_EXAMINE : states[other] >> 2 * d & MCOR_EXAMINE;
     }
-    /* No branch asks `open` after the loop: into such a one, LLVM 18 moves what the loop left, and PoCL
+    /* No branch asks `sides` after the loop: into such a one, LLVM 18 moves what the loop left, and PoCL
      * 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
-    chosen[i] = open;
+    chosen[i] = (uchar)((open | (sides == MCOR_EXAMINE)) * MCOR_CHOSEN |
+      (states[i] & MCOR_EVALUATED ? MCOR_CHOSEN_EVALUATED : 0));
   }
 }
 
@@ -358,7 +381,7 @@ __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
 /* One work-item = one slot. Takes over what was found of the leaf whose brick it is, if it is one's:
  * words: of 4 bytes, that the values of a brick's nodes take; 0: there are none. */
 __kernel void mcor_graded_take(MCOR_REGION_PARAMS, const int slot_count,
-  __global const int4* bricks, __global const uchar* states, const int words,
+  __global const int4* bricks, __global const int* states, const int words,
   __global const uint* leaf_value, __global const uint* leaf_weight, __global uchar* proofs,
   __global ulong* known, __global uint* node_value, __global uint* node_weight)
 {
@@ -370,10 +393,11 @@ __kernel void mcor_graded_take(MCOR_REGION_PARAMS, const int slot_count,
   const int4 b = bricks[slot];
   const int region = mcor_find_region(MCOR_REGION_ARGS, b.w + 1, b.x >> 1, b.y >> 1, b.z >> 1);
   const int i = mcor_leaf_of_region(regions, leaves, region, b.x, b.y, b.z);
-  const int state = i < 0 ? MCOR_VOID : states[i];
-  const bool above = state == MCOR_INSIDE || (MCOR_LEAF_PROOFS && state == MCOR_ABOVE);
-  proofs[slot] = above ? MCOR_PROVEN : state == MCOR_EXAMINE ? MCOR_OPEN : MCOR_UNTRIED;
-  if (state == MCOR_EXAMINE && words > 0)
+  const int state = i < 0 ? MCOR_UNTRIED : states[i];
+  proofs[slot] = (uchar)(i < 0 ? MCOR_UNTRIED
+      : state & MCOR_EVALUATED ? MCOR_EXAMINE
+                               : state & MCOR_EXAMINE);
+  if (state & MCOR_EVALUATED)
   {
     known[slot] = ~0UL;
     for (int n = 0; n < words; ++n)

@@ -33,34 +33,6 @@ __kernel void mcor_graded_plain(const int count, __global const uint* finer,
   }
 }
 
-/* One work-item = one slot. Writes the ambiguous faces between plain cells, next to used ones, and their
- * number. */
-__kernel void mcor_graded_faces(const int slot_count, __global const int* neighbours,
-  __global const ulong* plain, __global const ulong* used, __global const ulong* above,
-  __global ulong* decisions, __global int* counts)
-{
-  const int slot = get_global_id(0);
-  if (slot >= slot_count)
-  {
-    return;
-  }
-  ulong m[8], p[8], u[8];
-  mcor_brick_masks(plain, neighbours, slot, 7, p);
-  mcor_brick_masks(used, neighbours, slot, 7, u);
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  int count = 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const ulong between = p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
-    const ulong reached = between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
-    const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
-    decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
-    count += (int)popcount(ambiguous);
-  }
-  counts[slot] = count;
-}
-
 /* One work-item = one leaf. Reads all decisions. Adds to its number of triangles what its plain cells have
  * more or fewer than by the case table; writes the number of their tunnels. */
 __kernel void mcor_graded_recount(const int count, __global const int* tables,

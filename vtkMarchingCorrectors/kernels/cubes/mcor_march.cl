@@ -65,8 +65,10 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* evalu
   if (slot < brick_count && evaluated[slot])
   {
     known[slot] |= evaluated[slot];
-    mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold,
-      above + slot, valid + slot);
+    const ulong2 signs =
+      mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold);
+    above[slot] = signs.x;
+    valid[slot] = signs.y;
   }
 }
 #endif
@@ -153,17 +155,6 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
 }
 #endif
 
-/* Marching Cubes case of a cell: bit c is set where corner c is above. */
-int mcor_march_case(const ulong* corners, int cell)
-{
-  int result = 0;
-  for (int c = 0; c < 8; ++c)
-  {
-    result |= (int)(corners[c] >> cell & 1) << c;
-  }
-  return result;
-}
-
 /* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below
  * in the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
  * neighbours. */
@@ -189,11 +180,13 @@ MCOR_ONE_COPY void mcor_march_around(const ulong* m, int axis, ulong* q)
  * axis. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads used cells and node masks. Writes the edge masks for edges that
- * have their lower node in the brick and a used cell around them; counts vertices and triangles. */
-__kernel void mcor_march_count(const int brick_count, __global const int* neighbours,
+/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the edge masks for edges
+ * that have their lower node in the brick and a used cell around them; counts vertices, triangles and
+ * tunnels. */
+__kernel void mcor_march_count(const int brick_count, MCOR_DECISION_PARAMS,
   __global const ulong* used, __global const ulong* above, __global const uchar* case_table,
-  __global ulong* edges, __global int* vertex_count, __global int* triangle_count)
+  __global ulong* edges, __global int* vertex_count, __global int* triangle_count,
+  __global int* tunnel_count)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -219,13 +212,20 @@ __kernel void mcor_march_count(const int brick_count, __global const int* neighb
     vertices += (int)(popcount(crossed) + popcount(pinched));
   }
   vertex_count[slot] = vertices;
-  int triangles = 0;
+  int triangles = 0, tunnels = 0;
   mcor_cell_corners(m);
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
-    triangles += case_table[mcor_march_case(m, mcor_ctz(rest)) * 16 + 15];
+    const mcor_cell_cut cut =
+      mcor_cell_cut_of(m, case_table, MCOR_DECISION_ARGS, slot, mcor_ctz(rest));
+    triangles += cut.triangles;
+    tunnels += cut.tunnel;
   }
   triangle_count[slot] = triangles;
+  if (resolved)
+  {
+    tunnel_count[slot] = tunnels;
+  }
 }
 
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
@@ -286,13 +286,13 @@ int mcor_march_rank(__global const ulong* e, int n)
 }
 
 /* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched
- * edge, -1 less the first of the two. */
-void mcor_march_numbers(__global const int* neighbours, __global const ulong* edges,
+ * edge, -1 less the first of the two. upper: slots of its upper neighbours, or -1. */
+void mcor_march_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {
   for (int d = 0; d < 8; ++d)
   {
-    const int owner = d ? neighbours[slot * 14L + d - 1] : slot;
+    const int owner = d ? upper[d - 1] : slot;
     if (owner < 0)
     {
       continue;
@@ -337,11 +337,13 @@ __global int* mcor_march_emit(__global const uchar* row, int count,
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads used cells, node masks and edge numbering. Writes triangles. */
-__kernel void mcor_march_triangles(const int brick_count, __global const int* neighbours,
+/* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes triangles and, if
+ * wanted, the keys of their cells. */
+__kernel void mcor_march_triangles(const int brick_count, MCOR_DECISION_PARAMS, MCOR_SIDES_PARAMS,
+  const int follows, const int blocks_x, const int blocks_y, __global const int4* bricks,
   __global const ulong* used, __global const ulong* above, __global const ulong* edges,
   __global const uchar* case_table, __global const int* vertex_base,
-  __global const int* triangle_base, __global int* triangles)
+  __global const int* triangle_base, __global ulong* triangle_cells, __global int* triangles)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count || used[slot] == 0)
@@ -352,13 +354,21 @@ __kernel void mcor_march_triangles(const int brick_count, __global const int* ne
   int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
-  __global int* to = triangles + triangle_base[slot] * 3L;
+  mcor_march_numbers(neighbours + slot * 14L, edges, vertex_base, slot, numbers);
+  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
+  const ulong key = mcor_brick_place(blocks_x, blocks_y, bricks[slot]) << 6;
+  long to = triangle_base[slot];
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    __global const uchar* row = case_table + mcor_march_case(m, cell) * 16;
-    to = mcor_march_emit(row, row[15], numbers, cell, to);
+    const mcor_cell_cut cut = mcor_cell_cut_of(m, case_table, MCOR_DECISION_ARGS, slot, cell);
+    mcor_march_emit(cut.edges, cut.triangles, numbers, cell, triangles + 3 * to);
+    for (int i = 0; i < cut.triangles && follows;
+         ++i) /* Intel's compiler (2026.2) crashes on another form */
+    {
+      triangle_cells[to + i] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
+    }
+    to += cut.triangles;
   }
 }
 

@@ -78,10 +78,10 @@ void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global 
   }
 }
 
-/* Writes which nodes of a brick are above the iso value, and which are valid: their weight is not
+/* Finds which nodes of a brick are above the iso value, and which are valid: their weight is not
  * below the node threshold. */
-void mcor_node_signs(__global const real* value, __global const real* weight, real iso,
-  real node_threshold, __global ulong* above, __global ulong* valid)
+ulong2 mcor_node_signs(
+  __global const real* value, __global const real* weight, real iso, real node_threshold)
 {
   ulong a = 0, v = 0;
   for (int n = 0; n < 64; ++n)
@@ -89,6 +89,5 @@ void mcor_node_signs(__global const real* value, __global const real* weight, re
     a |= (ulong)(value[n] >= iso) << n;
     v |= (ulong)(MCOR_FIELD == 2 || weight[n] >= node_threshold) << n;
   }
-  *above = a;
-  *valid = v;
+  return (ulong2)(a, v);
 }

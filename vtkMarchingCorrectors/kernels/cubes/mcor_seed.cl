@@ -349,7 +349,9 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
       known[slot] = mcor_seed_brick(&grid, brick, &wide, &limits, states + m, value, weight);
       if (known[slot])
       {
-        mcor_node_signs(value, weight, iso, node_threshold, above + slot, valid + slot);
+        const ulong2 signs = mcor_node_signs(value, weight, iso, node_threshold);
+        above[slot] = signs.x;
+        valid[slot] = signs.y;
       }
     }
   }

@@ -13,25 +13,30 @@
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads used cells and node masks. Writes the ambiguous faces next
- * to used cells, and their number. */
+/* One work-item = one brick. Reads used cells, node masks and, unless `all` are, which cells are plain. Writes
+ * the ambiguous faces between plain cells, next to used ones, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
-  __global const ulong* used, __global const ulong* above, __global ulong* decisions,
-  __global int* counts)
+  const int all, __global const ulong* plain, __global const ulong* used,
+  __global const ulong* above, __global ulong* decisions, __global int* counts)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
   {
     return;
   }
-  ulong m[8], lower[8];
-  mcor_brick_masks(used, neighbours, slot, 7, lower);
+  ulong m[8], p[8], u[8];
+  mcor_brick_masks(used, neighbours, slot, 7, u);
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
+  if (!all)
+  {
+    mcor_brick_masks(plain, neighbours, slot, 7, p);
+  }
   int count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const ulong reached = lower[0] | mcor_from_last(axis, lower[0], lower[1 << axis]);
+    const ulong between = all ? ~0UL : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
+    const ulong reached = between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
     count += (int)popcount(ambiguous);
@@ -312,59 +317,5 @@ __kernel void mcor_topology_agree(const int brick_count, __global const int* bas
   }
   cells[0] = below;
   cells[1] = above;
-}
-
-/* One work-item = one brick. Reads all decisions. Writes the numbers of triangles and of
- * tunnels. */
-__kernel void mcor_topology_count(const int brick_count, __global const int* neighbours,
-  __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
-  __global const int* cases, __global const mcor_cell_row* rows, __global int* triangle_count,
-  __global int* tunnel_count)
-{
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
-  ulong m[8];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  int triangles = 0, tunnels = 0, tunnel;
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
-  {
-    triangles +=
-      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, mcor_ctz(rest), &tunnel)
-        ->triangles;
-    tunnels += tunnel;
-  }
-  triangle_count[slot] = triangles;
-  tunnel_count[slot] = tunnels;
-}
-
-/* One work-item = one brick. Reads all decisions and the edge numbering. Writes triangles. */
-__kernel void mcor_topology_triangles(const int brick_count, __global const int* neighbours,
-  __global const ulong* used, __global const ulong* above, __global const ulong* decisions,
-  __global const ulong* edges, __global const int* cases, __global const mcor_cell_row* rows,
-  __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
-{
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || used[slot] == 0)
-  {
-    return;
-  }
-  ulong m[8];
-  int numbers[3][MCOR_CELL_NODES];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  mcor_march_numbers(neighbours, edges, vertex_base, slot, numbers);
-  __global int* to = triangles + triangle_base[slot] * 3L;
-  int tunnel;
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    __global const mcor_cell_row* row =
-      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel);
-    to = mcor_march_emit(row->edges, row->triangles, numbers, cell, to);
-  }
 }
 #endif

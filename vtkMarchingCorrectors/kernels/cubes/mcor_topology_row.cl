@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: what the decisions on faces and cells say of a cell. */
+/* How a cell is cut: by its case, and by what the field decided on its faces and on tunnels in it. */
 
 /* At each place of a brick what is one place before it along an axis; last: of the brick before. */
 ulong mcor_from_last(int axis, ulong m, ulong last)
@@ -16,6 +16,17 @@ ulong mcor_ambiguous_faces(const ulong* corners, int axis)
 {
   const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
   return (corners[0] ^ corners[du]) & (corners[0] ^ corners[dv]) & ~(corners[0] ^ corners[du | dv]);
+}
+
+/* Marching Cubes case of a cell: bit c is set where corner c is above. */
+int mcor_march_case(const ulong* corners, int cell)
+{
+  int result = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    result |= (int)(corners[c] >> cell & 1) << c;
+  }
+  return result;
 }
 
 /* First row of a cell's case, plus that of its decisions on faces. corners: see
@@ -54,8 +65,33 @@ __global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
   return rows + (other ? first + other : row);
 }
 
-/* Of adaptive cubes, how a cell without finer nodes is cut: as the field decided where it is resolved, else
- * by the case table. */
-#define MCOR_LEAF_DECISION_PARAMS                                                                  \
+/* Decisions on faces and cells, where the topology is resolved. */
+#define MCOR_DECISION_PARAMS                                                                       \
   const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
     __global const int *cases, __global const mcor_cell_row *rows
+#define MCOR_DECISION_ARGS resolved, neighbours, decisions, cases, rows
+
+/* How a cell without finer nodes is cut: as the field decided, or by the case table. */
+typedef struct
+{
+  __global const uchar* edges; /* see mcor_cell_row */
+  int triangles, tunnel;
+} mcor_cell_cut;
+
+mcor_cell_cut mcor_cell_cut_of(
+  const ulong* corners, __global const uchar* case_table, MCOR_DECISION_PARAMS, int slot, int cell)
+{
+  mcor_cell_cut cut;
+  if (resolved)
+  {
+    __global const mcor_cell_row* row =
+      mcor_topology_cell(corners, neighbours, decisions, cases, rows, slot, cell, &cut.tunnel);
+    cut.edges = row->edges;
+    cut.triangles = row->triangles;
+    return cut;
+  }
+  cut.edges = case_table + mcor_march_case(corners, cell) * 16;
+  cut.triangles = cut.edges[15];
+  cut.tunnel = 0;
+  return cut;
+}

@@ -3,25 +3,11 @@
 
 /* A box of cells of the lattice; see mcor_box.c. */
 
+#if MCOR_OF_LATTICE
 /* Cells from the first to before the last, by axis. */
-#define MCOR_BOX_PARAMS                                                                         \
+#define MCOR_BOX_PARAMS                                                                            \
   const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,     \
     const int last_z
-
-/* Those of a brick's cells that are in the box. */
-ulong mcor_box_cells(MCOR_BOX_PARAMS, int4 brick)
-{
-  const int4 cell = brick * MCOR_BRICK;
-  ulong cells = ~0UL;
-  for (int i = 0; i < MCOR_BRICK; ++i)
-  {
-    cells &= cell.x + i >= first_x && cell.x + i < last_x ? ~0UL : ~(MCOR_LOW_X << i);
-    cells &= cell.y + i >= first_y && cell.y + i < last_y ? ~0UL : ~(MCOR_LOW_Y << 4 * i);
-    cells &= cell.z + i >= first_z && cell.z + i < last_z ? ~0UL : ~(MCOR_LOW_Z << 16 * i);
-  }
-  return cells;
-}
-
 #define MCOR_BOX_ARGS first_x, first_y, first_z, last_x, last_y, last_z
 
 /* Whether the box's cells have nodes among those of a cube, `size` nodes long. */
@@ -37,8 +23,7 @@ __kernel void mcor_box_void_cubes(const int count, const int cubes_x, const int 
 {
   const int i = get_global_id(0);
   if (i < count &&
-    !mcor_box_reaches(
-      MCOR_BOX_ARGS, mcor_block_of_key(keys[i], cubes_x, cubes_y) * size, size))
+    !mcor_box_reaches(MCOR_BOX_ARGS, mcor_block_of_key(keys[i], cubes_x, cubes_y) * size, size))
   {
     states[i] = MCOR_VOID;
   }
@@ -59,78 +44,17 @@ __kernel void mcor_box_void_bricks(const int block_count, const int blocks_x, co
   }
 }
 
-/* One work-item = one brick. Writes those of its cells that are in the box. */
-__kernel void mcor_box_clip(const int brick_count, __global const int4* bricks,
-  MCOR_BOX_PARAMS, __global const ulong* cells, __global ulong* clipped)
+/* One work-item = one brick, of any level. Writes those of its cells that are in the box, or in a ring around it:
+ * that would be in it if they were a cell larger all around. */
+__kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, MCOR_SIDES_PARAMS,
+  const int ring, __global const ulong* cells, __global ulong* clipped)
 {
-  const int slot = get_global_id(0);
-  if (slot < brick_count)
+  const int i = get_global_id(0);
+  if (i < brick_count)
   {
-    clipped[slot] = cells[slot] & mcor_box_cells(MCOR_BOX_ARGS, bricks[slot]);
-  }
-}
-
-/* One work-item = one brick. Reads used cells and node masks. Writes the keys of their cells to its
- * triangles. The loops count up since Intel's compiler (2026.2) crashed on others. */
-__kernel void mcor_box_mark(const int brick_count, const int blocks_x, const int blocks_y,
-  __global const int4* bricks,
-  __global const int* neighbours, MCOR_BOX_PARAMS, __global const ulong* used,
-  __global const ulong* above, __global const uchar* case_table, __global const int* triangle_base,
-  __global ulong* triangle_cells)
-{
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || used[slot] == 0)
-  {
-    return;
-  }
-  ulong m[8];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  const ulong cells = mcor_box_cells(MCOR_BOX_ARGS, bricks[slot]);
-  const ulong key = mcor_brick_place(blocks_x, blocks_y, bricks[slot]) << 6;
-  int to = triangle_base[slot];
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    const ulong cell_key = key | (ulong)cell | (~cells >> cell & 1) * MCOR_RING_CELL;
-    const int count = case_table[mcor_march_case(m, cell) * 16 + 15];
-    for (int i = 0; i < count; ++i)
-    {
-      triangle_cells[to + i] = cell_key;
-    }
-    to += count;
-  }
-}
-
-/* The same, where the field decided on the topology. */
-__kernel void mcor_box_mark_resolved(const int brick_count, const int blocks_x,
-  const int blocks_y, __global const int4* bricks,
-  __global const int* neighbours, MCOR_BOX_PARAMS, __global const ulong* used,
-  __global const ulong* above, __global const ulong* decisions, __global const int* cases,
-  __global const mcor_cell_row* rows, __global const int* triangle_base, __global ulong* triangle_cells)
-{
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || used[slot] == 0)
-  {
-    return;
-  }
-  ulong m[8];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  const ulong cells = mcor_box_cells(MCOR_BOX_ARGS, bricks[slot]);
-  const ulong key = mcor_brick_place(blocks_x, blocks_y, bricks[slot]) << 6;
-  int to = triangle_base[slot], tunnel;
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    const ulong cell_key = key | (ulong)cell | (~cells >> cell & 1) * MCOR_RING_CELL;
-    const int count =
-      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel)->triangles;
-    for (int i = 0; i < count; ++i)
-    {
-      triangle_cells[to + i] = cell_key;
-    }
-    to += count;
+    const int by = ring ? 3 << bricks[i].w : 0, end = ring ? by + 1 : 0;
+    clipped[i] = cells[i] &
+      mcor_cells_within(x0 - by, y0 - by, z0 - by, x1 + end, y1 + end, z1 + end, bricks[i]);
   }
 }
 
@@ -161,3 +85,4 @@ __kernel void mcor_box_trim(const int triangle_count, __global const int* triang
     }
   }
 }
+#endif

@@ -303,7 +303,7 @@ public:
    * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
    * for all, the same as UNIFORM. TOPOLOGY_FIELD decides between cubes that no finer one touches.
    * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The statistics have
-   * CellsOfLevel, TrianglesOfLevel, FlatCaps, and HighestLevel, to which periods may limit it.
+   * CellsOfLevel, TrianglesOfLevel, FlatLoops, and HighestLevel, to which periods may limit it.
    */
   vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   vtkGetMacro(CubeSizeMode, int);

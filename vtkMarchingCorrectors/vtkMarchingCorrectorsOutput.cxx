@@ -320,7 +320,7 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   {
     AddLevels(fieldData, "CellsOfLevel", s.cells_of_level);
     AddLevels(fieldData, "TrianglesOfLevel", s.triangles_of_level);
-    vtkSPHAddCount(fieldData, "FlatCaps", { s.flat_caps });
+    vtkSPHAddCount(fieldData, "FlatLoops", { s.flat_loops });
     vtkSPHAddCount(fieldData, "HighestLevel", { s.highest_level });
   }
   vtkSPHAddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });

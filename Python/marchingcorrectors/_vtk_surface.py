@@ -172,7 +172,7 @@ def add_statistics(data, s, surface, options):
         if name == "cells_used" and options.cube_size_mode:
             add_levels(data, "CellsOfLevel", s["cells_of_level"])
             add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
-            add_count(data, "FlatCaps", s["flat_caps"])
+            add_count(data, "FlatLoops", s["flat_loops"])
             add_count(data, "HighestLevel", s["highest_level"])
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)

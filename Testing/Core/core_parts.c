@@ -187,7 +187,7 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
     cells += part.statistics.cells_used;
     triangles += part.statistics.triangles_before_trimming;
     virtual_cells += part.statistics.virtual_cells;
-    caps += part.statistics.flat_caps;
+    caps += part.statistics.flat_loops;
     for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
     {
       cells_of_level[l] += part.statistics.cells_of_level[l];
@@ -201,7 +201,7 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
   assert_int_equal(cells, whole->statistics.cells_used);
   assert_int_equal(triangles, whole->statistics.triangles_before_trimming);
   assert_int_equal(virtual_cells, whole->statistics.virtual_cells);
-  assert_int_equal(caps, whole->statistics.flat_caps);
+  assert_int_equal(caps, whole->statistics.flat_loops);
   assert_memory_equal(cells_of_level, whole->statistics.cells_of_level, sizeof cells_of_level);
   assert_memory_equal(
     triangles_of_level, whole->statistics.triangles_of_level, sizeof triangles_of_level);

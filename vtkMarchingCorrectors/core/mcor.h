@@ -388,7 +388,7 @@ extern "C"
      * of a cell's triangles that lie in one side of it, next to finer cells, whose part of the surface
      * they cut off. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
-    int64_t flat_caps;
+    int64_t flat_loops;
     int highest_level; /* that cubes may have, by smoothing lengths, level_limit and periods */
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
      * table; cells with two loops that might be a tunnel, and those where they are. */
@@ -494,7 +494,7 @@ extern "C"
 
   /* 0 for the name that is most usual for the quantity, more for less usual ones, -1 for others.
    * Case, blanks, "_" and "-" do not matter. */
-  int mcor_name_rank(mcor_quantity quantity, const char* name);
+  int mcor_name_priority(mcor_quantity quantity, const char* name);
 
   /* Whether an array of this name, whose values are whole and range from low to high over all particles,
    * says clearly which of them are fluid: *fluid becomes the value that these have. So do 0 and 1 alone,
@@ -504,7 +504,7 @@ extern "C"
   /* How fit an array of this name is to be looked at where nobody has chosen one; the least is best:
    * velocities, other vectors, scalars, what describes particles, the rest. -1: not fit, as it does
    * not vary (`varies`: whether any component has two values), or numbers particles or their types. */
-  int mcor_view_rank(const char* name, int components, int is_real, int varies);
+  int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
   /* The solver whose output has arrays of these names, each on a line: "DualSPHysics", "PySPH",
    * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
@@ -519,7 +519,7 @@ extern "C"
   } mcor_field_data;
 
   /* The period that field data tell of: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box where
-   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_rank. Returns how many numbers
+   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_priority. Returns how many numbers
    * `period` has: 6 bounds, as mcor_options.periodic; 3 lengths, for mcor_place_period; 0: no array
    * tells of a period. which: the number of the array; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);

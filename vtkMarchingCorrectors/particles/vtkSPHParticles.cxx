@@ -227,7 +227,7 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
        ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    const int rank = array ? mcor_name_rank(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
+    const int rank = array ? mcor_name_priority(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
     if (rank >= 0 && array->GetNumberOfComponents() == 1)
     {
       names.emplace(rank, array->GetName());
@@ -472,7 +472,7 @@ vtkDataArray* vtkSPHParticles::Detect(mcor_quantity quantity)
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    const int rank = array ? mcor_name_rank(quantity, array->GetName()) : -1;
+    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
     if (rank >= 0 && (!found || rank < best) && array->GetNumberOfComponents() == 1 &&
       array->GetNumberOfTuples() == this->Core.count)
     {

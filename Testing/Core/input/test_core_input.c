@@ -566,27 +566,27 @@ static void test_outliers(void** state)
 
 static void test_names(void** state)
 {
-  assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
-  assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
+  assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
+  assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
   assert_true(
-    mcor_name_rank(MCOR_SMOOTHING_LENGTH, "h") > mcor_name_rank(MCOR_SMOOTHING_LENGTH, "hsml"));
-  assert_int_equal(mcor_name_rank(MCOR_MASS, "m"), 3);
-  assert_true(mcor_name_rank(MCOR_DENSITY, "Particle-Density") > 0);
-  assert_int_equal(mcor_name_rank(MCOR_VOLUME, "Vol"), 3);
-  assert_int_equal(mcor_name_rank(MCOR_VELOCITY, "Vel"), 2);
-  assert_int_equal(mcor_name_rank(MCOR_PARTICLE_ID, "Idp"), 0);
-  assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
-  assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "iorig") > 0);
+    mcor_name_priority(MCOR_SMOOTHING_LENGTH, "h") > mcor_name_priority(MCOR_SMOOTHING_LENGTH, "hsml"));
+  assert_int_equal(mcor_name_priority(MCOR_MASS, "m"), 3);
+  assert_true(mcor_name_priority(MCOR_DENSITY, "Particle-Density") > 0);
+  assert_int_equal(mcor_name_priority(MCOR_VOLUME, "Vol"), 3);
+  assert_int_equal(mcor_name_priority(MCOR_VELOCITY, "Vel"), 2);
+  assert_int_equal(mcor_name_priority(MCOR_PARTICLE_ID, "Idp"), 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "iorig") > 0);
   const char* const others[] = { "", "mas", "masss", "volume of it", NULL };
   for (int i = 0; i < 5; ++i)
   {
     for (int quantity = 0; quantity < MCOR_QUANTITY_COUNT; ++quantity)
     {
-      assert_int_equal(mcor_name_rank((mcor_quantity)quantity, others[i]), -1);
+      assert_int_equal(mcor_name_priority((mcor_quantity)quantity, others[i]), -1);
     }
   }
-  assert_true(mcor_name_rank(MCOR_DENSITY, "Rhop") > 0);
-  assert_true(mcor_name_rank(MCOR_PARTICLE_TYPE, "Type") > 0);
+  assert_true(mcor_name_priority(MCOR_DENSITY, "Rhop") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_TYPE, "Type") > 0);
   assert_string_equal(mcor_find_layout("Idp\nVel\nRhop\nType"), "DualSPHysics");
   assert_string_equal(mcor_find_layout("gid\nh\nm\nrho\ntag\nu\nv\nw"), "PySPH");
   assert_string_equal(mcor_find_layout("Masses\nDensities\nSmoothingLengths"), "SWIFT");
@@ -597,7 +597,7 @@ static void test_names(void** state)
   assert_string_equal(mcor_find_layout("h\nvx\nvy\nvz\nitype"), "Phantom");
   assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
   assert_string_equal(mcor_find_layout(""), "");
-  assert_int_equal(mcor_name_rank(MCOR_QUANTITY_COUNT, "m"), -1);
+  assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
   (void)state;
 }
 
@@ -665,16 +665,16 @@ static void test_fluid_values(void** state)
 
 static void test_view_ranks(void** state)
 {
-  const int velocity = mcor_view_rank("vel", 3, 1, 1), vector = mcor_view_rank("Force", 3, 1, 1),
-            scalar = mcor_view_rank("Pressure", 1, 1, 1), mass = mcor_view_rank("Mass", 1, 1, 1),
-            tensor = mcor_view_rank("Stress", 9, 1, 1), whole = mcor_view_rank("Count", 1, 0, 1);
+  const int velocity = mcor_view_priority("vel", 3, 1, 1), vector = mcor_view_priority("Force", 3, 1, 1),
+            scalar = mcor_view_priority("Pressure", 1, 1, 1), mass = mcor_view_priority("Mass", 1, 1, 1),
+            tensor = mcor_view_priority("Stress", 9, 1, 1), whole = mcor_view_priority("Count", 1, 0, 1);
   assert_true(velocity >= 0 && velocity < vector && vector < scalar && scalar < mass);
   assert_true(mass < tensor && tensor < whole);
-  assert_int_equal(mcor_view_rank("Pressure", 1, 1, 0), -1);
-  assert_int_equal(mcor_view_rank("Velocity", 3, 1, 0), -1);
-  assert_int_equal(mcor_view_rank("Idp", 1, 0, 1), -1);
-  assert_int_equal(mcor_view_rank("ParticleType", 1, 1, 1), -1);
-  assert_int_equal(mcor_view_rank(NULL, 1, 1, 1), -1);
+  assert_int_equal(mcor_view_priority("Pressure", 1, 1, 0), -1);
+  assert_int_equal(mcor_view_priority("Velocity", 3, 1, 0), -1);
+  assert_int_equal(mcor_view_priority("Idp", 1, 0, 1), -1);
+  assert_int_equal(mcor_view_priority("ParticleType", 1, 1, 1), -1);
+  assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
   (void)state;
 }
 

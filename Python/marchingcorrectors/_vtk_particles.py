@@ -282,8 +282,6 @@ class Particles:
         for quantity, value in self.values.items():
             view = c.mcor_array(constant=value) if isinstance(value, float) else self.view(result, value)
             setattr(result.input, quantity, view)
-            if hasattr(result.input, "has_" + quantity):
-                setattr(result.input, "has_" + quantity, 1)
         if self.scalar is not None:
             result.input.scalar = self.view(result, self.scalar)
             several = self.scalar.GetNumberOfComponents() > 1

@@ -152,7 +152,6 @@ const core_cut core_cuts[CORE_CUTS] = {
 
 void core_set_box(mcor_options* options, const core_cut* cut, const int at[3])
 {
-  options->has_box = 1;
   for (int a = 0; a < 3; ++a)
   {
     options->box[2 * a] = at[a] == 0 ? -INFINITY : cut->at[a][at[a] - 1];

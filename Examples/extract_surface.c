@@ -106,7 +106,6 @@ static int extract_both(mcor_context* context, const char* free_surface, const c
   input.positions = (mcor_array){ .data = positions, .components = 3 };
   input.smoothing_length.constant = 1.3 * SPACING;
   input.volume.constant = SPACING * SPACING * SPACING;
-  input.has_volume = 1;
   input.scalar = (mcor_array){ .data = temperatures, .components = 1 };
 
   mcor_options options;

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes what the Python package must know of the C sources, so that it stands there alone.
 
-    make_structs.py mcor.h FOLDER
+    make_structs.py mcor_parts.h mcor.h FOLDER
 
 _structs.py: the structures and enumerations of mcor.h for ctypes, and what its comments say of the shapes
 of arrays. check_structs.c: that the C compiler lays the structures out alike. exports.map: the functions that
@@ -17,6 +17,8 @@ NUMBERS = {
     "int": "c_int", "double": "c_double", "float": "c_float", "char": "c_char",
     "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
 }
+
+STRUCT = re.compile(r"^  (?:typedef )?struct (\w+)\s*\{(.*?)\n  \}\s*(\w*);", re.S | re.M)
 
 
 def fail(sentence):
@@ -33,8 +35,8 @@ class Header:
         self.enums, self.structs = {}, {}
         for body, name in re.findall(r"typedef enum \w+\s*\{(.*?)\}\s*(\w+);", text, re.S):
             self.enums[name] = self.read_enum(without_comments(body))
-        for body, name in re.findall(r"typedef struct \w+\s*\{(.*?)\n  \}\s*(\w+);", text, re.S):
-            self.structs[name] = self.read_struct(body)
+        for tag, body, name in re.findall(STRUCT, text):
+            self.structs[name or tag] = self.read_struct(body)
         self.functions = sorted(set(
             re.findall(r"^  [\w \*]+?\b(mcor_\w+)\(", without_comments(text), re.M)))
 
@@ -132,7 +134,7 @@ def c_checks(module, header):
     scope = {}
     exec(compile(module, "_structs.py", "exec"), scope)  # what was just written
     lines = ["/* Made by make_structs.py: Python's layout of the structures is the compiler's. */",
-             '#include "mcor.h"', "#include <stddef.h>", ""]
+             '#include "mcor_parts.h"', "#include <stddef.h>", ""]
     for struct, fields in header.structs.items():
         lines.append(f'_Static_assert(sizeof({struct}) == {ctypes.sizeof(scope[struct])}, "{struct}");')
         for name, *_ in fields:
@@ -142,8 +144,8 @@ def c_checks(module, header):
 
 
 def main():
-    header = Header(Path(sys.argv[1]).read_text(encoding="utf-8"))
-    folder = Path(sys.argv[2])
+    header = Header("".join(Path(name).read_text(encoding="utf-8") for name in sys.argv[1:-1]))
+    folder = Path(sys.argv[-1])
     folder.mkdir(parents=True, exist_ok=True)
     module = python_module(header)
     (folder / "_structs.py").write_text(module, encoding="utf-8")

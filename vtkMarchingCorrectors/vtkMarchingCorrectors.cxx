@@ -126,21 +126,22 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.topology = this->Topology == TOPOLOGY_FIELD ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   options.cube_size_factor = this->CubeSizeFactor;
   options.cube_size = this->CubeSize;
-  options.cube_size_mode =
-    this->CubeSizeMode == ADAPTIVE ? MCOR_CUBES_ADAPTIVE : MCOR_CUBES_UNIFORM;
-  options.level_limit = this->CubeLevelLimit;
-  options.has_box = this->UseBox;
-  std::copy(this->Box, this->Box + 6, options.box);
+  options.level_limit = this->CubeSizeMode == ADAPTIVE ? this->CubeLevelLimit : 0;
+  if (this->UseBox)
+  {
+    std::copy(this->Box, this->Box + 6, options.box);
+    // Of zeros, it is no box to the core; here it is one that was not thought of, and is refused.
+    options.box[0] += mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
+  }
   options.capping = this->Capping;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
     ? MCOR_BOUNDARY_EIGENVALUE
     : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->Trim ? this->VertexThreshold : 0.0;
-  const double share = this->WallShare == 0.0 ? MCOR_WALL_SHARE_MEASURED : this->WallShare;
   const bool endsAtSolids =
     this->UsedSolids == SOLIDS_WALL || (this->UsedSolids == SOLIDS_AUTO && !this->FreeSurface);
-  options.wall_share = endsAtSolids && (this->Trim || this->FreeSurface) ? share : 0.0;
+  options.wall_share = endsAtSolids && (this->Trim || this->FreeSurface) ? this->WallShare : 0.0;
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;

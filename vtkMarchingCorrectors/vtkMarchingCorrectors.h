@@ -303,7 +303,7 @@ public:
    * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
    * for all, the same as UNIFORM. TOPOLOGY_FIELD decides between cubes that no finer one touches.
    * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The statistics have
-   * CellsOfLevel, TrianglesOfLevel, FlatCaps, and HighestLevel, to which periods may limit it.
+   * CellsOfLevel, TrianglesOfLevel, FlatLoops, and HighestLevel, to which periods may limit it.
    */
   vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   vtkGetMacro(CubeSizeMode, int);
@@ -457,11 +457,12 @@ public:
 
   ///@{
   /**
-   * Where the surface ends at solids, below 1. 0, the default: measured, as the solids' share at those solids that face the
-   * fluid, in the median, so that the surface of a scalar ends there; the free surface, which keeps in
-   * front of them, takes 0.5. With 0.5 it ends where solids weigh more than the fluid, about half way
-   * between the wall's and the fluid's particles. More is farther into the wall. GetRunStatistics() has the
-   * one in use.
+   * Where the surface ends at solids: their share of the weight sum there, above 0 and below 1; 0: it does
+   * not end at them. -1, the default: measured, as the solids' share at those solids that face the fluid,
+   * in the median, so that the surface of a scalar ends there; the free surface, which keeps in front of
+   * them, takes 0.5. With 0.5 it ends where solids weigh more than the fluid, about half way between the
+   * particles of the wall and those of the fluid; a greater share is farther into the wall.
+   * GetRunStatistics() has the one in use.
    */
   vtkSetMacro(WallShare, double);
   vtkGetMacro(WallShare, double);
@@ -652,7 +653,7 @@ protected:
   int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;
   int UsedSolids = SOLIDS_AUTO; ///< unless they are ignored
-  double WallShare = 0.0;
+  double WallShare = -1.0;
 
   vtkTypeBool ComputeNormals = 1;
   vtkTypeBool ComputeGradients = 0;

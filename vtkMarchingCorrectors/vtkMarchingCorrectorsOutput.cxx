@@ -33,10 +33,10 @@ void AddArrayName(vtkFieldData* data, const char* name, const mcor_array& array)
 }
 
 // The array's name, or the value for all particles where it was used.
-void AddQuantity(vtkFieldData* data, const std::string& name, int given, const mcor_array& array)
+void AddQuantity(vtkFieldData* data, const std::string& name, const mcor_array& array)
 {
   AddArrayName(data, (name + "Array").c_str(), array);
-  if (given && !array.data)
+  if (!array.data && mcor_is_given(&array))
   {
     vtkSPHAddReal(data, name.c_str(), { array.constant });
   }
@@ -316,11 +316,11 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "SeedCells", { s.seed_cells });
   vtkSPHAddCount(fieldData, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
   vtkSPHAddCount(fieldData, "CellsUsed", { s.cells_used });
-  if (this->Options.cube_size_mode == MCOR_CUBES_ADAPTIVE)
+  if (this->Options.level_limit > 0)
   {
     AddLevels(fieldData, "CellsOfLevel", s.cells_of_level);
     AddLevels(fieldData, "TrianglesOfLevel", s.triangles_of_level);
-    vtkSPHAddCount(fieldData, "FlatCaps", { s.flat_caps });
+    vtkSPHAddCount(fieldData, "FlatLoops", { s.flat_loops });
     vtkSPHAddCount(fieldData, "HighestLevel", { s.highest_level });
   }
   vtkSPHAddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });
@@ -360,8 +360,8 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddCount(
     fieldData, "EstimateSmoothingLength", { this->Input.Core.estimate_smoothing_length });
   AddArrayName(fieldData, "VolumeArray", this->Input.Core.volume);
-  AddQuantity(fieldData, "Mass", this->Input.Core.has_mass, this->Input.Core.mass);
-  AddQuantity(fieldData, "Density", this->Input.Core.has_density, this->Input.Core.density);
+  AddQuantity(fieldData, "Mass", this->Input.Core.mass);
+  AddQuantity(fieldData, "Density", this->Input.Core.density);
   vtkSPHAddText(
     fieldData, "FluidArray", this->Input.Fluid ? this->Input.Choice.FluidArrayName : "");
   if (this->Input.Fluid)
@@ -375,7 +375,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddText(fieldData, "Topology", o.topology == MCOR_TOPOLOGY_FIELD ? "field" : "table");
   vtkSPHAddText(fieldData, "Precision", o.precision == MCOR_FLOAT64 ? "double" : "single");
   vtkSPHAddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
-  if (o.cube_size_mode == MCOR_CUBES_ADAPTIVE)
+  if (o.level_limit > 0)
   {
     vtkSPHAddText(fieldData, "CubeSizeMode", "adaptive");
     vtkSPHAddCount(fieldData, "CubeLevelLimit", { o.level_limit });
@@ -386,7 +386,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAddReal(fieldData, "PeriodicBounds", { p[0], p[1], p[2], p[3], p[4], p[5] });
     vtkSPHAddCount(fieldData, "Capping", { o.capping });
   }
-  if (o.has_box)
+  if (mcor_has_box(&o))
   {
     vtkSPHAddReal(fieldData, "Box", { o.box[0], o.box[1], o.box[2], o.box[3], o.box[4], o.box[5] });
   }

@@ -24,7 +24,7 @@ double ValueOf(const mcor_array& array, std::int64_t i)
 bool IsDrawn(const mcor_input& input, const mcor_options& options, std::int64_t i)
 {
   bool isIn = true;
-  for (int a = 0; options.has_box && a < 3; ++a)
+  for (int a = 0; mcor_has_box(&options) && a < 3; ++a)
   {
     const double x = ValueOf(input.positions, 3 * i + a);
     isIn = isIn && x >= options.box[2 * a] && x < options.box[2 * a + 1];
@@ -66,13 +66,12 @@ double vtkMarchingCorrectorsEstimateCells(
 {
   // In units of the smoothing length or, as a factor of it, the support radius.
   double cubes = 0.0;
-  const bool isAdaptive = options.cube_size_mode == MCOR_CUBES_ADAPTIVE;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])
     {
       double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
-      for (int level = 0; isAdaptive && level < options.level_limit && h >= 2.0 * least; ++level)
+      for (int level = 0; level < options.level_limit && h >= 2.0 * least; ++level)
       {
         h *= 0.5; // its cubes are larger
       }
@@ -115,14 +114,14 @@ std::string vtkMarchingCorrectorsDescribeSmoothingLength(
 //------------------------------------------------------------------------------
 std::string vtkMarchingCorrectorsDescribeVolume(const mcor_input& input)
 {
-  if (input.has_volume)
+  if (mcor_is_given(&input.volume))
   {
     return Name(input.volume);
   }
-  if (input.has_mass)
+  if (mcor_is_given(&input.mass))
   {
     return Name(input.mass) + " / " +
-      (input.has_density ? Name(input.density) : "density summed from it");
+      (mcor_is_given(&input.density) ? Name(input.density) : "density summed from it");
   }
   return "computed from the positions";
 }

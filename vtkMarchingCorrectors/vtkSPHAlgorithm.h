@@ -427,7 +427,7 @@ protected:
 
   /**
    * The first one. Where none was named, the active scalars if they are fit to be looked at, see
-   * mcor_view_rank(), else the array that is fittest.
+   * mcor_view_priority(), else the array that is fittest.
    */
   vtkSPHRequest FindFirstRequest(vtkPointSet* particles);
   /** The same on all ranks together; these are one's own. */

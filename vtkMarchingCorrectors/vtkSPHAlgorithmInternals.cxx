@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHAlgorithmInternals.h"
 
+#include "mcor_parts.h"
 #include "vtkSPHParticles.h"
 
 //------------------------------------------------------------------------------

@@ -51,7 +51,7 @@ PROPERTIES = {
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
     "DetectFluid": (0, "flag"), "Blocks": (0, "int", 0, 1),
-    "WallShare": (0.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
+    "WallShare": (-1.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
     "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
     "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
     "ComputeCorrectionLength": (0, "flag"), "ComputeResidual": (0, "flag"), "ComputeBoundaryFlag": (0, "flag"),
@@ -350,14 +350,15 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options.topology = choice.Topology
         options.boundary_detection = choice.BoundaryDetection if choice.Trim else 0
         options.cube_size_factor, options.cube_size = choice.CubeSizeFactor, choice.CubeSize
-        options.cube_size_mode, options.level_limit = choice.CubeSizeMode, choice.CubeLevelLimit
-        options.has_box, options.box[:] = choice.UseBox, choice.Box
+        options.level_limit = choice.CubeLevelLimit if choice.CubeSizeMode else 0  # adaptive
+        if choice.UseBox:
+            options.box[:] = choice.Box if any(choice.Box) else (5e-324, 0, 0, 0, 0, 0)  # refused, see the C++ filter
         options.periodic[:], options.capping = choice.PeriodicBounds, choice.Capping
         options.node_threshold = choice.NodeThreshold
         options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
         ends = (choice.Trim or choice.FreeSurface) and (choice.UsedSolids == 2 or (
             choice.UsedSolids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
-        options.wall_share = 0.0 if not ends else choice.WallShare or -1.0  # measured
+        options.wall_share = choice.WallShare if ends else 0.0
         options.preview, options.tolerance = choice.Preview, choice.Tolerance
         options.iteration_limit = choice.IterationLimit
         options.memory_limit = choice.DeviceMemoryLimit << 20

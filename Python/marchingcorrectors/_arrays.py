@@ -129,8 +129,6 @@ class Arguments:
             if values is None:
                 continue
             setattr(self.input, name, self.per_particle(values, name.replace("_", " "), constant=True))
-            if hasattr(self.input, "has_" + name):
-                setattr(self.input, "has_" + name, 1)
 
     def set_solid(self, solid):
         if solid is None:
@@ -204,9 +202,9 @@ def set_option(target, name, kind, value):
         values = np.ravel(contiguous(value, f"list of numbers of {name}"))
         if len(values) != len(getattr(target, name)):
             raise InvalidArgument(f"{name} has {len(getattr(target, name))} numbers, not {len(values)}.")
+        if name == "box" and not values.any():
+            raise InvalidArgument("The box has no extent: all of its numbers are 0.")
         getattr(target, name)[:] = values.tolist()
-    if hasattr(target, "has_" + name):
-        setattr(target, "has_" + name, int(value is not None))
 
 
 def convert(to, name, value):

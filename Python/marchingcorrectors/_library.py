@@ -67,10 +67,10 @@ def _open():
         "mcor_free_derivatives": (None, [pointer(c.mcor_derivatives)]),
         "mcor_decompose_gradients": (ctypes.c_int, [pointer(ctypes.c_double), ctypes.c_int64,
                                                     pointer(c.mcor_flow)]),
-        "mcor_name_rank": (ctypes.c_int, [ctypes.c_int, ctypes.c_char_p]),
+        "mcor_name_priority": (ctypes.c_int, [ctypes.c_int, ctypes.c_char_p]),
         "mcor_find_fluid_value": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_double, ctypes.c_double,
                                                  pointer(ctypes.c_double)]),
-        "mcor_view_rank": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_int]),
+        "mcor_view_priority": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_int]),
         "mcor_find_iso_value": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_ranks),
                                                pointer(ctypes.c_double), pointer(ctypes.c_double)]),
     }

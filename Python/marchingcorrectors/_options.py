@@ -23,7 +23,6 @@ class Options(TypedDict, total=False):
     h_scale: float
     cube_size_factor: float
     cube_size: float
-    cube_size_mode: Literal["uniform", "adaptive"]
     level_limit: int
     node_threshold: float
     boundary_detection: Literal["weight_sum", "eigenvalue"]
@@ -69,8 +68,8 @@ WORDS = {
     "h_scale": "the kernel uses this times the smoothing length; below 1 it smooths less. Volumes do not change.",
     "cube_size_factor": "edge of the smallest cubes of the marching grid, in smallest smoothing lengths.",
     "cube_size": "the same in the unit of the positions; 0: the factor counts.",
-    "cube_size_mode": "cubes as fine as the particles are, or all of the smallest size.",
-    "level_limit": "how often adaptive cubes may double in size, 0 to 24.",
+    "level_limit": "cubes are as fine as the particles are: how often they may double in size, 0 to 24. 0: all of the "
+                   "smallest size.",
     "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): points of a lower one are not "
                       "valid.",
     "boundary_detection": "what tells where the fluid ends: the sum of the weights, or the smallest eigenvalue of the "

@@ -81,7 +81,7 @@ def join_array(blocks, walls, like, total):
     joined.CopyComponentNames(like)
     joined.SetNumberOfTuples(total)
     at = 0
-    kind = lib.mcor_name_rank(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], name_of(like).encode()) >= 0
+    kind = lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], name_of(like).encode()) >= 0
     for block, wall in zip(blocks, walls):
         count = block.GetNumberOfPoints()
         if has_array(block, like):

@@ -56,7 +56,7 @@ def detect(data, count, quantity):
         array = data.GetArray(i)
         if array is None or array.GetNumberOfComponents() != 1 or array.GetNumberOfTuples() != count:
             continue
-        rank = lib.mcor_name_rank(number, name_of(array).encode())
+        rank = lib.mcor_name_priority(number, name_of(array).encode())
         if rank >= 0 and (best is None or rank < best[0]):
             best = (rank, array)
     return best[1] if best else None
@@ -89,7 +89,7 @@ def describe_missing_length(data):
 def rank_of(array):
     """How fit it is to be looked at where nobody has chosen an array; -1: not."""
     varies = any(low < high for low, high in map(array.GetRange, range(array.GetNumberOfComponents())))
-    return lib.mcor_view_rank(name_of(array).encode(), array.GetNumberOfComponents(), is_real(array), varies)
+    return lib.mcor_view_priority(name_of(array).encode(), array.GetNumberOfComponents(), is_real(array), varies)
 
 
 def choose_array(data, names=None):
@@ -105,7 +105,7 @@ def list_types(data):
     """Arrays that tell kinds of particles apart, by their names, the most usual first."""
     number = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
     arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
-    ranks = [(lib.mcor_name_rank(number, name_of(array).encode()), i) for i, array in enumerate(arrays)
+    ranks = [(lib.mcor_name_priority(number, name_of(array).encode()), i) for i, array in enumerate(arrays)
              if array is not None and array.GetNumberOfComponents() == 1]
     return [arrays[i] for rank, i in sorted(ranks) if rank >= 0]
 
@@ -282,8 +282,6 @@ class Particles:
         for quantity, value in self.values.items():
             view = c.mcor_array(constant=value) if isinstance(value, float) else self.view(result, value)
             setattr(result.input, quantity, view)
-            if hasattr(result.input, "has_" + quantity):
-                setattr(result.input, "has_" + quantity, 1)
         if self.scalar is not None:
             result.input.scalar = self.view(result, self.scalar)
             several = self.scalar.GetNumberOfComponents() > 1

@@ -22,7 +22,7 @@ def estimate_cells(particles, options):
     h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
     h = h[fluid].astype(np.float64)
     drawn = is_drawn(to_numpy(particles.positions), options)[fluid]
-    if options.cube_size_mode:  # cubes are larger where particles are
+    if options.level_limit:  # cubes are larger where particles are
         h /= 2 ** np.minimum(np.floor(np.log2(h / h.min())), options.level_limit)
     radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated
     per_length = 1 / lib.mcor_support_factor(options.sph_kernel) if radius else 1.0
@@ -33,7 +33,11 @@ def estimate_cells(particles, options):
 def is_drawn(positions, options):
     """Which particles are where cells are drawn."""
     low, high = np.array(options.box[:]).reshape(3, 2).T
-    return ((positions >= low) & (positions < high)).all(1) | (not options.has_box)
+    return ((positions >= low) & (positions < high)).all(1) | (not any(options.box))
+
+
+def is_given(array):
+    return bool(array.data or array.constant)
 
 
 def describe(array):
@@ -51,10 +55,10 @@ def describe_smoothing_length(given, statistics):
 
 
 def describe_volume(given):
-    if given.has_volume:
+    if is_given(given.volume):
         return describe(given.volume)
-    if given.has_mass:
-        return f"{describe(given.mass)} / {describe(given.density) if given.has_density else 'density summed from it'}"
+    if is_given(given.mass):
+        return f"{describe(given.mass)} / {describe(given.density) if is_given(given.density) else 'density summed from it'}"
     return "computed from the positions"
 
 

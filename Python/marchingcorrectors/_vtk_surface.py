@@ -169,10 +169,10 @@ def add_statistics(data, s, surface, options):
     for name in ("virtual_cells", "seed_cells", "seed_cells_not_intersected", "cells_used", "ambiguous_faces",
                  "joined_faces", "ambiguous_cells", "tunnels"):
         add_count(data, camel(name), s[name])
-        if name == "cells_used" and options.cube_size_mode:
+        if name == "cells_used" and options.level_limit:
             add_levels(data, "CellsOfLevel", s["cells_of_level"])
             add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
-            add_count(data, "FlatCaps", s["flat_caps"])
+            add_count(data, "FlatLoops", s["flat_loops"])
             add_count(data, "HighestLevel", s["highest_level"])
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
@@ -192,10 +192,10 @@ def add_statistics(data, s, surface, options):
     add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
 
 
-def add_quantity(data, name, given, array):
+def add_quantity(data, name, array):
     """The array's name, or the value for all particles where it was used."""
     add_text(data, name + "Array", (array.name or b"").decode())
-    if given and not array.data:
+    if not array.data and array.constant:
         add_real(data, name, array.constant)
 
 
@@ -207,8 +207,8 @@ def add_parameters(data, particles, arguments, wall_share):
     add_count(data, "SmoothingLengthIsSupportRadius", core.smoothing_length_is_support_radius)
     add_count(data, "EstimateSmoothingLength", core.estimate_smoothing_length)
     add_text(data, "VolumeArray", (core.volume.name or b"").decode())
-    add_quantity(data, "Mass", core.has_mass, core.mass)
-    add_quantity(data, "Density", core.has_density, core.density)
+    add_quantity(data, "Mass", core.mass)
+    add_quantity(data, "Density", core.density)
     add_text(data, "FluidArray", choice.FluidArrayName if particles.fluid is not None else "")
     if particles.fluid is not None:
         add_real(data, "FluidValue", choice.FluidValue)
@@ -219,10 +219,10 @@ def add_parameters(data, particles, arguments, wall_share):
     add_text(data, "Topology", ("table", "field")[o.topology])
     add_text(data, "Precision", ("single", "double")[o.precision])
     add_real(data, "CubeSizeFactor", o.cube_size_factor)
-    if o.cube_size_mode:
+    if o.level_limit:
         add_text(data, "CubeSizeMode", "adaptive")
         add_count(data, "CubeLevelLimit", o.level_limit)
-    if o.has_box:
+    if any(o.box):
         add_real(data, "Box", *o.box)
     if any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3)):
         add_real(data, "PeriodicBounds", *o.periodic)

@@ -161,7 +161,6 @@ mcor_input core_input(const core_set* set)
     .positions = core_array(set->position, 3),
     .smoothing_length = core_array(set->smoothing_length, 1),
     .volume = core_array(set->volume, 1),
-    .has_volume = 1,
     .scalar = core_array(set->scalar, 1),
     .solid = set->has_solids ? set->solid : NULL };
 }
@@ -178,8 +177,8 @@ mcor_options core_options(const double* iso)
 {
   mcor_options options;
   mcor_set_default_options(&options);
-  options.wall_share = 0; /* ends nothing, unless a test says so */
-  options.cube_size_mode = MCOR_CUBES_UNIFORM; /* where a test does not ask for others */
+  options.wall_share = 0;  /* ends nothing, unless a test says so */
+  options.level_limit = 0; /* where a test does not ask for others */
   options.iso_values = iso;
   options.iso_count = 1;
   return options;

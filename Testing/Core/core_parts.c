@@ -152,7 +152,6 @@ const core_cut core_cuts[CORE_CUTS] = {
 
 void core_set_box(mcor_options* options, const core_cut* cut, const int at[3])
 {
-  options->has_box = 1;
   for (int a = 0; a < 3; ++a)
   {
     options->box[2 * a] = at[a] == 0 ? -INFINITY : cut->at[a][at[a] - 1];
@@ -187,7 +186,7 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
     cells += part.statistics.cells_used;
     triangles += part.statistics.triangles_before_trimming;
     virtual_cells += part.statistics.virtual_cells;
-    caps += part.statistics.flat_caps;
+    caps += part.statistics.flat_loops;
     for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
     {
       cells_of_level[l] += part.statistics.cells_of_level[l];
@@ -201,7 +200,7 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
   assert_int_equal(cells, whole->statistics.cells_used);
   assert_int_equal(triangles, whole->statistics.triangles_before_trimming);
   assert_int_equal(virtual_cells, whole->statistics.virtual_cells);
-  assert_int_equal(caps, whole->statistics.flat_caps);
+  assert_int_equal(caps, whole->statistics.flat_loops);
   assert_memory_equal(cells_of_level, whole->statistics.cells_of_level, sizeof cells_of_level);
   assert_memory_equal(
     triangles_of_level, whole->statistics.triangles_of_level, sizeof triangles_of_level);

@@ -157,8 +157,10 @@ void core_run_ranks(int count, core_rank_body body, void* data, core_world* worl
   {
     threads[r] =
       (core_thread){ .rank = { .world = world, .number = r }, .body = body, .data = data };
-    threads[r].rank.ranks =
-      (mcor_ranks){ reduce_doubles, reduce_counts, gather, &threads[r].rank, NULL };
+    threads[r].rank.ranks = (mcor_ranks){ .reduce_doubles = reduce_doubles,
+      .reduce_counts = reduce_counts,
+      .gather = gather,
+      .user = &threads[r].rank };
     if (pthread_create(&ids[r], NULL, run_rank, &threads[r]) != 0)
     {
       abort();

@@ -5,7 +5,7 @@
 
 /* Threads as ranks. */
 
-#include "mcor.h"
+#include "mcor_parts.h"
 
 #include <pthread.h>
 

@@ -54,7 +54,7 @@ static int rooms_surface(
   }
   rooms_print(context, name, surface.triangle_count, core_hash(&surface));
   const int good = status == MCOR_OK && surface.triangle_count > 0 &&
-    (levels > 1 || options->cube_size_mode == MCOR_CUBES_UNIFORM) &&
+    (levels > 1 || options->level_limit == 0) &&
     (surface.statistics.cap_triangles > 0 || !options->capping);
   mcor_free_surface(&surface);
   return good;
@@ -74,7 +74,7 @@ static mcor_options rooms_options(mcor_field field)
 static int rooms_adaptive(mcor_context* context, const mcor_input* input)
 {
   mcor_options options = rooms_options(MCOR_WEIGHT_SUM);
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   int good = rooms_surface(context, "adaptive, free surface", input, &options);
   options.iso_values = rooms_isos;
   options.field = MCOR_SHEPARD;
@@ -82,7 +82,6 @@ static int rooms_adaptive(mcor_context* context, const mcor_input* input)
   options.wall_share = 0.5;
   options.vertex_threshold = 0.3;
   good = rooms_surface(context, "adaptive, scalar", input, &options) && good;
-  options.has_box = 1;
   for (int s = 0; s < 6; ++s)
   {
     options.box[s] = s % 2 == 0 ? -10 : (s == 1 ? 14 : 20);
@@ -97,13 +96,13 @@ static int rooms_uniform(mcor_context* context, const mcor_input* input)
   fine.count = 27;
   options.cube_size_factor = 0.6;
   options.vertex_threshold = 0.1;
-  options.has_box = 1;
   for (int s = 0; s < 6; ++s)
   {
     options.box[s] = s % 2 == 0 ? -3 : (s == 1 ? 1 : 5);
   }
   const int good = rooms_surface(context, "box", &fine, &options);
-  options.has_box = options.point_keys = options.triangle_keys = 0;
+  memset(options.box, 0, sizeof options.box);
+  options.point_keys = options.triangle_keys = 0;
   options.field = MCOR_WEIGHT_SUM;
   options.iso_values = &rooms_weight;
   options.capping = 1;

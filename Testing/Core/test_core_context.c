@@ -162,12 +162,11 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
 {
   const double inside = at->boundary == MCOR_BOUNDARY_EIGENVALUE ? -10 : 1;
   const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : inside;
+  const mcor_array none = { 0 };
   mcor_input input = core_input(set);
-  input.mass = input.volume;
-  input.density = input.smoothing_length;
-  input.has_volume = at->volumes == 0;
-  input.has_mass = at->volumes == 1 || at->volumes == 2;
-  input.has_density = at->volumes == 1;
+  input.mass = at->volumes == 1 || at->volumes == 2 ? input.volume : none;
+  input.density = at->volumes == 1 ? input.smoothing_length : none;
+  input.volume = at->volumes == 0 ? input.volume : none;
   input.estimate_smoothing_length = at->estimate;
   mcor_options options = core_options(&iso);
   ask_for_all(&options);
@@ -384,7 +383,8 @@ static void test_statistics(void** state)
 static void test_lanes(void** state)
 {
   mcor_context* context = *state;
-  if (!context->cl.is_cpu || getenv("MCOR_LANES") || strcmp(context->cl.platform_name, "built in") == 0)
+  if (!context->cl.is_cpu || getenv("MCOR_LANES") ||
+    strcmp(context->cl.platform_name, "built in") == 0)
   {
     skip();
   }

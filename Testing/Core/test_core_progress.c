@@ -148,7 +148,7 @@ static void test_long_launches_are_cut(void** state)
   mcor_options options = core_options(&half);
   options.field = MCOR_WEIGHT_SUM;
   options.h_scale = 5;
-  options.cube_size_mode = MCOR_CUBES_UNIFORM;
+  options.level_limit = 0;
   options.progress = on_progress;
   cancel_at whole = { .stop_at = -1 }, cut = whole;
   context->cl.units = 1 << 30;

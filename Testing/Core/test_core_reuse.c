@@ -82,10 +82,8 @@ static void set_base(reuse_call* call, reuse_base base)
   if (base == REUSE_MASS || base == REUSE_MASS_ONLY)
   {
     in->mass = base == REUSE_MASS ? one : core_array(call->set.volume, 1);
-    in->density = one;
-    in->has_volume = 0;
-    in->has_mass = 1;
-    in->has_density = base == REUSE_MASS;
+    in->density = base == REUSE_MASS ? one : (mcor_array){ 0 };
+    in->volume = (mcor_array){ 0 };
     in->ignore_solids = base == REUSE_MASS;
   }
   if (base == REUSE_VECTOR)
@@ -146,13 +144,13 @@ STEP(estimate, c->input.estimate_smoothing_length = 1)
 STEP(volume, c->input.volume = (mcor_array){ .constant = 0.9 })
 STEP(volume_constant, c->input.volume.constant = 0.9)
 STEP(volume_array, c->input.volume = core_array(c->set.volume, 1))
-STEP(no_volume, c->input.has_volume = 0)
+STEP(no_volume, c->input.volume = (mcor_array){ 0 })
 STEP(mass, c->input.mass = core_array(c->set.volume, 1))
 STEP(mass_constant, c->input.mass.constant = 0.9)
-STEP(no_mass, c->input.has_mass = 0)
+STEP(no_mass, c->input.mass = (mcor_array){ 0 })
 STEP(density, c->input.density = core_array(c->set.volume, 1))
 STEP(density_constant, c->input.density.constant = 1.1)
-STEP(no_density, c->input.has_density = 0)
+STEP(no_density, c->input.density = (mcor_array){ 0 })
 STEP(scalar, c->input.scalar = core_array(c->other.scalar, 1); c->input.scalar_version = 8)
 STEP(scalar_unversioned, c->input.scalar = core_array(c->other.scalar, 1);
      c->input.scalar_version = 0)
@@ -185,7 +183,7 @@ STEP(tolerance, c->options.tolerance = 1e-2)
 STEP(iteration_limit, c->options.iteration_limit = 1)
 STEP(precision, c->options.precision = MCOR_FLOAT64)
 STEP(memory_limit, c->options.memory_limit = INT64_C(1) << 40)
-STEP(box, c->options.has_box = 1; c->options.box[0] = c->options.box[2] = c->options.box[4] = -1.5;
+STEP(box, c->options.box[0] = c->options.box[2] = c->options.box[4] = -1.5;
      c->options.box[1] = c->options.box[3] = c->options.box[5] = 2.5)
 STEP(periodic, c->options.periodic[0] = c->options.periodic[2] = -4;
      c->options.periodic[1] = c->options.periodic[3] = 4)

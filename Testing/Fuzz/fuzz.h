@@ -3,7 +3,7 @@
 #ifndef fuzz_h
 #define fuzz_h
 
-#include "mcor.h"
+#include "mcor_parts.h"
 
 #include <stddef.h>
 #include <stdint.h>

@@ -124,10 +124,11 @@ static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
 /* Which of the arrays play which part. */
 static void fuzz_parts(unsigned rules, fuzz_call* call)
 {
+  const mcor_array none = { 0 };
   mcor_input* in = &call->input;
-  in->has_volume = rules & 1;
-  in->has_mass = rules >> 1 & 1;
-  in->has_density = rules >> 2 & 1;
+  in->volume = rules & 1 ? in->volume : none;
+  in->mass = rules >> 1 & 1 ? in->mass : none;
+  in->density = rules >> 2 & 1 ? in->density : none;
   in->ignore_solids = rules >> 3 & 1;
   call->attributes[0] = in->scalar;
   call->attributes[1] = in->positions;
@@ -386,17 +387,16 @@ static void fuzz_change(unsigned what, fuzz_call* call)
       in->estimate_smoothing_length = !in->estimate_smoothing_length;
       break;
     case 16:
-      in->has_volume = !in->has_volume;
+      in->volume = mcor_is_given(&in->volume) ? (mcor_array){ 0 } : in->smoothing_length;
       break;
     case 17:
-      in->has_mass = !in->has_mass;
+      in->mass = mcor_is_given(&in->mass) ? (mcor_array){ 0 } : in->smoothing_length;
       break;
     case 18:
-      in->has_density = !in->has_density;
+      in->density = mcor_is_given(&in->density) ? (mcor_array){ 0 } : in->smoothing_length;
       break;
     case 19:
-      o->cube_size_mode =
-        o->cube_size_mode == MCOR_CUBES_ADAPTIVE ? MCOR_CUBES_UNIFORM : MCOR_CUBES_ADAPTIVE;
+      o->level_limit = o->level_limit ? 0 : MCOR_CUBE_LEVELS - 1;
       break;
     case 20:
       o->level_limit = o->level_limit ? o->level_limit - 1 : 3;

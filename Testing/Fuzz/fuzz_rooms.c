@@ -22,8 +22,7 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
 {
   static const double shares[] = { 0.5, 0.1, 0.9, 1e-3, 0.999999, 1, -1, NAN };
   mcor_options* o = &call->options;
-  o->has_box = rooms & 1;
-  for (int a = 0; a < 3 && o->has_box; ++a)
+  for (int a = 0; a < 3 && rooms & 1; ++a)
   {
     o->box[2 * a] = fuzz_side(bytes);
     o->box[2 * a + 1] = o->box[2 * a] + fabs(fuzz_side(bytes));
@@ -39,7 +38,6 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   if (rooms >> 6 & 1)
   {
     const unsigned b = fuzz_byte(bytes);
-    o->cube_size_mode = (mcor_cube_size_mode)(b == 255 ? 2 : 1);
     o->level_limit = (int)(b % 29) - 2;
     o->point_keys = b > 250;
     o->triangle_keys = b > 251;
@@ -63,17 +61,6 @@ static void fuzz_check_alike(
   fuzz_check_same(&surfaces[0], &surfaces[1]);
   mcor_free_surface(&surfaces[0]);
   mcor_free_surface(&surfaces[1]);
-}
-
-/* Levels that are not allowed are uniform cubes. */
-static void fuzz_one_level(const fuzz_call* call)
-{
-  mcor_options uniform = call->options, adaptive = call->options;
-  adaptive.seeds = uniform.seeds = MCOR_COMPLETE;
-  adaptive.cube_size_mode = MCOR_CUBES_ADAPTIVE;
-  adaptive.level_limit = uniform.level_limit = 0;
-  uniform.cube_size_mode = MCOR_CUBES_UNIFORM;
-  fuzz_check_alike(call, &adaptive, &uniform);
 }
 
 /* A run with globals measured of its own input is a run without. */
@@ -106,12 +93,11 @@ static void fuzz_halves(const fuzz_call* call)
   for (int part = 0; part < 3; ++part)
   {
     mcor_surface surface;
-    options.has_box = part > 0;
     for (int s = 0; s < 6; ++s)
     {
-      options.box[s] = s % 2 == 0 ? -INFINITY : INFINITY;
+      options.box[s] = part == 0 ? 0 : s % 2 == 0 ? -INFINITY : INFINITY;
     }
-    options.box[part == 1] = part == 0 ? -INFINITY : call->iso[0];
+    options.box[part == 1] = part == 0 ? 0 : call->iso[0];
     if (mcor_extract(context, &call->input, &options, &surface) != MCOR_OK)
     {
       return; /* one may need more memory than another */
@@ -179,7 +165,7 @@ static void fuzz_ranks(unsigned failing, const fuzz_call* call)
   mcor_surface alone, surface;
   if (options.seeds == MCOR_PAIRS)
   {
-    options.has_box = 0; /* without ranks there is none */
+    memset(options.box, 0, sizeof options.box); /* without ranks there is none */
   }
   mcor_status expected = mcor_extract(context, &call->input, &options, &alone);
   expected = expected == MCOR_OK && call->input.count == 0 ? MCOR_INVALID_DATA : expected;
@@ -309,10 +295,6 @@ void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   if (rooms >> 5 & 1)
   {
     fuzz_derive(bytes, call);
-  }
-  if (rooms >> 6 & 1)
-  {
-    fuzz_one_level(call);
   }
   if (rooms >> 7 & 1)
   {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the core and the fuzz target with clang's fuzzer, address and undefined behavior sanitizers,
-# and runs them. New findings are written to BUILD_DIR/found; a finding is worth keeping in corpus/.
+# and runs them. New findings are written to BUILD_DIR/found; a finding is worth keeping in corpus/found/.
 #
 #   Testing/Fuzz/run-fuzzer.sh [SECONDS] [BUILD_DIR] [CLANG]       (60, build-fuzz, clang)
 #

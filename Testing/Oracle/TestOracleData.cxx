@@ -130,9 +130,9 @@ bool FillInput(
   std::memset(&input, 0, sizeof(input));
   input.count = particles->GetNumberOfPoints();
   input.positions = BorrowArray(particles->GetPoints()->GetData());
-  input.has_volume = FindArray(particles, "Volume", input.volume);
-  input.has_mass = FindArray(particles, "Mass", input.mass);
-  input.has_density = FindArray(particles, "Density", input.density);
+  FindArray(particles, "Volume", input.volume);
+  FindArray(particles, "Mass", input.mass);
+  FindArray(particles, "Density", input.density);
   input.scalar_component = MCOR_MAGNITUDE;
   if (!FindArray(particles, one.SmoothingLength, input.smoothing_length) ||
     (one.Scalar && !FindArray(particles, one.Scalar, input.scalar)))
@@ -189,7 +189,7 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
     at.options.vertex_threshold = one.Eigenvalue;
     at.options.boundary_eigenvalue = 1;
   }
-  at.options.cube_size_mode = one.Graded ? MCOR_CUBES_ADAPTIVE : MCOR_CUBES_UNIFORM;
+  at.options.level_limit = one.Graded ? MCOR_CUBE_LEVELS - 1 : 0;
   at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;
   at.no_table = one.Graded;
   if (one.PeriodAxis)

@@ -77,8 +77,8 @@ mcor_options oracle_case_options(const double* iso)
 {
   mcor_options options;
   mcor_set_default_options(&options);
-  options.wall_share = 0; /* ends nothing, unless a case says so */
-  options.cube_size_mode = MCOR_CUBES_UNIFORM; /* where a case does not ask for others */
+  options.wall_share = 0;  /* ends nothing, unless a case says so */
+  options.level_limit = 0; /* where a case does not ask for others */
   options.iso_values = iso;
   options.iso_count = 1;
   options.normals = options.gradients = options.weight_sum = options.boundary_flag = 1;

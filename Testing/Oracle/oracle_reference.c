@@ -46,6 +46,11 @@ static double reference_scalar(const mcor_input* input, int64_t tuple)
   return sqrt(sum);
 }
 
+static int reference_is_given(const mcor_array* array)
+{
+  return array->data != NULL || array->constant != 0.0;
+}
+
 static oracle_kernel reference_kernel(mcor_sph_kernel kernel)
 {
   switch (kernel)
@@ -73,9 +78,12 @@ static int reference_volumes(
   oracle_particles* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
 {
   const size_t n = (size_t)particles->count + 1;
-  double* mass = input->has_mass ? malloc(n * sizeof(double)) : NULL;
-  double* density = input->has_mass && input->has_density ? malloc(n * sizeof(double)) : NULL;
-  int enough = (mass || !input->has_mass) && (density || !(input->has_mass && input->has_density));
+  double* mass = reference_is_given(&input->mass) ? malloc(n * sizeof(double)) : NULL;
+  double* density = reference_is_given(&input->mass) && reference_is_given(&input->density)
+    ? malloc(n * sizeof(double))
+    : NULL;
+  int enough = (mass || !reference_is_given(&input->mass)) &&
+    (density || !(reference_is_given(&input->mass) && reference_is_given(&input->density)));
   for (int64_t j = 0; enough && j < particles->count; ++j)
   {
     if (mass)
@@ -143,14 +151,18 @@ static int reference_particles(
     particles->smoothing_length[j] = reference_read(&input->smoothing_length, j, 0) /
       (input->smoothing_length_is_support_radius ? oracle_support(kernel) : 1.0);
     particles->solid[j] = input->solid && input->solid[j];
-    particles->volume[j] = input->has_volume ? reference_read(&input->volume, j, 0) : 0.0;
+    particles->volume[j] =
+      reference_is_given(&input->volume) ? reference_read(&input->volume, j, 0) : 0.0;
     particles->scalar[j] = options->field == MCOR_WEIGHT_SUM ? 0.0 : reference_scalar(input, j);
   }
   int64_t* source = NULL;
-  const int enough = (!oracle_is_periodic(options) ||
-                       reference_images(particles, options, kernel,
-                         input->has_volume || (input->has_mass && input->has_density), &source)) &&
-    (input->has_volume || reference_volumes(particles, input, kernel, source));
+  const int enough =
+    (!oracle_is_periodic(options) ||
+      reference_images(particles, options, kernel,
+        reference_is_given(&input->volume) ||
+          (reference_is_given(&input->mass) && reference_is_given(&input->density)),
+        &source)) &&
+    (reference_is_given(&input->volume) || reference_volumes(particles, input, kernel, source));
   free(source);
   return enough;
 }
@@ -181,8 +193,7 @@ static int reference_is_graded(const oracle_particles* particles, const mcor_opt
   {
     largest = particles->solid[j] ? largest : fmax(largest, particles->smoothing_length[j]);
   }
-  return options->cube_size_mode == MCOR_CUBES_ADAPTIVE && options->level_limit > 0 &&
-    largest >= 2.0 * oracle_smallest_h(particles);
+  return options->level_limit > 0 && largest >= 2.0 * oracle_smallest_h(particles);
 }
 
 /* Evaluates all nodes. */

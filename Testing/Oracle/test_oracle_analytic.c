@@ -233,22 +233,20 @@ static void no_volume(particle_set* set, oracle_case* at, double* iso)
 {
   (void)set;
   (void)iso;
-  at->input.has_volume = 0;
+  at->input.volume = (mcor_array){ 0 };
 }
 
 /* The volume array is read as mass: each particle then has its own. */
 static void mass_alone(particle_set* set, oracle_case* at, double* iso)
 {
   (void)iso;
-  at->input.has_volume = 0;
-  at->input.has_mass = 1;
+  at->input.volume = (mcor_array){ 0 };
   at->input.mass = particle_array(set->volume, 1, 0.0);
 }
 
 static void mass_and_density(particle_set* set, oracle_case* at, double* iso)
 {
   mass_alone(set, at, iso);
-  at->input.has_density = 1;
   at->input.density = particle_array(NULL, 1, 0.9);
 }
 

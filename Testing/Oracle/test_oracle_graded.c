@@ -123,7 +123,7 @@ static void test_oracle(oracle_suite* suite)
   double iso = 0.0;
   mcor_options options = oracle_case_options(&iso);
   options.cube_size_factor = 1.0;
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   if (particle_set_medium(&set, 10.0))
   {
     if (make_reference(suite, "medium/10/levels", &set, &options, &reference))
@@ -188,7 +188,7 @@ static void run_entry(oracle_suite* suite, const graded_entry* entry)
   at.options.field = entry->field;
   at.options.sph_kernel = entry->kernel;
   at.options.precision = entry->precision;
-  at.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  at.options.level_limit = MCOR_CUBE_LEVELS - 1;
   at.input.ignore_solids = entry->solids == SOLIDS_IGNORE;
   at.options.wall_share = entry->solids == SOLIDS_WALL ? 0.5 : 0.0;
   at.skip_pairs = entry->field == MCOR_WEIGHT_SUM || entry->make == particle_set_basin;

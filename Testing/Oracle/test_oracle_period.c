@@ -47,7 +47,7 @@ static void run_case(oracle_suite* suite, const oracle_particles* particles, con
   double iso = one->iso;
   memset(&at, 0, sizeof(at));
   at.input = particle_period_input(particles);
-  at.input.has_volume = one->volumes;
+  at.input.volume = one->volumes ? at.input.volume : (mcor_array){ 0 };
   at.options = oracle_case_options(&iso);
   at.options.sph_kernel = one->kernel;
   at.options.field = one->field;

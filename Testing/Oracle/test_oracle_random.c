@@ -38,7 +38,10 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
     *iso = 0.02; /* f is exactly 0 in all empty space: no question of interest */
   }
   at->input.ignore_solids = random_bits(state) % 2 == 0;
-  at->input.has_volume = random_bits(state) % 4 != 0;
+  if (random_bits(state) % 4 == 0)
+  {
+    at->input.volume = (mcor_array){ 0 };
+  }
   at->options.topology = random_bits(state) % 2 == 0 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
   at->skip_pairs = at->options.field == MCOR_WEIGHT_SUM;
   at->rough = at->no_table = 1;
@@ -50,7 +53,7 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
   /* Of the free surface, computed volumes would differ with and without solids. */
-  if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.has_volume))
+  if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.volume.data))
   {
     static const double shares[] = { 0.0, 0.5, 0.8 };
     at->options.wall_share = pick(state, shares, 3);
@@ -74,7 +77,7 @@ static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
   fill_options(&at, &state, &iso);
   if (adaptive)
   {
-    at.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+    at.options.level_limit = MCOR_CUBE_LEVELS - 1;
     at.skip_pairs = 1;
   }
   snprintf(at.name, sizeof(at.name), "random/%llu/%s/f%d%s", (unsigned long long)seed,

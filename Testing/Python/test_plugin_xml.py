@@ -103,11 +103,6 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(len(found), int(element.get("number_of_elements")))
                 self.assertIs(type(found[0]), TYPES[element.tag])
 
-    def test_properties_are_in_one_group(self):
-        groups = [e.get("name") for e in self.proxy.findall("PropertyGroup/Property")]
-        names = [e.get("name") for e in self.elements + self.information if e.get("name") != "Input"]
-        self.assertEqual(sorted(groups), sorted(names))
-
     def test_setters_have_properties(self):
         own = {**vars(vtkSPHAlgorithm), **vars(vtkMarchingCorrectors)}
         setters = {name for name in own if name.startswith("Set") and "G" + name[1:] in own}

@@ -47,9 +47,9 @@ class Signatures(unittest.TestCase):
     def test_options_are_those_of_the_header(self):
         """All but what only ranks need, and what is said in another way."""
         numbers = {name for struct in ("mcor_options", "mcor_input") for name in _structs.KINDS[struct]}
-        others = {name for name in numbers if name.startswith("has_") or name.endswith("_count") or name in (
+        others = {name for name in numbers if name.endswith("_count") or name in (
             "count", "positions", "smoothing_length", "volume", "mass", "density", "scalar", "scalar_dot",
-            "whole_box", "progress")}
+            "progress")}
         self.assertEqual(set(_options.Options.__annotations__), numbers - others,
                          "add it to Options and WORDS of _options.py")
         self.assertEqual(set(_options.WORDS), set(_options.Options.__annotations__))

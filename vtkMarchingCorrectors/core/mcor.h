@@ -92,21 +92,14 @@ extern "C"
                               * a cube are those of the field */
   } mcor_topology;
 
-  /* How large the cubes of the virtual grid are. Adaptive: as fine as the particles are, with an edge
-   * of 2^L times the cube size where all particles that reach a brick of 4^3 such cubes have 2^L
-   * times the smallest smoothing length or more; bricks that touch differ by one level at most. The
-   * surface is closed across levels. With one smoothing length for all it is that of uniform cubes,
-   * to the last bit. With MCOR_TOPOLOGY_FIELD the field decides on faces between two cubes that no
-   * finer cube touches, and in such cubes; other ambiguous faces are as with MCOR_TOPOLOGY_TABLE.
-   * With a period, which is a whole number of the largest bricks, there may be fewer levels: see
-   * mcor_statistics.highest_level. */
-  typedef enum mcor_cube_size_mode
-  {
-    MCOR_CUBES_UNIFORM = 0, /* all alike */
-    MCOR_CUBES_ADAPTIVE = 1 /* the default */
-  } mcor_cube_size_mode;
-
-#define MCOR_CUBE_LEVELS 25 /* of adaptive cubes, 0 to 24 */
+/* Levels of cubes, 0 to 24. The cubes of the virtual grid are as fine as the particles are: their edge
+ * is 2^L times the cube size where all particles that reach a brick of 4^3 such cubes have 2^L times
+ * the smallest smoothing length or more; bricks that touch differ by one level at most. The surface is
+ * closed across levels. With one smoothing length for all particles, all cubes are of level 0. With
+ * MCOR_TOPOLOGY_FIELD the field decides on faces between two cubes that no finer cube touches, and in
+ * such cubes; other ambiguous faces are as with MCOR_TOPOLOGY_TABLE. With a period, which is a whole
+ * number of the largest bricks, there may be fewer levels: see mcor_statistics.highest_level. */
+#define MCOR_CUBE_LEVELS 25
 
   /* How trimming tells where the fluid ends. Both are about 1 inside and have no unit. */
   typedef enum mcor_boundary_detection
@@ -132,6 +125,9 @@ extern "C"
     const char* name; /* for messages; may be NULL */
   } mcor_array;
 
+  /* Whether there is one: data, or a constant other than 0. */
+  int mcor_is_given(const mcor_array* array);
+
 #define MCOR_MAGNITUDE (-1)
 
   typedef struct mcor_input
@@ -146,13 +142,12 @@ extern "C"
     int smoothing_length_is_support_radius;
     int estimate_smoothing_length;
 
-    /* Particle volume, unit L^3, > 0: `volume` if has_volume; else mass / density if has_mass and
-     * has_density; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
+    /* Particle volume, unit L^3, > 0: `volume` if given (data, or a constant other than 0); else
+     * mass / density if both are given; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
      * 1 / sum_k W(x_j - x_k, h_j). These sums leave out solids that are ignored, and all solids for
      * MCOR_WEIGHT_SUM (unless that ends at them), so that such volumes next to walls differ between
      * the fields. */
     mcor_array volume, mass, density;
-    int has_volume, has_mass, has_density;
 
     /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. With 2 or more components,
      * scalar_component selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not
@@ -182,38 +177,6 @@ extern "C"
     uint64_t attributes_version;
   } mcor_input;
 
-  /* Of one component of an attribute; of particles that are not solid. */
-  typedef struct mcor_global_component
-  {
-    double largest;     /* absolute value */
-    double low, high;   /* least and greatest value; of no fluid low > high */
-    int varies;         /* 0: all values are the same, those of solids too */
-    int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
-  } mcor_global_component;
-
-  /* What must be known of all particles to extract a box's surface from some of them. */
-  typedef struct mcor_globals
-  {
-    int64_t fluid_particles, solid_particles;
-    double low[3], high[3];                            /* of positions -+ scaled support radii, L */
-    double smoothing_length_min, smoothing_length_max; /* of fluid particles, unscaled, L */
-    double support_min, support_max; /* scaled support radius of all that take part, L */
-    double smoothing_length;         /* estimated; 0: it was not asked for */
-    double cube_size;                /* as in mcor_statistics; not read */
-    double mass_max;                 /* 0: there are no masses */
-    double scalar_min, scalar_max;   /* over fluid particles */
-    double scalar_shift;             /* about the median; values on the device are relative to it */
-    /* As in mcor_statistics; and the positions of fluid particles, L. */
-    double smoothing_length_median, neighbours_median, spacing_median, filled_median;
-    double fluid_low[3], fluid_high[3];
-    double wall_share; /* where the options ask for it */
-    int component_count;
-    mcor_global_component* components; /* [component_count], of all attributes in their order */
-    /* Adaptive cubes: which bricks of the lattice are divided, ascending numbers; NULL: of one level. */
-    int64_t split_count;
-    uint64_t* splits; /* [split_count] */
-  } mcor_globals;
-
 /* The default wall share: of a scalar's surface the one that is measured, of the free surface none. */
 #define MCOR_WALL_SHARE_AUTO (-2)
 
@@ -223,34 +186,9 @@ extern "C"
  * The free surface keeps in front of that layer: there it is 0.5. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
-  typedef enum mcor_reduction
-  {
-    MCOR_LEAST = 0,
-    MCOR_GREATEST = 1,
-    MCOR_SUM_OF = 2 /* of counts alone: exact in any order */
-  } mcor_reduction;
-
-  /* Ranks: processes, or threads with contexts of their own, that hold an input together. All of them
-   * call the same function of this library with the same options, but for the box, and the same form of
-   * input, and are called back equally often, in the same order. A return that is not 0, as when
-   * another rank gave up, ends the call with MCOR_CANCELLED. A rank whose own call fails calls back no
-   * more: the others must then be told so by theirs. */
-  typedef struct mcor_ranks
-  {
-    /* values: [count]; each becomes that over all ranks. */
-    int (*reduce_doubles)(void* user, mcor_reduction reduction, double* values, int count);
-    int (*reduce_counts)(void* user, mcor_reduction reduction, int64_t* values, int count);
-    /* The records, of `width` bytes, of all ranks, this one's too, in any order; valid until one of
-     * these is called again. count: of this rank's, 0 or more. */
-    int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
-      int64_t* all_count);
-    void* user;
-    /* The same of records that matter near their places alone, [count][3] in L: of all ranks' records at
-     * least those within `reach` of this rank's box, along each axis, or of images of it; those of this
-     * rank, too. May be NULL: gather is called instead. */
-    int (*pass)(void* user, const void* records, int64_t count, size_t width, const double* places,
-      double reach, const void** all, int64_t* all_count);
-  } mcor_ranks;
+  /* A surface in parts, made by several processes or from some of the particles: see mcor_parts.h. */
+  typedef struct mcor_globals mcor_globals;
+  typedef struct mcor_ranks mcor_ranks;
 
   typedef struct mcor_options
   {
@@ -261,9 +199,9 @@ extern "C"
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
-    mcor_cube_size_mode cube_size_mode; /* mcor_probe and mcor_derive do not read it */
-    int level_limit;                    /* of adaptive cubes, 0 (uniform) to 24; default 24 */
-    const double* iso_values;           /* [iso_count], finite; none give an empty surface */
+    int level_limit; /* highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24;
+                              * mcor_probe and mcor_derive do not read it */
+    const double* iso_values; /* [iso_count], finite; none give an empty surface */
     int iso_count;
     double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. So
                             * are Shepard cells with a node of a fluid weight below 0.001. */
@@ -283,17 +221,13 @@ extern "C"
     int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: all there is. What
                               * is kept for reuse is given back before a run fails for want of it. */
 
-    /* With has_box, the surface is that of the cells whose centres are in the box, box[2 a] <= x <
+    /* Not all 0: the surface is that of the cells whose centres are in the box, box[2 a] <= x <
      * box[2 a + 1] along axis a, to the last bit: boxes side by side make the whole surface. Sides
      * may be infinite. What is global (lattice, ranges, smallest h) is measured over all particles;
-     * those alone that reach the box are evaluated. Not with MCOR_PAIRS, unless there are ranks: their
-     * cells are found from cell to cell, wherever they begin, so that evaluation is that of the whole
-     * surface up to the correction. mcor_probe and mcor_derive read it with globals alone, see there. */
-    int has_box;
+     * only those that reach the box are evaluated. Not with MCOR_PAIRS, unless there are ranks: pair
+     * cells grow from cell to cell, wherever they begin, so that without ranks the whole surface is
+     * evaluated up to the correction. mcor_probe and mcor_derive read the box only with globals. */
     double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
-    /* With ranks, the box that all of theirs are parts of; all 0: there is no end to it but that of a
-     * period. Vertices that several ranks have are counted by one. */
-    double whole_box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, particles and all they carry repeat along x
      * with that period: each is taken to where it is between x0 and x1, and its images count. The
@@ -390,7 +324,7 @@ extern "C"
      * of a cell's triangles that lie in one side of it, next to finer cells, whose part of the surface
      * they cut off. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
-    int64_t flat_caps;
+    int64_t flat_loops;
     int highest_level; /* that cubes may have, by smoothing lengths, level_limit and periods */
     /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
      * table; cells with two loops that might be a tunnel, and those where they are. */
@@ -457,12 +391,6 @@ extern "C"
    * mcor_list_devices, or part of a device's or platform's name. On failure *context still holds a
    * context whose mcor_last_error says why (NULL only if host memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);
-  /* The same for one of `count` processes, or threads, of a machine that run side by side: number
-   * `place` of them, from 0. Where no device is asked for they take, in turn, those of the default
-   * one's platform and kind; each of those that have a CPU in common takes its share of the processors.
-   * The result does not depend on it. */
-  mcor_status mcor_create_shared_context(
-    const char* device, int place, int count, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
   /* One line per device, "number: device (platform)\n"; *text is to be freed with free(). An empty
@@ -496,7 +424,7 @@ extern "C"
 
   /* 0 for the name that is most usual for the quantity, more for less usual ones, -1 for others.
    * Case, blanks, "_" and "-" do not matter. */
-  int mcor_name_rank(mcor_quantity quantity, const char* name);
+  int mcor_name_priority(mcor_quantity quantity, const char* name);
 
   /* Whether an array of this name, whose values are whole and range from low to high over all particles,
    * says clearly which of them are fluid: *fluid becomes the value that these have. So do 0 and 1 alone,
@@ -506,7 +434,7 @@ extern "C"
   /* How fit an array of this name is to be looked at where nobody has chosen one; the least is best:
    * velocities, other vectors, scalars, what describes particles, the rest. -1: not fit, as it does
    * not vary (`varies`: whether any component has two values), or numbers particles or their types. */
-  int mcor_view_rank(const char* name, int components, int is_real, int varies);
+  int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
   /* The solver whose output has arrays of these names, each on a line: "DualSPHysics", "PySPH",
    * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
@@ -521,7 +449,7 @@ extern "C"
   } mcor_field_data;
 
   /* The period that field data tell of: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box where
-   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_rank. Returns how many numbers
+   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_priority. Returns how many numbers
    * `period` has: 6 bounds, as mcor_options.periodic; 3 lengths, for mcor_place_period; 0: no array
    * tells of a period. which: the number of the array; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
@@ -532,6 +460,9 @@ extern "C"
 
   /* Whether mcor_find_period looks at arrays of this name. */
   int mcor_tells_of_period(const char* name);
+
+  /* Whether the options have a box. */
+  int mcor_has_box(const mcor_options* options);
 
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
@@ -549,21 +480,6 @@ extern "C"
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* Measures an input for options.globals of later calls, in this or other contexts, with the same
-   * options otherwise. *globals is overwritten; free with mcor_free_globals. Where there are no
-   * particles, in all ranks, that is MCOR_INVALID_DATA. */
-  mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
-    const mcor_options* options, mcor_globals* globals);
-  void mcor_free_globals(mcor_globals* globals);
-  /* By how much the support of a particle may miss a box, L, and the particle yet be needed there: see
-   * mcor_options.globals. */
-  double mcor_reach_margin(
-    const mcor_options* options, const mcor_globals* globals, double smoothing_length);
-
-  /* The same for calls of mcor_probe and mcor_derive. */
-  mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
-    const mcor_options* options, mcor_globals* globals);
-
   /* What may be wrong with the input of an extraction that succeeded. */
   typedef enum mcor_warning
   {
@@ -572,7 +488,7 @@ extern "C"
     MCOR_WARN_ISO_VALUE,      /* outside of the field's range */
     MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
     MCOR_WARN_PRECISION,      /* positions are rounded too much, see position_error */
-    MCOR_WARN_TOLERANCE,      /* some vertices are off the iso value, see vertices_above_tolerance */
+    MCOR_WARN_TOLERANCE, /* some vertices are off the iso value, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;
 

@@ -22,7 +22,6 @@ void mcor_set_default_options(mcor_options* options)
     .topology = MCOR_TOPOLOGY_TABLE,
     .h_scale = 1,
     .cube_size_factor = 0.5,
-    .cube_size_mode = MCOR_CUBES_ADAPTIVE,
     .level_limit = MCOR_CUBE_LEVELS - 1,
     .node_threshold = 0.1,
     .vertex_threshold = 0.5,

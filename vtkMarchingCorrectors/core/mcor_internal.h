@@ -5,8 +5,8 @@
 
 /* State shared by the phases. Each phase is one file of the same name as its kernels. */
 
-#include "mcor.h"
 #include "mcor_cl.h"
+#include "mcor_parts.h"
 #include "mcor_shared.h"
 
 #define MCOR_LEVEL_LIMIT 32

@@ -18,8 +18,7 @@ bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
     mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
     input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
     input->estimate_smoothing_length == last->estimate_smoothing_length &&
-    input->has_volume == last->has_volume && input->has_mass == last->has_mass &&
-    input->has_density == last->has_density && mcor_same_array(&input->mass, &last->mass) &&
+    mcor_same_array(&input->mass, &last->mass) &&
     mcor_same_array(&input->density, &last->density) &&
     mcor_same_array(&input->volume, &last->volume) &&
     (input->solid == NULL) == (last->solid == NULL);
@@ -60,10 +59,10 @@ static bool mcor_same_globals(const mcor_context* context, const mcor_globals* g
 /* Whether the same particles and images reach the box, and as much is needed of them. */
 static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
 {
-  bool same = a->has_box == b->has_box && !a->ranks == !b->ranks, part = a->has_box;
+  bool same = !a->ranks == !b->ranks, part = mcor_has_box(a);
   for (int i = 0; i < 6; ++i)
   {
-    same = same && (!a->has_box || a->box[i] == b->box[i]) && a->periodic[i] == b->periodic[i];
+    same = same && a->box[i] == b->box[i] && a->periodic[i] == b->periodic[i];
     part = part || a->periodic[i] != 0;
   }
   return same && (!part || (a->seeds == b->seeds && a->nearest_particle == b->nearest_particle));
@@ -80,8 +79,8 @@ void mcor_check_reuse(
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
-    options->cube_size_mode == o->cube_size_mode && options->level_limit == o->level_limit &&
-    mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
+    options->level_limit == o->level_limit && mcor_same_box(options, o) &&
+    mcor_same_globals(context, options->globals);
   context->grid_valid =
     context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
   context->value_valid = context->value_valid && context->grid_valid &&

@@ -155,7 +155,7 @@ std::string vtkSPHDescribe(vtkFieldData* data)
 //------------------------------------------------------------------------------
 void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool isReal, bool varies)
 {
-  const int rank = mcor_view_rank(name.c_str(), components, isReal, varies);
+  const int rank = mcor_view_priority(name.c_str(), components, isReal, varies);
   if (rank >= 0 && (this->Rank < 0 || rank < this->Rank))
   {
     this->Best = name;

@@ -43,7 +43,7 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 /** Adds what a call of the core cost to what calls before it did: not the same for each run. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
-/** Finds among arrays the one to be looked at where nobody has chosen one, see mcor_view_rank(). */
+/** Finds among arrays the one to be looked at where nobody has chosen one, see mcor_view_priority(). */
 struct vtkSPHArrayChoice
 {
   void Consider(const std::string& name, int components, bool isReal, bool varies);

@@ -43,7 +43,7 @@ vtkSmartPointer<vtkAbstractArray> JoinArrays(
   joined->SetNumberOfComponents(first->GetNumberOfComponents());
   joined->CopyComponentNames(first);
   joined->SetNumberOfTuples(total);
-  const bool isType = mcor_name_rank(MCOR_PARTICLE_TYPE, first->GetName()) >= 0;
+  const bool isType = mcor_name_priority(MCOR_PARTICLE_TYPE, first->GetName()) >= 0;
   vtkIdType at = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {

@@ -102,14 +102,13 @@ bool vtkSPHParticles::CollectSmoothingLength()
   {
     return true;
   }
-  int given = 0;
   if (!this->CollectQuantity("smoothing length", this->Description.SmoothingLengthArrayName,
         this->Description.SmoothingLength, MCOR_SMOOTHING_LENGTH, this->SmoothingLength,
-        this->Core.smoothing_length, given))
+        this->Core.smoothing_length))
   {
     return false;
   }
-  if (!given)
+  if (!mcor_is_given(&this->Core.smoothing_length))
   {
     this->Error = "The particles have no smoothing length: no point array has one of its usual "
                   "names (SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask "
@@ -119,7 +118,7 @@ bool vtkSPHParticles::CollectSmoothingLength()
           : std::string()) +
       this->ListPointArrays();
   }
-  return given != 0;
+  return this->Error.empty();
 }
 
 //------------------------------------------------------------------------------
@@ -131,44 +130,40 @@ bool vtkSPHParticles::CollectVolume()
   const bool massOrDensitySet = !RealName(f.MassArrayName).empty() ||
     !RealName(f.DensityArrayName).empty() || f.Mass != 0.0 || f.Density != 0.0;
   if (!this->CollectQuantity("volume", f.VolumeArrayName, 0.0,
-        massOrDensitySet ? MCOR_QUANTITY_COUNT : MCOR_VOLUME, this->Volume, this->Core.volume,
-        this->Core.has_volume))
+        massOrDensitySet ? MCOR_QUANTITY_COUNT : MCOR_VOLUME, this->Volume, this->Core.volume))
   {
     return false;
   }
-  if (this->Core.has_volume)
+  if (mcor_is_given(&this->Core.volume))
   {
     return true;
   }
-  if (!this->CollectQuantity("mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass,
-        this->Core.mass, this->Core.has_mass) ||
-    !this->CollectQuantity("density", f.DensityArrayName, f.Density, MCOR_DENSITY, this->Density,
-      this->Core.density, this->Core.has_density))
+  if (!this->CollectQuantity(
+        "mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass, this->Core.mass) ||
+    !this->CollectQuantity(
+      "density", f.DensityArrayName, f.Density, MCOR_DENSITY, this->Density, this->Core.density))
   {
     return false;
   }
-  if (!this->Core.has_mass)
+  if (!mcor_is_given(&this->Core.mass))
   {
     // A density alone says nothing of volumes, and is not to be reported as used.
     this->Density = nullptr;
     this->Core.density = {};
-    this->Core.has_density = 0;
   }
   return true;
 }
 
 //------------------------------------------------------------------------------
-// A constant goes before a name, a name before the usual names. `given` stays 0 if there is
-// nothing.
+// A constant goes before a name, a name before the usual names.
+// `core` stays empty if there is nothing.
 bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string& setName,
-  double constant, mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core,
-  int& given)
+  double constant, mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core)
 {
   const std::string name = RealName(setName);
   if (constant != 0.0)
   {
     core.constant = constant;
-    given = 1;
     return true;
   }
   if (!name.empty())
@@ -190,7 +185,6 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
   if (array)
   {
     core = this->View(array);
-    given = 1;
   }
   return true;
 }
@@ -227,7 +221,7 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
        ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    const int rank = array ? mcor_name_rank(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
+    const int rank = array ? mcor_name_priority(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
     if (rank >= 0 && array->GetNumberOfComponents() == 1)
     {
       names.emplace(rank, array->GetName());
@@ -386,8 +380,7 @@ void vtkSPHParticles::Sign()
   particles.push_back(BitsOf(this->Core.mass.constant));
   particles.push_back(BitsOf(this->Core.density.constant));
   for (const int flag : { this->Core.smoothing_length_is_support_radius,
-         this->Core.estimate_smoothing_length, this->Core.ignore_solids, this->Core.has_volume,
-         this->Core.has_mass, this->Core.has_density, this->Description.Kernel })
+         this->Core.estimate_smoothing_length, this->Core.ignore_solids, this->Description.Kernel })
   {
     particles.push_back(static_cast<std::uint64_t>(flag));
   }
@@ -472,7 +465,7 @@ vtkDataArray* vtkSPHParticles::Detect(mcor_quantity quantity)
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    const int rank = array ? mcor_name_rank(quantity, array->GetName()) : -1;
+    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
     if (rank >= 0 && (!found || rank < best) && array->GetNumberOfComponents() == 1 &&
       array->GetNumberOfTuples() == this->Core.count)
     {

@@ -144,15 +144,20 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   }
   mcor_options boxed = options;
   boxed.globals = &globals;
-  boxed.has_box = 1;
   std::copy(route.Box, route.Box + 6, boxed.box);
-  std::copy(route.Whole.begin(), route.Whole.end(), boxed.whole_box);
   mcor_surface surface = {};
   const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
     &surface, mcor_free_surface);
   if (this->CallCoreTogether(
         ranks, input, boxed,
-        [&](mcor_context* context) { return mcor_extract(context, &input.Core, &boxed, &surface); },
+        [&](mcor_context* context)
+        {
+          mcor_options shared = boxed;
+          mcor_ranks all = *boxed.ranks;
+          std::copy(route.Whole.begin(), route.Whole.end(), all.whole_box);
+          shared.ranks = &all;
+          return mcor_extract(context, &input.Core, &shared, &surface);
+        },
         [&route](const double at[3], double reach, std::vector<int>& found)
         { route.FindReached(at, reach, found); }))
   {

@@ -154,7 +154,6 @@ bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtk
     return false;
   }
   options.globals = &globals;
-  options.has_box = 1;
   std::copy(route.Box, route.Box + 6, options.box);
   mcor_derivatives derivatives = {};
   const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(

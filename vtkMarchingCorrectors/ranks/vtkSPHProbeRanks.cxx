@@ -192,7 +192,6 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
   }
   std::vector<vtkIdType> numbers;
   const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
-  options.has_box = 1;
   const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, globals });
   FindBox(ranks, within, MarginCubes * globals.cube_size, options.box);
   const vtkSPHRanksRoute route =

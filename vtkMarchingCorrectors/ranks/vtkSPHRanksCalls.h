@@ -7,7 +7,7 @@
 #ifndef vtkSPHRanksCalls_h
 #define vtkSPHRanksCalls_h
 
-#include "mcor.h"
+#include "mcor_parts.h"
 #include "vtkSPHRanks.h"
 
 #include <functional>

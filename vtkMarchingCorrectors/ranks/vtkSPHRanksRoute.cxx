@@ -86,7 +86,8 @@ public:
     this->LeastMargin = mcor_reach_margin(&options, &globals, 0.0);
     this->HasLevels =
       mcor_reach_margin(&options, &globals, globals.smoothing_length_max) > this->LeastMargin;
-    this->ComputesVolumes = !input.has_volume && !(input.has_mass && input.has_density);
+    this->ComputesVolumes = !mcor_is_given(&input.volume) &&
+      !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
     for (int a = 0; a < 3; ++a)
     {
       const double first = this->Period.First[a];
@@ -94,7 +95,7 @@ public:
       const double infinity = std::numeric_limits<double>::infinity();
       double low = isPeriodic ? first : -infinity;
       double high = isPeriodic ? first + this->Period.Length[a] : infinity;
-      if (options.has_box)
+      if (mcor_has_box(&options))
       {
         low = std::min(std::max(low, options.box[2 * a]), high);
         high = std::max(std::min(high, options.box[2 * a + 1]), low);
@@ -156,9 +157,8 @@ public:
   double ReachOf(std::int64_t i) const
   {
     const double support = this->SupportOf(i);
-    return !this->HasLevels
-      ? support
-      : support - this->LeastMargin +
+    return !this->HasLevels ? support
+                            : support - this->LeastMargin +
         mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
   }
 

@@ -6,7 +6,7 @@
 #ifndef vtkSPHRanksRoute_h
 #define vtkSPHRanksRoute_h
 
-#include "mcor.h"
+#include "mcor_parts.h"
 #include "vtkSPHRanksPartition.h"
 #include "vtkType.h"
 

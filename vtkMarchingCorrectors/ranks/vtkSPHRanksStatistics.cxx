@@ -29,7 +29,7 @@ void AddCounts(mcor_statistics& all, const mcor_statistics& one, int factor)
     &mcor_statistics::correction_count, &mcor_statistics::vertices_corrected,
     &mcor_statistics::newton_evaluations, &mcor_statistics::vertices_above_tolerance,
     &mcor_statistics::trim_vertices, &mcor_statistics::trim_vertices_linear,
-    &mcor_statistics::flat_caps };
+    &mcor_statistics::flat_loops };
   for (const auto count : counts)
   {
     all.*count = factor * all.*count + one.*count;

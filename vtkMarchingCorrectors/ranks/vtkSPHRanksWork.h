@@ -6,7 +6,7 @@
 #ifndef vtkSPHRanksWork_h
 #define vtkSPHRanksWork_h
 
-#include "mcor.h"
+#include "mcor_parts.h"
 
 #include <cstdint>
 #include <vector>

@@ -59,9 +59,9 @@ vtkDataArray* Detect(vtkPointSet* particles, mcor_quantity quantity, int compone
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    const int rank = array ? mcor_name_rank(quantity, array->GetName()) : -1;
+    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
     if (rank >= 0 && array->GetNumberOfComponents() == components &&
-      (!found || rank < mcor_name_rank(quantity, found->GetName())))
+      (!found || rank < mcor_name_priority(quantity, found->GetName())))
     {
       found = array;
     }

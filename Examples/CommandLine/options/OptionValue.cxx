@@ -114,7 +114,7 @@ double ToShare(const std::string& option, const std::string& text)
 {
   if (text == "measured")
   {
-    return 0.0;
+    return -1.0; // see vtkMarchingCorrectors::SetWallShare
   }
   const double number = ToNumber(option, text);
   if (!(number > 0.0 && number < 1.0))

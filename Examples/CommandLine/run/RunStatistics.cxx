@@ -29,7 +29,7 @@ const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "Estima
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",
   "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
-  "FlatCaps", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
+  "FlatLoops", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
   "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "CapTriangles",
   "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
   "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",

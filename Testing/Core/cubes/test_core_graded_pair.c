@@ -27,7 +27,7 @@ static core_set make_windings(double ratio)
 static mcor_options pair_options(const double* iso)
 {
   mcor_options options = core_options(iso);
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   options.seeds = MCOR_PAIRS;
   options.h_scale = 2;
   return options;
@@ -426,7 +426,7 @@ static void one_level_is_uniform(void** state)
   {
     mcor_options options = pair_options(&iso);
     options.h_scale = 1;
-    options.cube_size_mode = i ? MCOR_CUBES_UNIFORM : MCOR_CUBES_ADAPTIVE;
+    options.level_limit = i ? 0 : MCOR_CUBE_LEVELS - 1;
     mcor_surface surface = core_extract(*state, &input, &options);
     hash[i] = core_hash(&surface);
     assert_true(surface.point_count > 100);
@@ -459,7 +459,7 @@ static void boxes_make_the_whole(void** state)
   core_free_set(&set);
   set = core_make_random(3000, 14, 0.3, 3, 7);
   input = core_input(&set);
-  input.has_volume = 0;
+  input.volume = (mcor_array){ 0 };
   options = pair_options(&noise);
   core_ask_for_all(&options);
   options.cube_size_factor = 1;

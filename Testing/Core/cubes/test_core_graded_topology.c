@@ -45,7 +45,7 @@ static core_set make_noise(int blocks, int n)
 static mcor_options noise_options(const double* iso, double cube_factor)
 {
   mcor_options options = core_options(iso);
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   options.cube_size_factor = cube_factor;
   options.topology = MCOR_TOPOLOGY_FIELD;
   options.vertex_threshold = 0;
@@ -111,7 +111,6 @@ static void order_form_and_boxes(void** state)
   {
     const double box[6] = { part ? 7.3 : -INFINITY, part ? INFINITY : 7.3, -INFINITY, INFINITY,
       -INFINITY, INFINITY };
-    options.has_box = 1;
     memcpy(options.box, box, sizeof box);
     mcor_surface surface = core_extract(*state, &input, &options);
     triangles += surface.triangle_count;

@@ -130,7 +130,6 @@ static void measure(
   *input = core_input(set);
   *options = core_options(&iso);
   options->field = MCOR_WEIGHT_SUM;
-  options->cube_size_mode = MCOR_CUBES_ADAPTIVE;
   options->level_limit = limit;
   options->sph_kernel = is_cube ? MCOR_M_PRIME_4 : MCOR_CUBIC_SPLINE;
   context->options = options;

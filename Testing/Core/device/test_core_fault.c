@@ -119,7 +119,9 @@ static int gather(void* user, const void* records, int64_t count, size_t width, 
   return callbacks++ == fail_callback;
 }
 
-static const mcor_ranks alone = { reduce_doubles, reduce_counts, gather, NULL, NULL };
+static const mcor_ranks alone = { .reduce_doubles = reduce_doubles,
+  .reduce_counts = reduce_counts,
+  .gather = gather };
 
 /* What a rank does: measures with all others, then extracts its box, and cells grow from box to box. */
 static mcor_status extract_as_rank(
@@ -331,7 +333,7 @@ static void test_regions(void** state)
   sweep box = { .call = extract, .input = core_input(&set), .options = core_options(&iso) };
   sweep period = box, wall = box;
   const double sides[6] = { -9, 0.4, -9, 9, -9, 9 };
-  box.options.has_box = box.options.point_keys = box.options.triangle_keys = 1;
+  box.options.point_keys = box.options.triangle_keys = 1;
   memcpy(box.options.box, sides, sizeof sides);
   sweep_room(*state, &box, 23, 100);
   period.options.periodic[0] = -4;
@@ -365,7 +367,7 @@ static void test_adaptive_cubes(void** state)
   }
   sweep s = { .call = extract, .input = core_input(&set), .options = core_options(&half) };
   s.options.field = MCOR_WEIGHT_SUM;
-  s.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  s.options.level_limit = MCOR_CUBE_LEVELS - 1;
   sweep_room(*state, &s, 7, 150);
   s.options.field = MCOR_SHEPARD;
   s.options.seeds = MCOR_PAIRS;
@@ -383,7 +385,6 @@ static void test_ranks(void** state)
   sweep s = { .call = extract_as_rank, .input = core_input(&set), .options = core_options(&iso) };
   s.options.ranks = &alone;
   s.options.seeds = MCOR_PAIRS;
-  s.options.has_box = 1;
   const double sides[6] = { -9, 9, -9, 9, -9, 9 };
   memcpy(s.options.box, sides, sizeof sides);
   sweep_room(context, &s, 23, 100);

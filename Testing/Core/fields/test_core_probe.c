@@ -271,7 +271,10 @@ static int probe_near(
   const mcor_array attribute = near.scalar, at = core_array(points, 3);
   near.attributes = all.attributes = &attribute;
   near.attribute_count = all.attribute_count = 1;
-  near.has_volume = all.has_volume = volumes;
+  if (!volumes)
+  {
+    near.volume = all.volume = (mcor_array){ 0 };
+  }
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
   options.gradients = 1;

@@ -260,17 +260,16 @@ static void check_volumes(mcor_context* context, double h_scale, double ratio)
   check_weights(context, &set, &input, &options, "array");
   input.mass = core_array(mass, 1);
   input.density = core_array(density, 1);
-  input.has_volume = 0;
-  input.has_mass = input.has_density = 1;
+  input.volume = (mcor_array){ 0 };
   for (int i = 0; i < 200; ++i)
   {
     set.volume[i] = mass[i] / density[i];
   }
   check_weights(context, &set, &input, &options, "mass / density");
-  input.has_density = 0;
+  input.density = (mcor_array){ 0 };
   naive_volumes(&set, MCOR_CUBIC_SPLINE, mass, 0);
   check_weights(context, &set, &input, &options, "mass alone");
-  input.has_mass = 0;
+  input.mass = (mcor_array){ 0 };
   naive_volumes(&set, MCOR_CUBIC_SPLINE, NULL, 0);
   check_weights(context, &set, &input, &options, "neither");
   core_free_set(&set);
@@ -300,9 +299,8 @@ static void check_volumes_of_solids(mcor_context* context, int with_mass, int ig
     mass[i] = 1 + 0.01 * (double)(i % 50);
   }
   mcor_input input = core_input(&set);
-  input.has_volume = 0;
-  input.has_mass = with_mass;
-  input.mass = core_array(mass, 1);
+  input.volume = (mcor_array){ 0 };
+  input.mass = with_mass ? core_array(mass, 1) : input.volume;
   input.ignore_solids = ignored;
   mcor_options options = core_options(&iso);
   options.weight_sum = 1;
@@ -351,7 +349,7 @@ static void test_estimate(void** state)
     }
     const double iso = 9;
     mcor_input input = core_input(&set);
-    input.has_volume = 0;
+    input.volume = (mcor_array){ 0 };
     input.estimate_smoothing_length = 1;
     const mcor_options options = core_options(&iso);
     mcor_surface surface = core_extract(*state, &input, &options);

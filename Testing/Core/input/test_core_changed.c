@@ -43,7 +43,6 @@ static void begin_call(changed_call* call, int which)
   const double box[6] = { -2, 3, -INFINITY, INFINITY, -1, 4 }, period[6] = { -6, 6, -6, 6, -6, 6 };
   if (which == IN_A_BOX)
   {
-    call->options.has_box = 1;
     memcpy(call->options.box, box, sizeof box);
   }
   memcpy(call->options.periodic, period, which == PERIODIC ? sizeof period : 0);

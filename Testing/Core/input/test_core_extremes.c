@@ -55,7 +55,7 @@ static void test_far_reach(void** state)
   {
     mcor_input input = core_input(&set);
     mcor_options options = core_options(&iso);
-    input.has_volume = kind;
+    input.volume = kind ? input.volume : (mcor_array){ 0 };
     options.seeds = kind ? MCOR_PAIRS : MCOR_COMPLETE;
     options.h_scale = 0.01;
     options.cube_size = 0.1;
@@ -234,7 +234,7 @@ static void test_no_density(void** state)
   }
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
-  input.has_volume = 0;
+  input.volume = (mcor_array){ 0 };
   options.sph_kernel = MCOR_M_PRIME_4;
   mcor_surface surface = { 0 };
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);

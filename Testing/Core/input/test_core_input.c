@@ -170,12 +170,12 @@ static void test_bad_elements(void** state)
     snprintf(words, sizeof words, "volume|particle 7|%s", how[i]);
     DATA(words, call.set.volume[7] = bad[i]);
     snprintf(words, sizeof words, "mass|particle 8|%s", how[i]);
-    DATA(words, call.input.has_volume = 0; call.input.has_mass = 1;
-         call.input.mass = call.input.volume; call.set.volume[8] = bad[i]);
+    DATA(words, call.input.volume = (mcor_array){ 0 };
+         call.input.mass = core_array(call.set.volume, 1); call.set.volume[8] = bad[i]);
     snprintf(words, sizeof words, "density|particle 9|%s", how[i]);
-    DATA(words, call.input.has_volume = 0; call.input.has_mass = call.input.has_density = 1;
+    DATA(words, call.input.volume = (mcor_array){ 0 };
          call.input.mass = core_array(call.set.smoothing_length, 1);
-         call.input.density = call.input.volume; call.set.volume[9] = bad[i]);
+         call.input.density = core_array(call.set.volume, 1); call.set.volume[9] = bad[i]);
     snprintf(words, sizeof words, "smoothing length|%s", how[i]);
     if (bad[i] != 0)
     {
@@ -465,10 +465,11 @@ static void test_bad_products(void** state)
 /* What is too little for a computed volume is not blamed on the kernel. */
 static void test_computed_volumes(void** state)
 {
-  DATA("particle 5|mass|times the largest|volumes", call.input.has_volume = 0;
-       call.input.has_mass = 1; call.input.mass = core_array(call.set.volume, 1);
-       call.set.volume[5] = 5e-324; call.set.position[15] = 40);
-  ARGUMENT("h scale factor|1e-13|volumes", call.input.has_volume = 0; call.options.h_scale = 1e-13;
+  DATA("particle 5|mass|times the largest|volumes", call.input.volume = (mcor_array){ 0 };
+       call.input.mass = core_array(call.set.volume, 1); call.set.volume[5] = 5e-324;
+       call.set.position[15] = 40);
+  ARGUMENT("h scale factor|1e-13|volumes", call.input.volume = (mcor_array){ 0 };
+           call.options.h_scale = 1e-13;
            call.input.smoothing_length = (mcor_array){ .constant = 1.3e13 };
            call.options.cube_size = 0.5);
   expect_good(*state);
@@ -486,7 +487,7 @@ static void test_units_of_length(void** state)
     {
       call.set.position[i] *= units[k];
     }
-    call.input.has_volume = 0;
+    call.input.volume = (mcor_array){ 0 };
     call.input.estimate_smoothing_length = 1;
     call.options.iso_values = call.iso;
     call.options.triangle_normals = 1;
@@ -566,27 +567,27 @@ static void test_outliers(void** state)
 
 static void test_names(void** state)
 {
-  assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
-  assert_int_equal(mcor_name_rank(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
-  assert_true(
-    mcor_name_rank(MCOR_SMOOTHING_LENGTH, "h") > mcor_name_rank(MCOR_SMOOTHING_LENGTH, "hsml"));
-  assert_int_equal(mcor_name_rank(MCOR_MASS, "m"), 3);
-  assert_true(mcor_name_rank(MCOR_DENSITY, "Particle-Density") > 0);
-  assert_int_equal(mcor_name_rank(MCOR_VOLUME, "Vol"), 3);
-  assert_int_equal(mcor_name_rank(MCOR_VELOCITY, "Vel"), 2);
-  assert_int_equal(mcor_name_rank(MCOR_PARTICLE_ID, "Idp"), 0);
-  assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
-  assert_true(mcor_name_rank(MCOR_PARTICLE_ID, "iorig") > 0);
+  assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
+  assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
+  assert_true(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "h") >
+    mcor_name_priority(MCOR_SMOOTHING_LENGTH, "hsml"));
+  assert_int_equal(mcor_name_priority(MCOR_MASS, "m"), 3);
+  assert_true(mcor_name_priority(MCOR_DENSITY, "Particle-Density") > 0);
+  assert_int_equal(mcor_name_priority(MCOR_VOLUME, "Vol"), 3);
+  assert_int_equal(mcor_name_priority(MCOR_VELOCITY, "Vel"), 2);
+  assert_int_equal(mcor_name_priority(MCOR_PARTICLE_ID, "Idp"), 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "iorig") > 0);
   const char* const others[] = { "", "mas", "masss", "volume of it", NULL };
   for (int i = 0; i < 5; ++i)
   {
     for (int quantity = 0; quantity < MCOR_QUANTITY_COUNT; ++quantity)
     {
-      assert_int_equal(mcor_name_rank((mcor_quantity)quantity, others[i]), -1);
+      assert_int_equal(mcor_name_priority((mcor_quantity)quantity, others[i]), -1);
     }
   }
-  assert_true(mcor_name_rank(MCOR_DENSITY, "Rhop") > 0);
-  assert_true(mcor_name_rank(MCOR_PARTICLE_TYPE, "Type") > 0);
+  assert_true(mcor_name_priority(MCOR_DENSITY, "Rhop") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_TYPE, "Type") > 0);
   assert_string_equal(mcor_find_layout("Idp\nVel\nRhop\nType"), "DualSPHysics");
   assert_string_equal(mcor_find_layout("gid\nh\nm\nrho\ntag\nu\nv\nw"), "PySPH");
   assert_string_equal(mcor_find_layout("Masses\nDensities\nSmoothingLengths"), "SWIFT");
@@ -597,7 +598,7 @@ static void test_names(void** state)
   assert_string_equal(mcor_find_layout("h\nvx\nvy\nvz\nitype"), "Phantom");
   assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
   assert_string_equal(mcor_find_layout(""), "");
-  assert_int_equal(mcor_name_rank(MCOR_QUANTITY_COUNT, "m"), -1);
+  assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
   (void)state;
 }
 
@@ -665,16 +666,19 @@ static void test_fluid_values(void** state)
 
 static void test_view_ranks(void** state)
 {
-  const int velocity = mcor_view_rank("vel", 3, 1, 1), vector = mcor_view_rank("Force", 3, 1, 1),
-            scalar = mcor_view_rank("Pressure", 1, 1, 1), mass = mcor_view_rank("Mass", 1, 1, 1),
-            tensor = mcor_view_rank("Stress", 9, 1, 1), whole = mcor_view_rank("Count", 1, 0, 1);
+  const int velocity = mcor_view_priority("vel", 3, 1, 1),
+            vector = mcor_view_priority("Force", 3, 1, 1),
+            scalar = mcor_view_priority("Pressure", 1, 1, 1),
+            mass = mcor_view_priority("Mass", 1, 1, 1),
+            tensor = mcor_view_priority("Stress", 9, 1, 1),
+            whole = mcor_view_priority("Count", 1, 0, 1);
   assert_true(velocity >= 0 && velocity < vector && vector < scalar && scalar < mass);
   assert_true(mass < tensor && tensor < whole);
-  assert_int_equal(mcor_view_rank("Pressure", 1, 1, 0), -1);
-  assert_int_equal(mcor_view_rank("Velocity", 3, 1, 0), -1);
-  assert_int_equal(mcor_view_rank("Idp", 1, 0, 1), -1);
-  assert_int_equal(mcor_view_rank("ParticleType", 1, 1, 1), -1);
-  assert_int_equal(mcor_view_rank(NULL, 1, 1, 1), -1);
+  assert_int_equal(mcor_view_priority("Pressure", 1, 1, 0), -1);
+  assert_int_equal(mcor_view_priority("Velocity", 3, 1, 0), -1);
+  assert_int_equal(mcor_view_priority("Idp", 1, 0, 1), -1);
+  assert_int_equal(mcor_view_priority("ParticleType", 1, 1, 1), -1);
+  assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
   (void)state;
 }
 
@@ -749,8 +753,9 @@ int main(void)
     cmocka_unit_test(test_bad_attributes), cmocka_unit_test(test_attributes_of_solids),
     cmocka_unit_test(test_magnitudes), cmocka_unit_test(test_bad_products),
     cmocka_unit_test(test_computed_volumes), cmocka_unit_test(test_units_of_length),
-    cmocka_unit_test(test_far_options), cmocka_unit_test(test_outliers), cmocka_unit_test(test_names),
-    cmocka_unit_test(test_period_of_field_data), cmocka_unit_test(test_fluid_values),
-    cmocka_unit_test(test_view_ranks), cmocka_unit_test(test_iso_values) };
+    cmocka_unit_test(test_far_options), cmocka_unit_test(test_outliers),
+    cmocka_unit_test(test_names), cmocka_unit_test(test_period_of_field_data),
+    cmocka_unit_test(test_fluid_values), cmocka_unit_test(test_view_ranks),
+    cmocka_unit_test(test_iso_values) };
   return cmocka_run_group_tests_name("input", tests, core_set_up, core_tear_down);
 }

@@ -133,12 +133,11 @@ static void test_iso_value(void** state)
 static void test_precision(void** state)
 {
   WARNED(MCOR_WARN_PRECISION, "single precision|of the smallest smoothing length|double precision",
-         call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+         call.options.level_limit = MCOR_CUBE_LEVELS - 1;
          call.set.smoothing_length[5] = 1.3 / 4000);
-  SILENT(call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE; call.options.precision = MCOR_FLOAT64;
+  SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.options.precision = MCOR_FLOAT64;
          call.set.smoothing_length[5] = 1.3 / 4000);
-  SILENT(call.options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
-         call.set.smoothing_length[5] = 1.3 / 100);
+  SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.set.smoothing_length[5] = 1.3 / 100);
 }
 
 static void test_tolerance(void** state)

@@ -41,7 +41,7 @@ static void trimmed_surfaces(void** state)
   core_check_cuts(*state, "two values, solids", &input, &options);
   options.wall_share = 0.4;
   options.triangle_normals = 1;
-  input.has_volume = 0;
+  input.volume = (mcor_array){ 0 };
   core_check_cuts(*state, "normals from triangles, computed volumes", &input, &options);
   options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
   options.boundary_eigenvalue = 1;
@@ -82,7 +82,7 @@ static void other_fields(void** state)
   const double half = 0.5, iso = -8;
   core_set set = core_make_random(6000, 14, 0.3, 3, 7);
   mcor_input input = core_input(&set);
-  input.has_volume = 0;
+  input.volume = (mcor_array){ 0 };
   mcor_options options = core_options(&half);
   core_ask_for_all(&options);
   options.cube_size = 0.3;
@@ -91,8 +91,7 @@ static void other_fields(void** state)
   core_free_set(&set);
   set = make_block();
   input = core_input(&set);
-  input.has_volume = 0;
-  input.has_mass = 1;
+  input.volume = (mcor_array){ 0 };
   input.mass = core_array(set.volume, 1);
   options = core_options(&iso);
   core_ask_for_all(&options);
@@ -107,8 +106,7 @@ static void other_fields(void** state)
 static mcor_input input_of(const core_set* set, mcor_array attributes[3])
 {
   mcor_input input = core_input(set);
-  input.has_volume = 0;
-  input.has_mass = 1;
+  input.volume = (mcor_array){ 0 };
   input.mass = core_array(set->volume, 1);
   attributes[0] = core_array(set->position, 3);
   attributes[1] = (mcor_array){ .constant = 7, .type = MCOR_FLOAT64, .components = 1 };
@@ -180,7 +178,6 @@ static void small_boxes(void** state)
   mcor_surface whole = core_extract(*state, &input, &options);
   assert_int_equal(whole.statistics.particles_in_reach, set.count);
   const double box[6] = { 2, 4, -1, 1, -1, 1 };
-  options.has_box = 1;
   memcpy(options.box, box, sizeof box);
   mcor_surface part = core_extract(*state, &input, &options);
   assert_in_range(part.triangle_count, 10, whole.triangle_count / 4);
@@ -219,9 +216,8 @@ static void kept_particles(void** state)
   mcor_options options = core_options(iso);
   for (int call = 0; call < 7; ++call)
   {
-    options.has_box = call != 1;
-    options.box[0] = options.box[2] = options.box[4] = -1;
-    options.box[1] = options.box[3] = options.box[5] = call == 6 ? 2.5 : 3;
+    options.box[0] = options.box[2] = options.box[4] = call == 1 ? 0 : -1;
+    options.box[1] = options.box[3] = options.box[5] = call == 1 ? 0 : call == 6 ? 2.5 : 3;
     options.nearest_particle = call >= 3;
     options.seeds = call == 4 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.iso_values = iso + (call == 2);
@@ -253,7 +249,6 @@ static void bad_boxes(void** state)
   {
     mcor_options options = core_options(&iso);
     mcor_surface surface = { 0 };
-    options.has_box = 1;
     memcpy(options.box, bad[i], sizeof bad[i]);
     assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
     CORE_CHECK(strstr(mcor_last_error(*state), sentence[i]), "%s", mcor_last_error(*state));

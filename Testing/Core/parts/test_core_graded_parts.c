@@ -14,7 +14,7 @@ static mcor_options adaptive_options(const double* iso, mcor_field field)
 {
   mcor_options options = core_options(iso);
   options.field = field;
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   core_ask_for_all(&options);
   return options;
 }
@@ -54,7 +54,7 @@ static void rough_surfaces(void** state)
     set.scalar[i] = 2 * random_unit(&seed) - 1;
   }
   mcor_input input = core_input(&set);
-  input.has_volume = 0;
+  input.volume = (mcor_array){ 0 };
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   options.cube_size_factor = 1.0;
   options.h_scale = 0.7;
@@ -120,10 +120,10 @@ static void given_levels(void** state)
   mcor_free_globals(&globals);
   input = core_input(&set);
   options.globals = NULL;
-  options.cube_size_mode = MCOR_CUBES_UNIFORM;
+  options.level_limit = 0;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   options.globals = &globals;
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   CORE_CHECK(strstr(mcor_last_error(*state), "uniform cubes"), "%s", mcor_last_error(*state));
   mcor_free_globals(&globals);
@@ -155,7 +155,6 @@ static void small_boxes(void** state)
   options.nearest_particle = 0; /* may be any around */
   mcor_surface whole = core_extract(*state, &input, &options);
   const double box[6] = { -70, -45, -20, 20, -20, 20 };
-  options.has_box = 1;
   memcpy(options.box, box, sizeof box);
   mcor_surface part = core_extract(*state, &input, &options);
   assert_in_range(part.triangle_count, 10, whole.triangle_count / 4);

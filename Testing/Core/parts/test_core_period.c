@@ -173,17 +173,16 @@ static void check_images(mcor_context* context, const char* name, const core_set
   const mcor_options* options, int computed)
 {
   mcor_input input = core_input(set);
-  input.has_volume = !computed;
+  input.volume = computed ? (mcor_array){ 0 } : input.volume;
   mcor_surface surface = core_extract(context, &input, options);
   check_sides(name, &surface, options->periodic);
   core_set all = add_images(set, options->periodic);
   mcor_input other = core_input(&all);
-  other.has_volume = !computed;
+  other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
   memset(plain.periodic, 0, sizeof plain.periodic);
   plain.cube_size = surface.statistics.cube_size;
   plain.level_limit = surface.statistics.highest_level;
-  plain.has_box = 1;
   for (int a = 0; a < 3; ++a)
   {
     const int open = options->periodic[2 * a] == options->periodic[2 * a + 1];
@@ -249,7 +248,7 @@ static void adaptive_cubes(void** state)
       set.smoothing_length[p] = h < 3.3 ? h : 3.3;
     }
     mcor_options options = period_options(i == 1 ? &half : &iso, i < 2 ? along : around);
-    options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+    options.level_limit = MCOR_CUBE_LEVELS - 1;
     options.cube_size = 0.3;
     options.field = i == 1 ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
     options.precision = i == 1 ? MCOR_FLOAT64 : MCOR_FLOAT32;
@@ -287,7 +286,7 @@ static void adaptive_pairs(void** state)
     set.scalar[i] = sin(2 * PI * (x + set.position[3 * i + 1]) / 16);
   }
   mcor_options options = period_options(&iso, along);
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   options.seeds = MCOR_PAIRS;
   options.h_scale = 3;
   options.cube_size = 0.25;
@@ -358,7 +357,6 @@ static void boxes(void** state)
   for (int part = 0; part < 2; ++part)
   {
     const double box[6] = { part ? 3.3 : -5, part ? 50 : 3.3, -5, 50, -5, 50 };
-    options.has_box = 1;
     memcpy(options.box, box, sizeof box);
     mcor_surface half = core_extract(*state, &input, &options);
     triangles += half.triangle_count;

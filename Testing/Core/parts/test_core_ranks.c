@@ -94,9 +94,11 @@ static mcor_input measure_input(
 {
   mcor_input input = core_input(set);
   input.estimate_smoothing_length = what->estimate;
-  input.has_volume = !what->mass;
-  input.has_mass = what->mass;
-  input.mass = core_array(set->volume, 1);
+  if (what->mass)
+  {
+    input.mass = input.volume;
+    input.volume = (mcor_array){ 0 };
+  }
   attributes[0] = core_array(set->position, 3);
   attributes[1] = core_array(set->scalar, 1);
   attributes[2] = (mcor_array){ .constant = 3, .type = MCOR_FLOAT64, .components = 1 };
@@ -340,7 +342,6 @@ static void extract_part(core_rank* rank, void* data)
   const double box[6] = { r > 0 ? job->sides[r - 1] : -INFINITY,
     r < last ? job->sides[r] : INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY };
   memcpy(options.box, box, sizeof box);
-  options.has_box = 1;
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
   options.memory_limit = r == job->thirsty ? 300000 : 0;
@@ -455,7 +456,7 @@ static void adaptive_pairs_in_rounds(void** state)
   mcor_options options = core_options(iso);
   options.iso_count = 2;
   options.seeds = MCOR_PAIRS;
-  options.cube_size_mode = MCOR_CUBES_ADAPTIVE;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   options.cube_size_factor = 1;
   options.h_scale = 3.5;
   check_pairs(*state, &set, &options, 1, NULL);

@@ -305,8 +305,7 @@ static double core_waves(const double x[3])
 
 /* Half of the particles are solid, so that the fluid's weight, with a kernel that has negative lobes,
  * passes 0 where that of both is about 1: a mean then has a pole, which is no place of the surface. */
-static void check_poles(
-  mcor_context* context, uint64_t seed, double spread, mcor_cube_size_mode cubes)
+static void check_poles(mcor_context* context, uint64_t seed, double spread, int level_limit)
 {
   core_set set = core_make_block(12, 0.45, seed, core_waves);
   set.has_solids = 1;
@@ -322,7 +321,7 @@ static void check_poles(
   input.attribute_count = 1;
   mcor_options options = core_options(&iso);
   options.sph_kernel = MCOR_M_PRIME_4;
-  options.cube_size_mode = cubes;
+  options.level_limit = level_limit;
   options.boundary_flag = 1;
   mcor_surface surface = core_extract(context, &input, &options);
   oracle_particles particles = core_oracle(&set);
@@ -357,10 +356,10 @@ static void test_poles(void** state)
 {
   for (uint64_t seed = 100; seed < 114; ++seed)
   {
-    check_poles(*state, seed, 1, MCOR_CUBES_UNIFORM);
+    check_poles(*state, seed, 1, 0);
   }
-  check_poles(*state, 100, 2.2, MCOR_CUBES_UNIFORM);
-  check_poles(*state, 100, 2.2, MCOR_CUBES_ADAPTIVE);
+  check_poles(*state, 100, 2.2, 0);
+  check_poles(*state, 100, 2.2, MCOR_CUBE_LEVELS - 1);
 }
 
 int main(void)

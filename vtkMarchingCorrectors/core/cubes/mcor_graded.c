@@ -278,7 +278,7 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   int caps, used, hits;
   MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
   MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
-  s->flat_caps += caps;
+  s->flat_loops += caps;
   s->cells_used += used;
   cl_int cells[2] = { 0, 0 };
   for (int l = 0; l <= context->tree.top; ++l)

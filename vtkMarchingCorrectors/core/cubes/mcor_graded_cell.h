@@ -301,9 +301,9 @@ MCOR_GRADED_FUNCTION int mcor_graded_cut_loop(
   return count;
 }
 
-/* The number of a cell's triangles; adds to flat_caps its loops that lie in one face. */
+/* The number of a cell's triangles; adds to flat_loops its loops that lie in one face. */
 MCOR_GRADED_FUNCTION int mcor_graded_count(
-  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, int* flat_caps)
+  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, int* flat_loops)
 {
   mcor_graded_links links;
   mcor_graded_loop loop;
@@ -316,7 +316,7 @@ MCOR_GRADED_FUNCTION int mcor_graded_count(
     {
       mcor_graded_locate(split, &loop);
       count += loop.length - 2;
-      *flat_caps += mcor_graded_is_flat(&loop);
+      *flat_loops += mcor_graded_is_flat(&loop);
     }
   }
   return count;

@@ -20,9 +20,7 @@ int mcor_tree_level_of(double h, double h_min, int top)
 
 int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
 {
-  return options->cube_size_mode == MCOR_CUBES_ADAPTIVE
-    ? mcor_tree_level_of(measure->h_max, measure->h_min, options->level_limit)
-    : 0;
+  return mcor_tree_level_of(measure->h_max, measure->h_min, options->level_limit);
 }
 
 /* Of level 0. Those of all levels are a seventh more. */

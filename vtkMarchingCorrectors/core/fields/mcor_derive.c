@@ -374,7 +374,7 @@ static mcor_status mcor_run_derive(
   {
     return MCOR_OK;
   }
-  if (options->has_box)
+  if (mcor_has_box(options))
   {
     mcor_bound_by_box(context, options);
   }

@@ -381,7 +381,7 @@ static mcor_status mcor_run_probe(
   {
     return MCOR_OK;
   }
-  if (options->has_box)
+  if (mcor_has_box(options))
   {
     mcor_bound_by_box(context, options);
   }
@@ -412,9 +412,12 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
     options->field != MCOR_WEIGHT_SUM && !input->ignore_solids && mcor_needs_density(input);
   options->field = MCOR_WEIGHT_SUM;
   options->iso_count = 0;
-  options->has_box = options->has_box && options->globals;
+  if (!options->globals)
+  {
+    memset(options->box, 0, sizeof options->box);
+  }
   options->capping = 0;
-  options->cube_size_mode = MCOR_CUBES_UNIFORM;
+  options->level_limit = 0;
   options->ranks = NULL;
   return uses_solids;
 }

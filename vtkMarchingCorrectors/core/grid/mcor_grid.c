@@ -237,7 +237,7 @@ static mcor_status mcor_refuse_density(
   mcor_context* context, const mcor_input* input, int64_t particle)
 {
   const bool single = context->cl.real_size == sizeof(float);
-  const double mass = input->has_mass
+  const double mass = mcor_is_given(&input->mass)
     ? mcor_array_at(&input->mass, particle, 0) * mcor_size_scale(context, input)
     : 1;
   MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,

@@ -25,7 +25,7 @@ static mcor_status mcor_check_period(mcor_context* context, const mcor_options* 
 
 static mcor_status mcor_check_box(mcor_context* context, const mcor_options* options)
 {
-  for (int a = 0; a < 3 && options->has_box; ++a)
+  for (int a = 0; a < 3 && mcor_has_box(options); ++a)
   {
     const double from = options->box[2 * a], to = options->box[2 * a + 1];
     MCOR_RETURN_IF(isnan(from) || isnan(to), context, MCOR_INVALID_ARGUMENT,
@@ -77,10 +77,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     (int)options->seeds);
   MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD, "There is no topology number %d.",
     (int)options->topology);
-  MCOR_NEED((unsigned)options->cube_size_mode <= MCOR_CUBES_ADAPTIVE,
-    "There is no cube size mode number %d.", (int)options->cube_size_mode);
   MCOR_NEED(options->level_limit >= 0 && options->level_limit < MCOR_CUBE_LEVELS,
-    "The highest level of adaptive cubes is %d; it must be 0 to %d.", options->level_limit,
+    "The level limit is %d; it must be from 0 (uniform cubes) to %d.", options->level_limit,
     MCOR_CUBE_LEVELS - 1);
   MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
     "There is no boundary detection number %d.", (int)options->boundary_detection);
@@ -287,14 +285,14 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     MCOR_TRY(
       mcor_check_array(context, &input->smoothing_length, NULL, "smoothing length", n, 1, true));
   }
-  if (input->has_volume)
+  if (mcor_is_given(&input->volume))
   {
     MCOR_TRY(mcor_check_array(context, &input->volume, NULL, "volume", n, 1, true));
   }
-  else if (input->has_mass)
+  else if (mcor_is_given(&input->mass))
   {
     MCOR_TRY(mcor_check_array(context, &input->mass, NULL, "mass", n, 1, true));
-    if (input->has_density)
+    if (mcor_is_given(&input->density))
     {
       MCOR_TRY(mcor_check_array(context, &input->density, NULL, "density", n, 1, true));
     }

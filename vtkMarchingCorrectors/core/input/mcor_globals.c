@@ -93,7 +93,8 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   mcor_give_globals(&context->measure, globals);
-  globals->mass_max = input->has_mass ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
+  globals->mass_max =
+    mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {

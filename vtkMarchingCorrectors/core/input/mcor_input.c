@@ -9,6 +9,11 @@
 #include <math.h>
 #include <string.h>
 
+int mcor_is_given(const mcor_array* array)
+{
+  return array->data || array->constant != 0;
+}
+
 /* Compilers vectorise these where they know the stride. */
 static inline void mcor_read_floats(const float* data, int64_t stride, int count, double* out)
 {

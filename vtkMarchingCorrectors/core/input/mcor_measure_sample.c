@@ -61,8 +61,8 @@ typedef struct mcor_sampling
 /* The volume of particle i where the input has it, else 0. */
 static double mcor_given_volume(const mcor_input* input, int64_t i)
 {
-  return input->has_volume ? mcor_array_at(&input->volume, i, 0)
-    : input->has_mass && input->has_density
+  return mcor_is_given(&input->volume) ? mcor_array_at(&input->volume, i, 0)
+    : mcor_is_given(&input->mass) && mcor_is_given(&input->density)
     ? mcor_array_at(&input->mass, i, 0) / mcor_array_at(&input->density, i, 0)
     : 0;
 }

@@ -62,10 +62,11 @@ static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double
 static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
 {
   const mcor_input* input = wall->input;
-  const double mass = input->has_mass ? mcor_array_at(&input->mass, i, 0) : 1;
-  return input->has_volume                  ? mcor_array_at(&input->volume, i, 0)
-    : input->has_mass && input->has_density ? mass / mcor_array_at(&input->density, i, 0)
-                                            : mass / wall->mass_max * h * h * h;
+  const double mass = mcor_is_given(&input->mass) ? mcor_array_at(&input->mass, i, 0) : 1;
+  return mcor_is_given(&input->volume) ? mcor_array_at(&input->volume, i, 0)
+    : mcor_is_given(&input->mass) && mcor_is_given(&input->density)
+    ? mass / mcor_array_at(&input->density, i, 0)
+    : mass / wall->mass_max * h * h * h;
 }
 
 /* The first sample that is not before x along the axis. */
@@ -198,7 +199,8 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 {
   const mcor_input* input = wall->input;
   MCOR_TRY(mcor_place_samples(context, wall));
-  wall->mass_max = input->has_mass ? mcor_largest(&input->mass, NULL, input->count, 0) : 1;
+  wall->mass_max =
+    mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
   const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_wall_slice, wall);
   int64_t weights[MCOR_SAMPLES][2] = { { 0 } };

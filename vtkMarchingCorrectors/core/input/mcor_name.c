@@ -42,7 +42,7 @@ static bool mcor_is_same_name(const char* name, const char* usual)
   return *usual == '\0';
 }
 
-int mcor_name_rank(mcor_quantity quantity, const char* name)
+int mcor_name_priority(mcor_quantity quantity, const char* name)
 {
   for (int i = 0; name && (unsigned)quantity < MCOR_QUANTITY_COUNT && i < MCOR_NAMES; ++i)
   {
@@ -57,7 +57,7 @@ int mcor_name_rank(mcor_quantity quantity, const char* name)
 
 int mcor_find_fluid_value(const char* name, double low, double high, double* fluid)
 {
-  if (mcor_name_rank(MCOR_PARTICLE_TYPE, name) < 0)
+  if (mcor_name_priority(MCOR_PARTICLE_TYPE, name) < 0)
   {
     return 0;
   }
@@ -75,17 +75,17 @@ int mcor_find_fluid_value(const char* name, double low, double high, double* flu
   return 0;
 }
 
-int mcor_view_rank(const char* name, int components, int is_real, int varies)
+int mcor_view_priority(const char* name, int components, int is_real, int varies)
 {
-  if (!name || !varies || mcor_name_rank(MCOR_PARTICLE_ID, name) >= 0 ||
-    mcor_name_rank(MCOR_PARTICLE_TYPE, name) >= 0)
+  if (!name || !varies || mcor_name_priority(MCOR_PARTICLE_ID, name) >= 0 ||
+    mcor_name_priority(MCOR_PARTICLE_TYPE, name) >= 0)
   {
     return -1;
   }
-  const bool describes = mcor_name_rank(MCOR_SMOOTHING_LENGTH, name) >= 0 ||
-    mcor_name_rank(MCOR_VOLUME, name) >= 0 || mcor_name_rank(MCOR_MASS, name) >= 0;
+  const bool describes = mcor_name_priority(MCOR_SMOOTHING_LENGTH, name) >= 0 ||
+    mcor_name_priority(MCOR_VOLUME, name) >= 0 || mcor_name_priority(MCOR_MASS, name) >= 0;
   return !is_real                                                 ? 5
-    : components == 3 && mcor_name_rank(MCOR_VELOCITY, name) >= 0 ? 0
+    : components == 3 && mcor_name_priority(MCOR_VELOCITY, name) >= 0 ? 0
     : components == 3                                             ? 1
     : components == 1                                             ? 2 + describes
                                                                   : 4;

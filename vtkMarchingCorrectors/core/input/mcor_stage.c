@@ -65,11 +65,12 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
 double mcor_size_scale(const mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
-  if (input->has_volume || (input->has_mass && input->has_density))
+  if (mcor_is_given(&input->volume) ||
+    (mcor_is_given(&input->mass) && mcor_is_given(&input->density)))
   {
     return 1 / (cube * cube * cube);
   }
-  if (!input->has_mass)
+  if (!mcor_is_given(&input->mass))
   {
     return 1;
   }

@@ -19,7 +19,8 @@ typedef struct mcor_staging
 /* Whether volumes are computed from the particles' density on the device. */
 static inline bool mcor_needs_density(const mcor_input* input)
 {
-  return !input->has_volume && !(input->has_mass && input->has_density);
+  return !mcor_is_given(&input->volume) &&
+    !(mcor_is_given(&input->mass) && mcor_is_given(&input->density));
 }
 
 /* What the input's volume or mass is multiplied by on the way to the device. */

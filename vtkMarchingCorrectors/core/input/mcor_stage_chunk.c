@@ -42,11 +42,12 @@ void mcor_read_stage_places(const mcor_context* context, const mcor_input* input
 static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
 {
   static const mcor_array one = { .constant = 1 };
-  mcor_read_array(input->has_volume ? &input->volume
-      : input->has_mass             ? &input->mass
-                                    : &one,
+  mcor_read_array(mcor_is_given(&input->volume) ? &input->volume
+      : mcor_is_given(&input->mass)             ? &input->mass
+                                                : &one,
     first, count, 0, out);
-  if (!input->has_volume && input->has_mass && input->has_density)
+  if (!mcor_is_given(&input->volume) && mcor_is_given(&input->mass) &&
+    mcor_is_given(&input->density))
   {
     double density[MCOR_CHUNK];
     mcor_read_array(&input->density, first, count, 0, density);

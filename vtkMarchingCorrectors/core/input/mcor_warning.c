@@ -144,7 +144,7 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
     first = is_outside && outside == 0 ? i : first;
     outside += is_outside;
   }
-  if (o->field == MCOR_WEIGHT_SUM || o->has_box || outside == 0 || !(empty || strict))
+  if (o->field == MCOR_WEIGHT_SUM || mcor_has_box(o) || outside == 0 || !(empty || strict))
   {
     return false;
   }
@@ -163,7 +163,7 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
-  if (o->field == MCOR_WEIGHT_SUM || o->has_box || n->filled_median == 0 ||
+  if (o->field == MCOR_WEIGHT_SUM || mcor_has_box(o) || n->filled_median == 0 ||
     n->filled_median > o->node_threshold)
   {
     return false;
@@ -187,7 +187,7 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   {
     return mcor_warn_discarded(s);
   }
-  if (s->surface->triangle_count > 0 || n->triangles_before_trimming == 0 || o->has_box)
+  if (s->surface->triangle_count > 0 || n->triangles_before_trimming == 0 || mcor_has_box(o))
   {
     return false;
   }

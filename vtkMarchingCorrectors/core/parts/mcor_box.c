@@ -32,6 +32,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+int mcor_has_box(const mcor_options* options)
+{
+  int has = 0;
+  for (int i = 0; i < 6; ++i)
+  {
+    has = has || options->box[i] != 0;
+  }
+  return has;
+}
+
 /* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
 #define MCOR_BOX_MARGIN 1.25
 
@@ -99,20 +109,21 @@ static void mcor_place_whole(
   mcor_context* context, const mcor_options* options, int axis, double first, double last)
 {
   mcor_box* box = &context->box;
+  const double* whole = options->ranks ? options->ranks->whole_box : NULL;
   bool is_given = false;
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 6 && whole; ++i)
   {
-    is_given = is_given || options->whole_box[i] != 0;
+    is_given = is_given || whole[i] != 0;
   }
   double side[2] = { first, last };
   if (is_given)
   {
-    mcor_place_sides(&context->lattice, axis, options->whole_box, side);
+    mcor_place_sides(&context->lattice, axis, whole, side);
   }
   box->whole_first[axis] = (int)side[0];
   box->whole_last[axis] = (int)side[1];
-  mcor_place_halves(&context->lattice, axis, is_given ? options->whole_box : NULL, (int)side[0],
-    (int)side[1], box->whole_halves);
+  mcor_place_halves(&context->lattice, axis, is_given ? whole : NULL, (int)side[0], (int)side[1],
+    box->whole_halves);
 }
 
 /* The cells that a probe's points are in; all of the period where some are beyond it, and taken into
@@ -145,7 +156,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     const double first = periodic ? lattice->period_first[a] : (double)lattice->first[a];
     const double last = periodic ? first + lattice->period[a] : (double)lattice->last[a];
     double side[2] = { first, last };
-    const double* sides = options->has_box ? options->box : NULL;
+    const double* sides = mcor_has_box(options) ? options->box : NULL;
     if (sides)
     {
       mcor_place_sides(lattice, a, sides, side);
@@ -305,7 +316,7 @@ double mcor_reach_margin(
   const mcor_options* options, const mcor_globals* globals, double smoothing_length)
 {
   const double h_min = globals->smoothing_length_min, h_max = globals->smoothing_length_max;
-  const int limit = options->cube_size_mode == MCOR_CUBES_ADAPTIVE ? options->level_limit : 0;
+  const int limit = options->level_limit;
   const bool graded = mcor_tree_level_of(h_max, h_min, limit) > 0;
   return globals->cube_size *
     (graded ? ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(smoothing_length, h_min, limit))

@@ -308,7 +308,7 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
   const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
   ulong cells = (mcor_leaf_crossed(&leaf, graded) | graded) & used[i];
   const ulong within = owned[i]; /* which may be `used` */
-  int triangles = 0, flat_caps = 0;
+  int triangles = 0, flat_loops = 0;
   for (ulong rest = cells & graded; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
@@ -320,7 +320,7 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
       continue;
     }
     triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
-    flat_caps += within >> cell & 1 ? caps : 0;
+    flat_loops += within >> cell & 1 ? caps : 0;
     mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
   }
   for (ulong rest = cells & ~graded; rest; rest &= rest - 1)
@@ -330,7 +330,7 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
   mcor_leaf_mark_plain(&leaf, cells & ~graded, quadrants);
   used[i] = cells;
   triangle_count[i] = triangles;
-  flat[i] = flat_caps;
+  flat[i] = flat_loops;
 }
 
 /* One work-item = one slot. Reads which quadrants around its edges are used. Writes its edge masks, see

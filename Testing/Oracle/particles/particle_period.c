@@ -80,7 +80,6 @@ mcor_input particle_period_input(const oracle_particles* p)
   input.positions = particle_array(p->position, 3, 0.0);
   input.smoothing_length = particle_array(p->smoothing_length, 1, 0.0);
   input.volume = particle_array(p->volume, 1, 0.0);
-  input.has_volume = 1;
   input.scalar = particle_array(p->scalar, 1, 0.0);
   return input;
 }

@@ -417,7 +417,6 @@ mcor_input particle_set_input(const particle_set* set)
   input.positions = particle_array(set->position, 3, 0.0);
   input.smoothing_length = particle_array(set->smoothing_length, 1, 0.0);
   input.volume = particle_array(set->volume, 1, 0.0);
-  input.has_volume = 1;
   input.scalar = particle_array(set->scalar, 1, 0.0);
   input.solid = set->has_solids ? set->solid : NULL;
   return input;

@@ -4,8 +4,8 @@
 # Classes of superclasses must be known before our own module is loaded.
 import vtkmodules.vtkCommonExecutionModel  # noqa: F401
 
-from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHDerivatives,
+from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHGauge,
                                     vtkSPHProbe, vtkSPHResample, vtkSPHTemporalInterpolator)
 
-__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHDerivatives", "vtkSPHProbe", "vtkSPHResample",
+__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHDerivatives", "vtkSPHGauge", "vtkSPHProbe", "vtkSPHResample",
            "vtkSPHTemporalInterpolator"]

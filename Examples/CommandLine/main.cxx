@@ -5,6 +5,7 @@
 #include "ColorScale.h"
 #include "Ending.h"
 #include "Film.h"
+#include "GaugeRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -144,6 +145,10 @@ bool Execute(Job& job)
   if (job.ListDevices)
   {
     ListDevices();
+  }
+  else if (job.IsGauge())
+  {
+    return MeasureGauges(job, messages);
   }
   else if (job.IsProbe())
   {

@@ -43,8 +43,8 @@ void SetFluid(Job& job, Text option, Text text)
 void SetSolids(Job& job, Text option, Text text)
 {
   const int solids = ToChoice(option, text,
-    { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT }, { "ignore", Filter::SOLIDS_IGNORE },
-      { "wall", Filter::SOLIDS_WALL } });
+    { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT },
+      { "ignore", Filter::SOLIDS_IGNORE }, { "wall", Filter::SOLIDS_WALL } });
   SetAll<vtkTypeBool>(job, &vtkSPHAlgorithm::SetIgnoreSolids, solids == Filter::SOLIDS_IGNORE);
   job.Surface->SetSolids(solids);
 }
@@ -67,6 +67,7 @@ void SetIsoValues(Job& job, Text option, Text text)
     job.Surface->SetValue(static_cast<int>(i), values[i]);
     job.Surface->SetFreeSurfaceValue(static_cast<int>(i), values[i]);
   }
+  job.Gauge->SetLevel(values.front());
 }
 
 void SetKernel(Job& job, Text option, Text text)
@@ -146,6 +147,17 @@ const Options WhatToContour = {
     [](Job& j, Text n, Text v) { j.Slice.Resolution = ToCount(n, v, 2, 1 << 15); } },
 };
 
+const Options Gauges = {
+  { "", "", "No surface, but where lines cross the free surface; OUTPUT is a .csv table", {} },
+  { "--gauge", "NAME=X,Y,Z:X,Y,Z", "from one place to another; may be given more than once",
+    [](Job& j, Text n, Text v) { j.Gauges.push_back(ToGauge(n, v)); }, true },
+  { "--gauges", "FILE", "those of a file with such lines",
+    [](Job& j, Text, Text v) { j.GaugeFile = v; } },
+  { "--gauge-grid", "NX,NY:BOUNDS",
+    "NX by NY upright ones from z0 to z1 in x0,x1,y0,y1,z0,z1; OUTPUT is an image of levels, .vti",
+    [](Job& j, Text n, Text v) { j.Grid = ToGaugeGrid(n, v); } },
+};
+
 const Options TheParticles = {
   { "", "", "The particles (arrays are found by their usual names if not given)", {} },
   { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or from the spacing",
@@ -171,7 +183,8 @@ const Options TheParticles = {
     [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
   { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
   { "--solids", "auto|weight|ignore|wall",
-    "count in the weight that trims, not at all, or end the surface; auto (default): the last for a "
+    "count in the weight that trims, not at all, or end the surface; auto (default): the last for "
+    "a "
     "scalar, the first for the free surface",
     SetSolids },
   { "--wall-share", "S|measured",
@@ -337,7 +350,7 @@ const std::vector<Option>& AllOptions()
   {
     Options joined;
     for (const Options* group :
-      { &WhatToContour, &TheParticles, &TheMethod, &Output, &DeviceAndHelp })
+      { &WhatToContour, &Gauges, &TheParticles, &TheMethod, &Output, &DeviceAndHelp })
     {
       joined.insert(joined.end(), group->begin(), group->end());
     }

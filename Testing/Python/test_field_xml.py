@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The XML of SPH Derivatives, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
+"""The XML of SPH Derivatives, SPH Gauge, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
 import pathlib
 import unittest
 import xml.etree.ElementTree
 
-from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample
+from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe, vtkSPHResample
 
 PLUGIN = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
@@ -21,7 +21,7 @@ DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
 
 class TestFieldXml(unittest.TestCase):
     def for_each(self, check):
-        for filter_class in (vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample):
+        for filter_class in (vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe, vtkSPHResample):
             name = filter_class.__name__[3:]
             proxy = xml.etree.ElementTree.parse(PLUGIN / f"{name}.xml").find(".//SourceProxy")
             self.assertEqual((proxy.get("name"), proxy.get("class")), (name, filter_class.__name__))

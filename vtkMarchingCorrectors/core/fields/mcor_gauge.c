@@ -295,7 +295,10 @@ static mcor_status mcor_run_gauge(
   free(job.samples);
   free(job.ends);
   free(room);
-  MCOR_TRY(status);
+  if (status != MCOR_OK || input->count == 0 || n == 0)
+  {
+    return status;
+  }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }

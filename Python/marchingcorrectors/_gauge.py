@@ -39,7 +39,7 @@ class Gauges(Result):
     depth: np.ndarray  #: (lines,) float64: length in fluid
     place: np.ndarray  #: (lines, 3) float64: of `last`
     outside: np.ndarray  #: (lines,) bool: no particle reaches the line
-    crossings: List[np.ndarray]  #: of each line, float64: where it goes through the surface
+    crossings: Dict[str, np.ndarray]  #: {name: float64}: where each line goes through the surface
     statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
 
     def __repr__(self):
@@ -80,7 +80,8 @@ def _gauges(found, names):
         names=names, state=STATES[column("state", int)], first=column("first"), last=column("last"),
         depth=column("depth"), outside=column("outside", bool),
         place=np.array([list(reading.place) for reading in readings]).reshape(len(readings), 3),
-        crossings=[all_crossings[r.first_crossing:r.first_crossing + r.crossing_count] for r in readings],
+        crossings={name: all_crossings[r.first_crossing:r.first_crossing + r.crossing_count]
+                   for name, r in zip(names, readings)},
         statistics=statistics(found.statistics))
 
 

@@ -3,6 +3,7 @@
 
 // The command line program: particles from a file, surface to a file. See --help.
 #include "ColorScale.h"
+#include "ComponentRun.h"
 #include "Ending.h"
 #include "Film.h"
 #include "GaugeRun.h"
@@ -62,7 +63,8 @@ void ListDevices()
 void CheckFiles(const Job& job, MessageCapture* messages)
 {
   std::vector<std::string> outputs;
-  for (const std::string& file : { job.Output, job.StatisticsFile, job.Picture.File })
+  for (const std::string& file :
+    { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File })
   {
     if (!file.empty())
     {
@@ -99,10 +101,12 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   SetUpSurface(job, particles);
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
   std::vector<double> wallSeconds;
-  const Run run = RunAndTell(job, messages, runs, wallSeconds);
+  Run run = RunAndTell(job, messages, runs, wallSeconds);
   vtkPolyData* surface = run.Surface;
   const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
   std::vector<std::string> warnings = Warnings(surface, runs.back(), messages);
+  ComponentTable pieces(job);
+  pieces.Add(run, particles, messages);
   AddHintOfPeriod(job, particles, warnings);
   ColorScale colors(job.Picture);
   colors.Include(surface);
@@ -115,7 +119,13 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   {
     Say("warning: " + warning);
   }
-  WriteOutput(job.Output, SurfaceBytes(job.Output, surface, colors, messages));
+  OutputFiles files; // both, or none
+  files.Write(job.Output, SurfaceBytes(job.Output, surface, colors, messages));
+  if (!job.ComponentFile.empty())
+  {
+    files.Write(job.ComponentFile, pieces.Text());
+  }
+  files.Commit();
   if (!job.StatisticsFile.empty())
   {
     std::cout.flush(); // the file may be /dev/stdout

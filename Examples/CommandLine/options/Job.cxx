@@ -42,7 +42,7 @@ void CheckGauge(const Job& job)
     { { !job.Scalar.empty(), "--scalar" },
       { job.Surface->GetNumberOfContours() > 1, "all but one --iso value" },
       { !job.StatisticsFile.empty(), "--stats" }, { job.Repeat > 1, "--repeat" },
-      { !job.Picture.File.empty(), "--screenshot" },
+      { !job.ComponentFile.empty(), "--components" }, { !job.Picture.File.empty(), "--screenshot" },
       { job.IsProbe(), "--probe, --slice and --line" },
       { job.Surface->GetUseBox() != 0, "--box" } });
   Exclude("gauges are measured at the steps that are stored; leave out ",
@@ -65,6 +65,27 @@ void CheckGauge(const Job& job)
   if (LaunchedCount() > 1)
   {
     throw UsageError("gauges are measured by one process; leave out mpirun");
+  }
+}
+
+void CheckComponents(const Job& job)
+{
+  if (job.ComponentFile.empty())
+  {
+    Exclude("without a table of pieces, --components, there is no use for ",
+      { { job.LeastVolume > 0.0, "--least-volume" },
+        { job.LeastParticles > 0, "--least-particles" } });
+    return;
+  }
+  Exclude("pieces are those of a surface; --components goes without ",
+    { { job.IsProbe(), "--probe, --slice and --line" } });
+  if (!EndsWith(job.ComponentFile, ".csv"))
+  {
+    throw UsageError("--components writes a .csv file, not '" + job.ComponentFile + "'");
+  }
+  if (LaunchedCount() > 1)
+  {
+    throw UsageError("pieces are found by one process; --components goes without mpirun");
   }
 }
 
@@ -172,6 +193,7 @@ void Check(const Job& job)
   Exclude("only --slice and --line have use for ",
     { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
       "--resolution" } });
+  CheckComponents(job);
   if (job.IsProbe())
   {
     CheckProbe(job);

@@ -84,6 +84,10 @@ struct Job
   bool HasVertexThreshold = false;         ///< else it is what suits the boundary detection
   std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
 
+  std::string ComponentFile; ///< table of the surface's pieces; empty: none
+  double LeastVolume = 0.0;  ///< of a piece
+  int LeastParticles = 0;    ///< in a piece
+
   std::string StatisticsFile;
   PictureOptions Picture;
   int Repeat = 1;

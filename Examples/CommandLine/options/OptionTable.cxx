@@ -294,6 +294,13 @@ const Options Output = {
           { "double", vtkAlgorithm::DOUBLE_PRECISION },
           { "input", vtkAlgorithm::DEFAULT_PRECISION } }));
     } },
+  { "--components", "TABLE.csv",
+    "add the array ComponentId, and write a table of the surface's pieces: volumes, particles, ...",
+    [](Job& j, Text, Text v) { j.ComponentFile = v; } },
+  { "--least-volume", "V", "leave out closed pieces of a smaller volume (with --components)",
+    [](Job& j, Text n, Text v) { j.LeastVolume = ToPositive(n, v); } },
+  { "--least-particles", "N", "leave out closed pieces around fewer particles (with --components)",
+    [](Job& j, Text n, Text v) { j.LeastParticles = ToCount(n, v, 1); } },
   { "--times", "T[,T...]", "of a film: at these times, stored ones or between two steps",
     SetTimes },
   { "--time-step", "DT", "of a film: time from each INPUT to the next (default 1)",

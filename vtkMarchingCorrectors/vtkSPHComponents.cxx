@@ -171,9 +171,10 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   vtkDataArray* masses =
     this->Mass > 0.0 ? nullptr : FindArray(particles, this->MassArrayName, MCOR_MASS, 1);
   vtkDataArray* velocities = FindArray(particles, this->VelocityArrayName, MCOR_VELOCITY, 3);
-  vtkDataArray* types = this->FluidArrayName.empty()
-    ? nullptr
-    : FindArray(particles, this->FluidArrayName, MCOR_PARTICLE_TYPE, 1);
+  const bool all =
+    this->FluidArrayName.empty() || this->FluidArrayName == "(none)"; // of a panel's list
+  vtkDataArray* types =
+    all ? nullptr : FindArray(particles, this->FluidArrayName, MCOR_PARTICLE_TYPE, 1);
   std::vector<std::array<double, 3>> places;
   std::vector<vtkIdType> numbers;
   for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)

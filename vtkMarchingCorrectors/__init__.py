@@ -4,8 +4,9 @@
 # Classes of superclasses must be known before our own module is loaded.
 import vtkmodules.vtkCommonExecutionModel  # noqa: F401
 
-from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHDerivatives,
-                                    vtkSPHProbe, vtkSPHResample, vtkSPHTemporalInterpolator)
+from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHComponents,
+                                    vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe, vtkSPHResample,
+                                    vtkSPHTemporalInterpolator)
 
-__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHDerivatives", "vtkSPHProbe", "vtkSPHResample",
-           "vtkSPHTemporalInterpolator"]
+__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHComponents", "vtkSPHDerivatives", "vtkSPHGauge",
+           "vtkSPHProbe", "vtkSPHResample", "vtkSPHTemporalInterpolator"]

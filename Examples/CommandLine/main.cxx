@@ -3,8 +3,10 @@
 
 // The command line program: particles from a file, surface to a file. See --help.
 #include "ColorScale.h"
+#include "ComponentRun.h"
 #include "Ending.h"
 #include "Film.h"
+#include "GaugeRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -61,7 +63,8 @@ void ListDevices()
 void CheckFiles(const Job& job, MessageCapture* messages)
 {
   std::vector<std::string> outputs;
-  for (const std::string& file : { job.Output, job.StatisticsFile, job.Picture.File })
+  for (const std::string& file :
+    { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File })
   {
     if (!file.empty())
     {
@@ -98,10 +101,12 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   SetUpSurface(job, particles);
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
   std::vector<double> wallSeconds;
-  const Run run = RunAndTell(job, messages, runs, wallSeconds);
+  Run run = RunAndTell(job, messages, runs, wallSeconds);
   vtkPolyData* surface = run.Surface;
   const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
   std::vector<std::string> warnings = Warnings(surface, runs.back(), messages);
+  ComponentTable pieces(job);
+  pieces.Add(run, particles, messages);
   AddHintOfPeriod(job, particles, warnings);
   ColorScale colors(job.Picture);
   colors.Include(surface);
@@ -114,7 +119,13 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   {
     Say("warning: " + warning);
   }
-  WriteOutput(job.Output, SurfaceBytes(job.Output, surface, colors, messages));
+  OutputFiles files; // both, or none
+  files.Write(job.Output, SurfaceBytes(job.Output, surface, colors, messages));
+  if (!job.ComponentFile.empty())
+  {
+    files.Write(job.ComponentFile, pieces.Text());
+  }
+  files.Commit();
   if (!job.StatisticsFile.empty())
   {
     std::cout.flush(); // the file may be /dev/stdout
@@ -144,6 +155,10 @@ bool Execute(Job& job)
   if (job.ListDevices)
   {
     ListDevices();
+  }
+  else if (job.IsGauge())
+  {
+    return MeasureGauges(job, messages);
   }
   else if (job.IsProbe())
   {

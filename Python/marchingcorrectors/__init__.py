@@ -11,15 +11,16 @@ from pkgutil import extend_path as _extend_path
 
 from ._context import Context
 from ._functions import derivatives, flow, free_surface, isosurface, probe
+from ._gauge import Gauges, gauge
 from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
                        devices)
 from ._structs import VERSION as __version__
 from ._surface import Derivatives, Samples, Surface
 from ._warnings import InputWarning
 
-__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "InputWarning", "InvalidArgument",
+__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Gauges", "InputWarning", "InvalidArgument",
            "InvalidData", "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow",
-           "free_surface", "isosurface", "probe"]
+           "free_surface", "gauge", "isosurface", "probe"]
 
 # The C++ filter lies in a folder of the same name, where CMake installed it.
 __path__ = _extend_path(__path__, __name__)

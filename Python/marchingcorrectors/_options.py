@@ -117,6 +117,7 @@ FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
 DERIVATIVES = ("sph_kernel", "h_scale", "precision", "memory_limit", "periodic",
                "smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids",
                "particles_version")
+GAUGE = DERIVATIVES
 PROBE = ("field", "gradients", "node_threshold", "attributes_version") + DERIVATIVES
 
 

@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The XML of SPH Derivatives, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
+"""The XML of SPH Derivatives, SPH Gauge, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
 import pathlib
 import unittest
 import xml.etree.ElementTree
 
-from marchingcorrectors import vtkSPHAlgorithm, vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample
+from marchingcorrectors import (vtkSPHAlgorithm, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe,
+                                vtkSPHResample)
 
 PLUGIN = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
@@ -21,7 +22,7 @@ DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
 
 class TestFieldXml(unittest.TestCase):
     def for_each(self, check):
-        for filter_class in (vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample):
+        for filter_class in (vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe, vtkSPHResample):
             name = filter_class.__name__[3:]
             proxy = xml.etree.ElementTree.parse(PLUGIN / f"{name}.xml").find(".//SourceProxy")
             self.assertEqual((proxy.get("name"), proxy.get("class")), (name, filter_class.__name__))
@@ -84,6 +85,26 @@ class TestFieldXml(unittest.TestCase):
             menu = proxy.find("Hints/ShowInMenu")
             self.assertEqual(menu.get("category"), "Point Interpolation")
         self.for_each(check)
+
+    def test_components(self):
+        """No filter of particles: the surface comes first."""
+        proxy = xml.etree.ElementTree.parse(PLUGIN / "SPHComponents.xml").find(".//SourceProxy")
+        made = vtkSPHComponents()
+        elements = [e for e in proxy if e.tag.endswith("Property")]
+        setters = {name for name in vars(vtkSPHComponents) if name.startswith("Set") and "G" + name[1:] in
+                   vars(vtkSPHComponents)}
+        self.assertEqual(setters, {e.get("command") for e in elements if e.tag != "InputProperty"})
+        self.assertEqual([port.get("index") for port in proxy.findall("OutputPort")], ["0", "1"])
+        for element in elements:
+            command = element.get("command")
+            self.assertTrue(callable(getattr(made, command)))
+            self.assertRegex(element.findtext("Documentation"), "." if element.tag == "InputProperty" else "Default:")
+            if element.get("number_of_elements") == "1":
+                value = getattr(made, "G" + command[1:])()
+                text = element.get("default_values").replace("(none)", "")
+                self.assertEqual(value, type(value)(text))
+        grouped = [e.get("name") for e in proxy.findall("PropertyGroup/Property")]
+        self.assertEqual(sorted(grouped), sorted(e.get("name") for e in elements if e.tag != "InputProperty"))
 
     def test_shapes(self):
         """SPH Slice, SPH Line and SPH Volume: the same filter with its shape chosen, where the panel says."""

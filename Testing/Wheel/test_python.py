@@ -41,7 +41,7 @@ def caught(function, *arguments, **words):
 class Signatures(unittest.TestCase):
     def functions(self):
         sph = pyvista.PolyData(POSITIONS).sph
-        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives,
+        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives, mc.gauge,
                 sph.isosurface, sph.free_surface, sph.probe, sph.derivatives]
 
     def test_options_are_those_of_the_header(self):

@@ -532,6 +532,56 @@ extern "C"
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);
 
+  /* A straight line along which the free surface is measured. */
+  typedef struct mcor_gauge_line
+  {
+    double from[3], to[3]; /* unit L, finite, not at one place */
+    const char* name;      /* for messages; may be NULL */
+  } mcor_gauge_line;
+
+  typedef enum mcor_gauge_state
+  {
+    MCOR_GAUGE_DRY = 0,  /* no fluid anywhere on the line */
+    MCOR_GAUGE_WET = 1,  /* some, but not at the line's end */
+    MCOR_GAUGE_FULL = 2, /* fluid at the line's end */
+    MCOR_GAUGE_STATE_COUNT
+  } mcor_gauge_state;
+
+  /* Of one line; lengths are measured from its beginning, unit L. */
+  typedef struct mcor_gauge_reading
+  {
+    mcor_gauge_state state;
+    int outside;             /* 1: no particle's support reaches the line */
+    double first, last;      /* where fluid first, and last, ends: at the line's end if it ends nowhere
+                              * before; NaN where dry */
+    double depth;            /* length of the line in fluid; 0 where dry */
+    double place[3];         /* of `last`; NaN where dry */
+    int64_t first_crossing;  /* of this line, among all */
+    int64_t crossing_count;  /* whichever way the line goes through the surface */
+  } mcor_gauge_reading;
+
+  /* Owned; free with mcor_free_gauges. */
+  typedef struct mcor_gauges
+  {
+    int64_t count; /* of lines */
+    mcor_gauge_reading* readings; /* [count] */
+    int64_t crossing_count;
+    double* crossings; /* [crossing_count], ascending for each line, unit L */
+    mcor_statistics statistics;
+  } mcor_gauges;
+
+  /* Where lines go through the free surface: where the weight sum of fluid particles, as mcor_extract has
+   * it for MCOR_WEIGHT_SUM, is the level, which is the iso value; 0.5 without one. Fluid is where it
+   * is at least the level, above 0. Walls do not end it. Each line is sampled at a quarter of the smallest (scaled)
+   * smoothing length; between samples whose neighbours show that an extremum may cross the
+   * level, more finely. Crossings are then solved for. lines: [count]. Options count as for mcor_probe, and
+   * iso_values and wall_share; fields, box and globals do not. Of periodic particles the images count.
+   * *gauges is overwritten. */
+  mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
+  void mcor_free_gauges(mcor_gauges* gauges);
+  const char* mcor_gauge_state_name(mcor_gauge_state state); /* "dry", "wet", "full" */
+
   typedef enum mcor_gradient
   {
     MCOR_GRADIENT_CORRECTED = 0, /* first-order corrected where its matrix can be inverted, else

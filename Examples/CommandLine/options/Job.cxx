@@ -33,6 +33,62 @@ void Exclude(
   }
 }
 
+/// What gauges have no use for.
+void CheckGauge(const Job& job)
+{
+  const bool isGrid = job.Grid.Counts[0] > 0;
+  const std::string name = isGrid ? "--gauge-grid" : !job.Gauges.empty() ? "--gauge" : "--gauges";
+  Exclude(name + " makes no surface; leave out ",
+    { { !job.Scalar.empty(), "--scalar" },
+      { job.Surface->GetNumberOfContours() > 1, "all but one --iso value" },
+      { !job.StatisticsFile.empty(), "--stats" }, { job.Repeat > 1, "--repeat" },
+      { !job.ComponentFile.empty(), "--components" }, { !job.Picture.File.empty(), "--screenshot" },
+      { job.IsProbe(), "--probe, --slice and --line" },
+      { job.Surface->GetUseBox() != 0, "--box" } });
+  Exclude("gauges are measured at the steps that are stored; leave out ",
+    { { !job.Times.empty(), "--times" } });
+  Exclude("gauges take the fluid alone, and do not end at walls; leave out ",
+    { { job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL, "--solids wall" } });
+  Exclude("--gauge-grid has all its gauges; leave out ",
+    { { isGrid && !job.Gauges.empty(), "--gauge" },
+      { isGrid && !job.GaugeFile.empty(), "--gauges" } });
+  if (!EndsWith(job.Output, isGrid ? ".vti" : ".csv"))
+  {
+    throw UsageError("the output of " + name + " is a " + (isGrid ? ".vti" : ".csv") +
+      " file, not '" + job.Output + "'");
+  }
+  if (!(job.Gauge->GetLevel() > 0.0))
+  {
+    throw UsageError(
+      "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual");
+  }
+  if (LaunchedCount() > 1)
+  {
+    throw UsageError("gauges are measured by one process; leave out mpirun");
+  }
+}
+
+void CheckComponents(const Job& job)
+{
+  if (job.ComponentFile.empty())
+  {
+    Exclude("without a table of pieces, --components, there is no use for ",
+      { { job.LeastVolume > 0.0, "--least-volume" },
+        { job.LeastParticles > 0, "--least-particles" } });
+    return;
+  }
+  Exclude("pieces are those of a surface; --components goes without ",
+    { { job.IsProbe(), "--probe, --slice and --line" } });
+  if (!EndsWith(job.ComponentFile, ".csv"))
+  {
+    throw UsageError("--components writes a .csv file, not '" + job.ComponentFile + "'");
+  }
+  if (LaunchedCount() > 1)
+  {
+    throw UsageError("pieces are found by one process; --components goes without mpirun");
+  }
+}
+
 /// What a probe has no use for.
 void CheckProbe(const Job& job)
 {
@@ -128,10 +184,16 @@ void Check(const Job& job)
   {
     throw UsageError("needs INPUT and OUTPUT");
   }
+  if (job.IsGauge())
+  {
+    CheckGauge(job);
+    return;
+  }
   CheckPicture(job);
   Exclude("only --slice and --line have use for ",
     { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
       "--resolution" } });
+  CheckComponents(job);
   if (job.IsProbe())
   {
     CheckProbe(job);
@@ -241,7 +303,7 @@ private:
     {
       throw UsageError(name + " takes no value");
     }
-    if (takesValue && !this->Given.insert(name).second)
+    if (takesValue && !this->Given.insert(name).second && !option.Repeats)
     {
       throw UsageError(name + " is given twice");
     }
@@ -279,7 +341,7 @@ private:
 //------------------------------------------------------------------------------
 bool Job::IsFilm() const
 {
-  return !this->IsProbe() &&
+  return !this->IsProbe() && !this->IsGauge() &&
     (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
       (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
 }
@@ -291,7 +353,8 @@ std::string CommandLineHelp()
   help
     << "usage: marching-correctors INPUT OUTPUT [options]\n"
        "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
-       "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n\n"
+       "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n"
+       "       marching-correctors INPUT... OUTPUT.csv --gauge NAME=X,Y,Z:X,Y,Z [options]\n\n"
        "Extracts an isosurface from SPH particles. INPUT is a "
     << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
     << " file. With OUTPUT.pvd a film: one surface for each step,\n"

@@ -3,9 +3,12 @@
 #ifndef Job_h
 #define Job_h
 
+#include "GaugeLine.h"
+
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
 #include "vtkSPHDerivatives.h"
+#include "vtkSPHGauge.h"
 #include "vtkSPHProbe.h"
 
 #include <array>
@@ -38,15 +41,20 @@ struct Job
   vtkNew<vtkMarchingCorrectors> Surface;
   vtkNew<vtkSPHDerivatives> Derivatives; ///< where Derive is not empty
   vtkNew<vtkSPHProbe> Probe;             ///< where IsProbe()
+  vtkNew<vtkSPHGauge> Gauge;             ///< where IsGauge()
 
   /// For settings that all of them have.
-  std::array<vtkSPHAlgorithm*, 3> All() const
+  std::array<vtkSPHAlgorithm*, 4> All() const
   {
-    return { this->Surface, this->Derivatives, this->Probe };
+    return { this->Surface, this->Derivatives, this->Probe, this->Gauge };
   }
   bool IsProbe() const
   {
     return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
+  }
+  bool IsGauge() const
+  {
+    return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
@@ -57,7 +65,10 @@ struct Job
   double TimeStep = 1.0;     ///< between the steps of a film of particle files
   std::string ProbeFile;
   SliceOptions Slice;
-  std::string Derive; ///< array whose gradient, and what is made of it, the particles get
+  std::vector<GaugeLine> Gauges;
+  std::string GaugeFile; ///< more of them
+  GaugeGrid Grid;        ///< no others then
+  std::string Derive;    ///< array whose gradient, and what is made of it, the particles get
 
   std::string Scalar;
   bool HasIsoValues = false;
@@ -72,6 +83,10 @@ struct Job
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
   bool HasVertexThreshold = false;         ///< else it is what suits the boundary detection
   std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
+
+  std::string ComponentFile; ///< table of the surface's pieces; empty: none
+  double LeastVolume = 0.0;  ///< of a piece
+  int LeastParticles = 0;    ///< in a piece
 
   std::string StatisticsFile;
   PictureOptions Picture;

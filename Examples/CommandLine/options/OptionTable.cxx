@@ -69,6 +69,7 @@ void SetIsoValues(Job& job, Text option, Text text)
     job.Surface->SetValue(static_cast<int>(i), values[i]);
     job.Surface->SetFreeSurfaceValue(static_cast<int>(i), values[i]);
   }
+  job.Gauge->SetLevel(values.front());
 }
 
 void SetKernel(Job& job, Text option, Text text)
@@ -146,6 +147,17 @@ const Options WhatToContour = {
     [](Job& j, Text n, Text v) { j.Slice.Line = ToLine(n, v); } },
   { "--resolution", "N", "points along the line, or the longest side of the slice (default 512)",
     [](Job& j, Text n, Text v) { j.Slice.Resolution = ToCount(n, v, 2, 1 << 15); } },
+};
+
+const Options Gauges = {
+  { "", "", "No surface, but where lines cross the free surface; OUTPUT is a .csv table", {} },
+  { "--gauge", "NAME=X,Y,Z:X,Y,Z", "from one place to another; may be given more than once",
+    [](Job& j, Text n, Text v) { j.Gauges.push_back(ToGauge(n, v)); }, true },
+  { "--gauges", "FILE", "those of a file with such lines",
+    [](Job& j, Text, Text v) { j.GaugeFile = v; } },
+  { "--gauge-grid", "NX,NY:BOUNDS",
+    "NX by NY upright ones from z0 to z1 in x0,x1,y0,y1,z0,z1; OUTPUT is an image of levels, .vti",
+    [](Job& j, Text n, Text v) { j.Grid = ToGaugeGrid(n, v); } },
 };
 
 const Options TheParticles = {
@@ -284,6 +296,13 @@ const Options Output = {
           { "double", vtkAlgorithm::DOUBLE_PRECISION },
           { "input", vtkAlgorithm::DEFAULT_PRECISION } }));
     } },
+  { "--components", "TABLE.csv",
+    "add the array ComponentId, and write a table of the surface's pieces: volumes, particles, ...",
+    [](Job& j, Text, Text v) { j.ComponentFile = v; } },
+  { "--least-volume", "V", "leave out closed pieces of a smaller volume (with --components)",
+    [](Job& j, Text n, Text v) { j.LeastVolume = ToPositive(n, v); } },
+  { "--least-particles", "N", "leave out closed pieces around fewer particles (with --components)",
+    [](Job& j, Text n, Text v) { j.LeastParticles = ToCount(n, v, 1); } },
   { "--times", "T[,T...]", "of a film: at these times, stored ones or between two steps",
     SetTimes },
   { "--time-step", "DT", "of a film: time from each INPUT to the next (default 1)",
@@ -343,7 +362,7 @@ const std::vector<Option>& AllOptions()
   {
     Options joined;
     for (const Options* group :
-      { &WhatToContour, &TheParticles, &TheMethod, &Output, &DeviceAndHelp })
+      { &WhatToContour, &Gauges, &TheParticles, &TheMethod, &Output, &DeviceAndHelp })
     {
       joined.insert(joined.end(), group->begin(), group->end());
     }

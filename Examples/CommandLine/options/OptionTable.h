@@ -15,6 +15,7 @@ struct Option
   const char* Argument; ///< what stands for it in the help; empty: the option has none
   const char* Help;
   std::function<void(Job&, const std::string& option, const std::string& value)> Set;
+  bool Repeats = false; ///< whether it may be given more than once
 };
 
 /// Every option, in the order of the help. An option without a name starts a group.

@@ -4,6 +4,7 @@
 
 #include "CollectionFile.h"
 #include "ColorScale.h"
+#include "ComponentRun.h"
 #include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
@@ -115,6 +116,10 @@ void CheckFiles(const Job& job, const Steps& steps, const std::vector<std::strin
   {
     outputs.push_back(job.StatisticsFile);
   }
+  if (!job.ComponentFile.empty())
+  {
+    outputs.push_back(job.ComponentFile);
+  }
   if (IsCollectionFile(job.Output))
   {
     outputs.push_back(job.Output);
@@ -170,6 +175,7 @@ public:
     , Times(ListTimes(job, this->Stored))
     , Surfaces(ListSurfaces(job.Output, this->Times.size()))
     , Colors(job.Picture)
+    , Pieces(job)
   {
     CheckFiles(job, this->Stored, this->Surfaces, messages);
     if (!job.Picture.File.empty())
@@ -190,6 +196,10 @@ public:
     }
     this->List(true);
     this->Said.TellCounts();
+    if (!this->Pieces.Text().empty())
+    {
+      WriteOutput(this->Options.ComponentFile, this->Pieces.Text());
+    }
     if (!this->Options.StatisticsFile.empty())
     {
       std::cout.flush(); // the file may be /dev/stdout
@@ -290,7 +300,8 @@ private:
     std::vector<std::string> warnings;
     const vtkSmartPointer<vtkPointSet> particles = this->ParticlesAt(this->Times[i], warnings);
     SetUpSurface(this->Options, particles);
-    const Run run = Extract(this->Options, this->Messages, progress);
+    Run run = Extract(this->Options, this->Messages, progress);
+    this->Pieces.Add(run, particles, this->Messages, this->Times[i]);
     for (const std::string& warning : Warnings(run.Surface, run.Statistics, this->Messages))
     {
       warnings.push_back(warning);
@@ -378,6 +389,7 @@ private:
   Clock::time_point NextList;
   Sentences Said;
   ColorScale Colors;
+  ComponentTable Pieces;
   std::unique_ptr<Picture> Drawn; ///< where pictures are asked for
   vtkSmartPointer<ParticleSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;

@@ -23,7 +23,7 @@
 /* Fluid weight below which a mean has no digits, MCOR_LEAST_SUM of mcor_attribute.cl. */
 #define MCOR_LEAST_WEIGHT 1e-30
 
-static void mcor_release_probe(mcor_probe_run* run)
+void mcor_release_probe(mcor_probe_run* run)
 {
   mcor_release_batch(run->context, &run->batch);
   MCOR_RELEASE(run->context, &run->weight, &run->sums, &run->weight_gradient, &run->gradients);
@@ -186,8 +186,7 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
   return status;
 }
 
-/* The arrays on the device, at the points [first, last). */
-static mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
+mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
 {
   mcor_context* context = run->context;
   MCOR_TRY(mcor_upload_points(run, first, last));

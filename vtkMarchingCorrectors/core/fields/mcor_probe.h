@@ -30,4 +30,8 @@ void mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 /* Takes the caller's points [first, last) to the device. */
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);
 
+/* mcor_probe.c. The arrays on the device, at the points [first, last). */
+mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
+void mcor_release_probe(mcor_probe_run* run);
+
 #endif

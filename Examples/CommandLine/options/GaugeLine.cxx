@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "GaugeLine.h"
+
+#include "OptionValue.h"
+#include "SafeText.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+namespace
+{
+
+/// Numbers of a text that has so many of them.
+bool Numbers(const std::string& option, const std::string& text, std::size_t count, double* numbers)
+{
+  std::vector<double> found;
+  try
+  {
+    found = ToNumbers(option, text);
+  }
+  catch (const UsageError&)
+  {
+    return false; // the whole text is to be named, not a part of it
+  }
+  std::copy_n(found.data(), std::min(count, found.size()), numbers);
+  return found.size() == count;
+}
+
+}
+
+//------------------------------------------------------------------------------
+GaugeLine ToGauge(const std::string& option, const std::string& text)
+{
+  const std::size_t equals = text.rfind('='), colon = text.rfind(':');
+  GaugeLine gauge;
+  if (equals == std::string::npos || equals == 0 || colon == std::string::npos || colon < equals ||
+    !Numbers(option, text.substr(equals + 1, colon - equals - 1), 3, gauge.Ends.data()) ||
+    !Numbers(option, text.substr(colon + 1), 3, gauge.Ends.data() + 3))
+  {
+    throw UsageError(option + " needs a name and two places, NAME=X,Y,Z:X,Y,Z, not '" + text + "'");
+  }
+  gauge.Name = Printable(text.substr(0, equals));
+  if (std::equal(gauge.Ends.begin(), gauge.Ends.begin() + 3, gauge.Ends.begin() + 3))
+  {
+    throw UsageError(option + ": gauge '" + gauge.Name +
+      "' has no length, as both its places are the same; give it two");
+  }
+  return gauge;
+}
+
+//------------------------------------------------------------------------------
+std::vector<GaugeLine> ReadGauges(const std::string& file)
+{
+  std::ifstream stream(file);
+  std::vector<GaugeLine> gauges;
+  for (std::string line; std::getline(stream, line);)
+  {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#')
+    {
+      continue;
+    }
+    const std::size_t last = line.find_last_not_of(" \t\r");
+    gauges.push_back(ToGauge("--gauges " + file, line.substr(first, last + 1 - first)));
+  }
+  if (!stream.eof()) // a folder opens, but does not read
+  {
+    throw std::runtime_error("the gauges' file " + file + " cannot be read");
+  }
+  if (gauges.empty())
+  {
+    throw UsageError("--gauges " + file + " has no gauges; it needs lines NAME=X,Y,Z:X,Y,Z");
+  }
+  return gauges;
+}
+
+//------------------------------------------------------------------------------
+GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
+{
+  const std::size_t colon = text.find(':');
+  GaugeGrid grid;
+  double counts[2];
+  double* b = grid.Bounds.data();
+  if (colon == std::string::npos || !Numbers(option, text.substr(0, colon), 2, counts) ||
+    !Numbers(option, text.substr(colon + 1), 6, b) ||
+    !(b[0] <= b[1] && b[2] <= b[3] && b[4] < b[5]))
+  {
+    throw UsageError(option +
+      " needs two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1, not '" + text + "'");
+  }
+  for (int a = 0; a < 2; ++a)
+  {
+    grid.Counts[a] = static_cast<int>(std::clamp(counts[a], 0.0, 1e6));
+    if (!(counts[a] >= 1.0) || counts[a] != grid.Counts[a])
+    {
+      throw UsageError(option + " needs whole numbers of gauges, 1 or more, not '" + text + "'");
+    }
+  }
+  if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e7)
+  {
+    throw UsageError(option + " has more than 10 million gauges; take fewer");
+  }
+  return grid;
+}
+
+//------------------------------------------------------------------------------
+std::vector<GaugeLine> LinesOf(const GaugeGrid& grid)
+{
+  std::vector<GaugeLine> lines;
+  const std::array<double, 6>& b = grid.Bounds;
+  const auto at = [&](int axis, int i)
+  {
+    const int last = grid.Counts[axis] - 1;
+    const double t = last > 0 ? static_cast<double>(i) / last : 0.0;
+    return (1.0 - t) * b[2 * axis] + t * b[2 * axis + 1];
+  };
+  for (int j = 0; j < grid.Counts[1]; ++j)
+  {
+    for (int i = 0; i < grid.Counts[0]; ++i)
+    {
+      const double x = at(0, i), y = at(1, j);
+      lines.push_back({ std::to_string(i) + " " + std::to_string(j), { x, y, b[4], x, y, b[5] } });
+    }
+  }
+  return lines;
+}
+
+//------------------------------------------------------------------------------
+void CheckNames(const std::vector<GaugeLine>& gauges)
+{
+  std::set<std::string> names;
+  for (const GaugeLine& gauge : gauges)
+  {
+    if (!names.insert(gauge.Name).second)
+    {
+      throw UsageError(
+        "two gauges have the name '" + gauge.Name + "'; give each a name of its own");
+    }
+  }
+}

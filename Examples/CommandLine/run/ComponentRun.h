@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ComponentRun_h
+#define ComponentRun_h
+
+#include <string>
+
+class MessageCapture;
+class vtkPointSet;
+struct Job;
+struct Run;
+
+/// The table of the pieces of the surfaces of a run, or of the steps of a film, which have a column of times.
+class ComponentTable
+{
+public:
+  explicit ComponentTable(const Job& job)
+    : Options(job)
+  {
+  }
+
+  /// Nothing where no table is asked for. Else the run's surface gets the array ComponentId, without the
+  /// pieces that are to be left out, and the table a row for each piece. Throws std::runtime_error.
+  void Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time = 0.0);
+
+  const std::string& Text() const { return this->Lines; }
+
+private:
+  const Job& Options;
+  std::string Lines;
+};
+
+#endif

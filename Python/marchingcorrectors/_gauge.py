@@ -1,0 +1,125 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""gauge: where lines cross the free surface."""
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping
+from dataclasses import dataclass, field as dataclass_field
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Union
+
+import numpy as np
+
+from . import _structs as c
+from ._arrays import as_bytes, contiguous, statistics
+from ._context import Context
+from ._functions import _prepare, _run
+from ._library import InvalidArgument, lib
+from ._options import GAUGE, check_names, with_options
+from ._surface import Result
+from ._units import Units
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
+    from ._options import Options
+
+STATES = np.array(["dry", "wet", "full"])
+
+
+@dataclass(eq=False, repr=False)
+class Gauges(Result):
+    """What lines read; lengths are from the line's beginning, unit of the positions (L). NaN where dry."""
+
+    names: List[str]  #: of the lines; "0", "1", ... where none were given
+    state: np.ndarray  #: (lines,) "dry": no fluid; "full": fluid at the line's end; "wet": else
+    first: np.ndarray  #: (lines,) float64: where fluid first ends
+    last: np.ndarray  #: (lines,) float64: where it last ends; at the line's end where full
+    depth: np.ndarray  #: (lines,) float64: length in fluid
+    place: np.ndarray  #: (lines, 3) float64: of `last`
+    outside: np.ndarray  #: (lines,) bool: no particle reaches the line
+    crossings: Dict[str, np.ndarray]  #: {name: float64}: where each line goes through the surface
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    def __repr__(self):
+        counts = ", ".join(f"{int((self.state == state).sum())} {state}" for state in STATES)
+        return f"<Gauges: {len(self.names)} lines, {counts}>"
+
+
+def _as_lines(lines, units):
+    """Names, and an array (lines, 2, 3)."""
+    names = [str(name) for name in lines] if isinstance(lines, Mapping) else None
+    values = list(lines.values()) if isinstance(lines, Mapping) else lines
+    array = contiguous(units.lengths(values, "array of lines"), "array of lines").astype(np.float64)
+    if array.size == 0:
+        array = array.reshape(0, 2, 3)
+    if array.ndim == 2 and names is None:
+        array = array[np.newaxis]
+    if array.ndim != 3 or array.shape[1:] != (2, 3):
+        raise InvalidArgument(f"Lines have the shape (lines, 2, 3), from and to each, not {array.shape}.")
+    return names or [str(i) for i in range(len(array))], array
+
+
+def _structures(names, array):
+    made = (c.mcor_gauge_line * max(len(array), 1))()
+    for line, name, ends in zip(made, names, array):
+        getattr(line, "from")[:], line.to[:] = ends[0], ends[1]
+        line.name = as_bytes(name)
+    return made
+
+
+def _gauges(found, names):
+    readings = [found.readings[i] for i in range(found.count)]
+    all_crossings = np.array([found.crossings[i] for i in range(found.crossing_count)], np.float64)
+
+    def column(name, kind=np.float64):
+        return np.array([getattr(reading, name) for reading in readings], kind)
+
+    return Gauges(
+        names=names, state=STATES[column("state", int)], first=column("first"), last=column("last"),
+        depth=column("depth"), outside=column("outside", bool),
+        place=np.array([list(reading.place) for reading in readings]).reshape(len(readings), 3),
+        crossings={name: all_crossings[r.first_crossing:r.first_crossing + r.crossing_count]
+                   for name, r in zip(names, readings)},
+        statistics=statistics(found.statistics))
+
+
+@with_options(GAUGE)
+def gauge(positions: ArrayLike, lines: Any, iso: float = 0.5, *,
+          smoothing_length: Optional[ArrayLike] = None,
+          volume: Optional[ArrayLike] = None,
+          mass: Optional[ArrayLike] = None,
+          density: Optional[ArrayLike] = None,
+          solid: Optional[ArrayLike] = None,
+          context: Optional[Context] = None,
+          device: Union[None, str, int] = None,
+          progress: Optional[Union[bool, Callable[[float, str], Any]]] = None,
+          **options: Unpack[Options]) -> Gauges:
+    """Water levels: where straight lines cross the free surface, every crossing.
+
+    lines: (lines, 2, 3), L: from and to of each; or one line, (2, 3); or {name: (from, to)}.
+    iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+
+    Solids do not count. The other arguments are those of isosurface().
+
+    {options}
+    """
+    check_names(gauge, options, GAUGE)
+    units = Units(positions)
+    arguments, _ = _prepare(units, {}, solid, {
+        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
+    names, array = _as_lines(lines, units)
+    arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
+    made, found = _structures(names, array), c.mcor_gauges()
+
+    def free():
+        lib.mcor_free_gauges(ctypes.byref(found))
+
+    _run(arguments, context, device, progress, lambda handle: lib.mcor_gauge(
+        handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), made, len(array),
+        ctypes.byref(found)), free)
+    try:
+        return _gauges(found, names)
+    finally:
+        free()

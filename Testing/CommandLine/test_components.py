@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pieces of surfaces by the program marching-correctors: test_components.py PROGRAM PRELOAD."""
+import csv
+import math
+
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+COLUMNS = ("component parent closed area volume x y z xmin xmax ymin ymax zmin zmax diameter particles mass "
+           "vx vy vz").split()
+FREE = ["--free-surface"]
+
+
+class Components(CommandLineTest):
+    """A block of particles with the sides 1 around the origin, and one of 0.5 in 2, 0, 0."""
+
+    def setUp(self):
+        super().setUp()
+        points, arrays = files.lattice(5)
+        self.all_points = self.points + [(x + 2, y, z) for x, y, z in points]
+        self.all_arrays = {name: values + arrays[name] for name, values in self.arrays.items()}
+        self.all_arrays["Velocity"] = [(1.0, 2.0, 3.0)] * 1000 + [(4.0, 5.0, 6.0)] * 125
+        files.write_vtp(self.input, self.all_points, self.all_arrays)
+        self.table = self.directory / "pieces.csv"
+
+    def pieces(self, *options):
+        result = self.extract(*FREE, "--components", self.table, *options)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return self.rows(COLUMNS)
+
+    def rows(self, columns):
+        with self.table.open() as file:
+            reader = csv.DictReader(file)
+            rows = list(reader)
+        self.assertEqual(reader.fieldnames, columns)
+        return rows
+
+    def test_two_blocks(self):
+        large, small = self.pieces()
+        self.assertEqual([large["component"], small["component"]], ["0", "1"])
+        self.assertEqual([large["parent"], large["closed"], small["closed"]], ["", "1", "1"])
+        for row, side, x in ((large, 1.0, 0), (small, 0.5, 2)):
+            self.assertAlmostEqual(float(row["volume"]), side ** 3, delta=0.1 * side ** 2)
+            self.assertAlmostEqual(float(row["area"]), 6 * side ** 2, delta=0.9 * side)
+            self.assertAlmostEqual(float(row["x"]), x, delta=1e-4)
+            self.assertAlmostEqual(float(row["xmax"]), x + side / 2, delta=0.01)
+            self.assertAlmostEqual(float(row["diameter"]), (6 * float(row["volume"]) / math.pi) ** (1 / 3), delta=1e-9)
+        # But for the corners, around which less than half is filled.
+        self.assertEqual([large["particles"], small["particles"]], ["992", "117"])
+        self.assertAlmostEqual(float(large["mass"]), 992, delta=1e-6)
+        self.assertEqual([[round(float(row[v]), 9) for v in ("vx", "vy", "vz")] for row in (large, small)],
+                         [[1, 2, 3], [4, 5, 6]])
+        text = self.output.read_text()
+        self.assertEqual(text.count('Name="ComponentId"'), 2)
+
+    def test_small_pieces_are_left_out(self):
+        whole = len(self.pieces())
+        before = self.output.read_bytes()
+        for option in (["--least-volume", "0.3"], ["--least-particles", "118"]):
+            row, = self.pieces(*option)
+            self.assertEqual((whole, row["component"], row["particles"]), (2, "0", "992"))
+            self.assertLess(len(self.output.read_bytes()), len(before))
+        self.assertEqual(len(self.pieces("--least-particles", "117", "--least-volume", "0.05")), 2)
+        self.assertEqual(self.output.read_bytes(), before)
+
+    def test_without_the_table_nothing_changes(self):
+        self.pieces()
+        self.succeed(*FREE)
+        self.assertNotIn("ComponentId", self.output.read_text())
+
+    def test_film(self):
+        """One table, with the times."""
+        files.write_vtp(self.directory / "later.vtp", self.points, self.arrays)
+        result = self.run_program(self.input, "later.vtp", "film.pvd", *FREE, "--components", self.table,
+                                  "--time-step", "0.5")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual([(row["time"], row["component"]) for row in self.rows(["time", *COLUMNS])],
+                         [("0", "0"), ("0", "1"), ("0.5", "0")])
+
+    def test_wrong_usage(self):
+        for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
+                                  ([*FREE, "--least-volume", "1"], "no use for --least-volume"),
+                                  ([*FREE, "--components", self.output], "writes a .csv file")):
+            self.refuse(self.extract(*options), 2, sentence)
+        self.refuse(self.extract(*FREE, "--components", "nowhere/pieces.csv"), 1, "could not be written")
+
+
+if __name__ == "__main__":
+    main()

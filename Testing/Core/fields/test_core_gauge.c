@@ -1,0 +1,322 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Gauges: every crossing of the level, against sums in double precision at ten times as many points. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LEVEL 0.5
+#define ERROR_OF_WEIGHT 1e-4
+
+/* Fluid of a pool with waves, without a bubble in it, and a droplet above: of a lattice of spacing 1. */
+static int pool_has(const double x[3])
+{
+  const double dx = x[0] - 12, dy = x[1] - 8, bubble = x[2] - 5, drop = x[2] - 15;
+  const double ball = dx * dx + dy * dy;
+  return (x[2] <= 9 + 1.5 * sin(0.5 * x[0]) && ball + bubble * bubble > 3.2 * 3.2) ||
+    ball + drop * drop < 1.9 * 1.9;
+}
+
+static core_set make_pool(int wave)
+{
+  core_set set = core_make_set(24 * 16 * 20);
+  int64_t n = 0;
+  for (int i = 0; i < 24 * 16 * 20; ++i)
+  {
+    const double x[3] = { i % 24 + 0.5, i / 24 % 16 + 0.5, i / (24 * 16) + 0.5 };
+    if (wave ? pool_has(x) : x[2] < 10)
+    {
+      memcpy(set.position + 3 * n, x, sizeof x);
+      set.smoothing_length[n] = 1.3;
+      set.volume[n] = 1;
+      ++n;
+    }
+  }
+  set.count = n;
+  return set;
+}
+
+typedef struct gauge_counts
+{
+  int crossings, close_pairs, wet, full, dry;
+} gauge_counts;
+
+static double weight_at(const oracle_field* field, const mcor_gauge_line* line, double t)
+{
+  double point[3];
+  oracle_sample sample;
+  for (int a = 0; a < 3; ++a)
+  {
+    point[a] = line->from[a] + t * (line->to[a] - line->from[a]);
+  }
+  oracle_evaluate(field, NULL, point, &sample);
+  return sample.weight;
+}
+
+static double length_of(const mcor_gauge_line* line)
+{
+  return sqrt(pow(line->to[0] - line->from[0], 2) + pow(line->to[1] - line->from[1], 2) +
+    pow(line->to[2] - line->from[2], 2));
+}
+
+/* What a line reads, against its crossings as dense samples find them. Two crossings between which the
+ * weight sum leaves the level by less than its error may be missing, or too many. */
+static void check_line(const oracle_field* field, const mcor_gauge_line* line,
+  const mcor_gauges* gauges, int64_t number, double step, gauge_counts* counts)
+{
+  const mcor_gauge_reading* r = &gauges->readings[number];
+  const double* at = gauges->crossings + r->first_crossing;
+  const double length = length_of(line);
+  const int n = (int)ceil(length / step);
+  for (int64_t i = 0; i < r->crossing_count; ++i)
+  {
+    const double error = fabs(weight_at(field, line, at[i] / length) - LEVEL);
+    CORE_CHECK(error <= ERROR_OF_WEIGHT, "line %lld: off by %g", (long long)number, error);
+    CORE_CHECK(i == 0 || at[i] >= at[i - 1], "line %lld: not in order", (long long)number);
+    counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step; /* of samples 10 steps apart */
+  }
+  double before = weight_at(field, line, 0), depth = 0;
+  int64_t next = 0;
+  for (int i = 1; i <= n; ++i)
+  {
+    const double after = weight_at(field, line, (double)i / n);
+    int64_t passed = 0;
+    for (; next < r->crossing_count && at[next] <= length * i / n; ++next, ++passed)
+    {
+    }
+    const int changes = (before >= LEVEL) != (after >= LEVEL);
+    const int certain =
+      fabs(before - LEVEL) > ERROR_OF_WEIGHT && fabs(after - LEVEL) > ERROR_OF_WEIGHT;
+    CORE_CHECK(!certain || passed % 2 == changes, "line %lld, at %g: %lld crossings, expected %d",
+      (long long)number, length * i / n, (long long)passed, changes);
+    depth += (before >= LEVEL) + (after >= LEVEL);
+    before = after;
+  }
+  counts->crossings += (int)r->crossing_count;
+  counts->wet += r->state == MCOR_GAUGE_WET;
+  counts->full += r->state == MCOR_GAUGE_FULL;
+  counts->dry += r->state == MCOR_GAUGE_DRY;
+  assert_true(
+    fabs(r->depth - 0.5 * depth * length / n) < 0.5 * step * (double)(r->crossing_count + 1));
+}
+
+static void check_reading(
+  const oracle_field* field, const mcor_gauge_line* line, const mcor_gauge_reading* r)
+{
+  const double length = length_of(line);
+  const int full = weight_at(field, line, 1) >= LEVEL;
+  if (r->state == MCOR_GAUGE_DRY)
+  {
+    assert_true(r->crossing_count == 0 && r->depth == 0 && isnan(r->first) && isnan(r->last) &&
+      isnan(r->place[0]));
+    return;
+  }
+  assert_true((r->state == MCOR_GAUGE_FULL) == full);
+  assert_true(r->first <= r->last && r->last <= length * (1 + 1e-12) && r->depth <= r->last + 1e-9);
+  assert_true(!full || fabs(r->last - length) < 1e-9);
+  for (int a = 0; a < 3; ++a)
+  {
+    const double place = line->from[a] + r->last / length * (line->to[a] - line->from[a]);
+    assert_true(fabs(r->place[a] - place) < 1e-9);
+  }
+}
+
+static void check_lines(mcor_context* context, const core_set* set, const mcor_gauge_line* lines,
+  int count, mcor_type precision, gauge_counts* counts)
+{
+  const mcor_input input = core_input(set);
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.precision = precision;
+  mcor_gauges gauges;
+  CORE_OK(context, mcor_gauge(context, &input, &options, lines, count, &gauges));
+  assert_int_equal(gauges.count, count);
+  const oracle_particles particles = core_oracle(set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
+  for (int i = 0; i < count; ++i)
+  {
+    check_line(&field, &lines[i], &gauges, i, 0.025 * oracle_smallest_h(&particles), counts);
+    check_reading(&field, &lines[i], &gauges.readings[i]);
+  }
+  oracle_free_field(&field);
+  mcor_free_gauges(&gauges);
+}
+
+static mcor_gauge_line* random_lines(int count, const double low[3], const double high[3])
+{
+  mcor_gauge_line* lines = calloc((size_t)count, sizeof *lines);
+  assert_non_null(lines);
+  uint64_t seed = 7;
+  for (int i = 0; i < count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      lines[i].from[a] = low[a] + (high[a] - low[a]) * random_unit(&seed);
+      lines[i].to[a] = low[a] + (high[a] - low[a]) * random_unit(&seed);
+    }
+  }
+  return lines;
+}
+
+static void test_pool_with_waves(void** state)
+{
+  core_set set = make_pool(1);
+  const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
+  mcor_gauge_line* lines = random_lines(150, low, high);
+  for (int i = 0; i < 40; ++i) /* upright, through the bubble and the droplet */
+  {
+    lines[i] =
+      (mcor_gauge_line){ .from = { 0.6 * i + 0.2, 8, -3 }, .to = { 0.6 * i + 0.2, 8, 20 } };
+  }
+  for (int p = 0; p < 2; ++p)
+  {
+    gauge_counts counts = { 0 };
+    check_lines(*state, &set, lines, 150, p ? MCOR_FLOAT64 : MCOR_FLOAT32, &counts);
+    assert_true(counts.crossings > 200 && counts.wet > 50 && counts.full > 10 && counts.dry > 5);
+  }
+  free(lines);
+  core_free_set(&set);
+}
+
+/* Sparse particles in no order: the weight sum is near the level everywhere, and passes it often, and
+ * by little. */
+static void test_noise(void** state)
+{
+  core_set set = core_make_random(1500, 10, 0.6, 1.0, 3);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] = 0.36;
+  }
+  const double low[3] = { -6, -6, -6 }, high[3] = { 6, 6, 6 };
+  mcor_gauge_line* lines = random_lines(1000, low, high);
+  gauge_counts counts = { 0 };
+  check_lines(*state, &set, lines, 1000, MCOR_FLOAT32, &counts);
+  assert_true(counts.crossings > 3000);
+  CORE_CHECK(counts.close_pairs > 5, "%d crossings were near each other", counts.close_pairs);
+  free(lines);
+  core_free_set(&set);
+}
+
+/* A lattice's level: half a spacing above its upper layer. */
+static void test_still_pool(void** state)
+{
+  core_set set = make_pool(0);
+  const mcor_gauge_line line = { .from = { 12.3, 8.1, 3 }, .to = { 12.3, 8.1, 15 } };
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  mcor_gauges gauges;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
+  const mcor_gauge_reading* r = &gauges.readings[0];
+  assert_int_equal(r->state, MCOR_GAUGE_WET);
+  assert_int_equal(r->crossing_count, 1);
+  CORE_CHECK(fabs(r->place[2] - 10) < 0.05, "level %g", r->place[2]);
+  assert_true(fabs(r->depth - (r->place[2] - 3)) < 1e-9);
+  mcor_free_gauges(&gauges);
+  core_free_set(&set);
+}
+
+/* Beyond a period's side there is its image, with the same bits where rounding lets them. */
+static void test_period(void** state)
+{
+  core_set set = make_pool(1);
+  const mcor_gauge_line lines[2] = { { .from = { 3.25, 8, -2 }, .to = { 3.25, 8, 20 } },
+    { .from = { 3.25 + 48, 8, -2 }, .to = { 3.25 + 48, 8, 20 } } };
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.periodic[1] = 24;
+  mcor_gauges gauges;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, 2, &gauges));
+  assert_int_equal(gauges.readings[0].crossing_count, 2);
+  assert_int_equal(gauges.readings[1].crossing_count, 2);
+  assert_true(memcmp(gauges.crossings, gauges.crossings + 2, 2 * sizeof(double)) == 0);
+  mcor_free_gauges(&gauges);
+  core_free_set(&set);
+}
+
+/* The same numbers, alone or among others, from particles that stay on the device or do not. */
+static void test_same_bits(void** state)
+{
+  core_set set = make_pool(1);
+  const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
+  mcor_gauge_line* lines = random_lines(20, low, high);
+  const mcor_input input = core_input(&set), kept = core_input_to_keep(&set);
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  mcor_gauges all;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, 20, &all));
+  for (int i = 0; i < 20; ++i)
+  {
+    mcor_gauges one;
+    CORE_OK(*state, mcor_gauge(*state, i % 2 ? &input : &kept, &options, &lines[i], 1, &one));
+    const mcor_gauge_reading *a = &all.readings[i], *b = &one.readings[0];
+    assert_int_equal(a->crossing_count, b->crossing_count);
+    assert_true(memcmp(&a->first, &b->first, sizeof a->first) == 0 && a->depth == b->depth);
+    assert_true(memcmp(all.crossings + a->first_crossing, one.crossings,
+                  (size_t)a->crossing_count * sizeof(double)) == 0);
+    mcor_free_gauges(&one);
+  }
+  free(lines);
+  mcor_free_gauges(&all);
+  core_free_set(&set);
+}
+
+/* Fails with a sentence that has these words. */
+static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
+  const mcor_gauge_line* line, const char* words)
+{
+  mcor_gauges gauges;
+  assert_int_equal(mcor_gauge(context, input, options, line, 1, &gauges), MCOR_INVALID_ARGUMENT);
+  CORE_CHECK(strstr(mcor_last_error(context), words), "%s", mcor_last_error(context));
+  assert_true(gauges.count == 0 && !gauges.readings);
+}
+
+static void test_weird(void** state)
+{
+  core_set set = make_pool(0);
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  const mcor_gauge_line none = { .from = { 1, 2, 3 }, .to = { 1, 2, 3 }, .name = "bow" };
+  const mcor_gauge_line nan = { .from = { 1, NAN, 3 }, .to = { 1, 2, 4 } };
+  const mcor_gauge_line far = { .from = { 100, 2, 3 }, .to = { 1e9, 2, 4 } };
+  const mcor_gauge_line good = { .from = { 3, 3, 3 }, .to = { 3, 3, 3.1 } };
+  refuse(*state, &input, &options, &none, "bow has no length");
+  refuse(*state, &input, &options, &nan, "not finite");
+  const double zero = 0;
+  options.iso_values = &zero;
+  options.iso_count = 1;
+  refuse(*state, &input, &options, &good, "iso value above 0");
+  options.iso_count = 0;
+  mcor_gauges gauges;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, &far, 1, &gauges));
+  assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
+  mcor_free_gauges(&gauges);
+  CORE_OK(
+    *state, mcor_gauge(*state, &input, &options, &good, 1, &gauges)); /* shorter than a step */
+  assert_true(gauges.readings[0].state == MCOR_GAUGE_FULL && !gauges.readings[0].outside);
+  assert_true(fabs(gauges.readings[0].depth - 0.1) < 1e-9);
+  mcor_free_gauges(&gauges);
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, NULL, 0, &gauges));
+  assert_int_equal(gauges.count, 0);
+  mcor_free_gauges(&gauges);
+  input.count = 0;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, &good, 1, &gauges));
+  assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
+  mcor_free_gauges(&gauges);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_pool_with_waves),
+    cmocka_unit_test(test_noise), cmocka_unit_test(test_still_pool), cmocka_unit_test(test_period),
+    cmocka_unit_test(test_same_bits), cmocka_unit_test(test_weird) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Pieces: weird input first; then against VTK's own connectivity and mass properties, and shapes of
+// known volume.
+#include "TestParticles.h"
+
+#include "vtkAppendPolyData.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkIdTypeArray.h"
+#include "vtkMassProperties.h"
+#include "vtkPlaneSource.h"
+#include "vtkPolyDataConnectivityFilter.h"
+#include "vtkReverseSense.h"
+#include "vtkSPHComponents.h"
+#include "vtkSphereSource.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <array>
+#include <vector>
+
+namespace
+{
+int failures = 0;
+
+double At(vtkTable* table, vtkIdType row, const char* column)
+{
+  return table->GetValueByName(row, column).ToDouble();
+}
+
+vtkSmartPointer<vtkSPHComponents> Split(vtkPolyData* surface, vtkPointSet* particles = nullptr)
+{
+  auto split = vtkSmartPointer<vtkSPHComponents>::New();
+  split->SetInputData(surface);
+  split->SetParticlesData(particles);
+  return split;
+}
+
+/// A sphere; `inwards` as the surface of a cavity is.
+vtkSmartPointer<vtkPolyData> Sphere(double radius, double x, double y, bool inwards = false)
+{
+  vtkNew<vtkSphereSource> source;
+  source->SetRadius(radius);
+  source->SetCenter(x, y, 0.0);
+  source->SetThetaResolution(60);
+  source->SetPhiResolution(40);
+  source->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  vtkNew<vtkReverseSense> reverse;
+  reverse->SetInputConnection(source->GetOutputPort());
+  reverse->SetReverseCells(inwards);
+  reverse->Update();
+  return reverse->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> Together(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
+{
+  vtkNew<vtkAppendPolyData> append;
+  append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  for (const auto& part : parts)
+  {
+    append->AddInputData(part);
+  }
+  append->Update();
+  return append->GetOutput();
+}
+
+/// Particles at these places, of mass 2, with velocities that are twice the place.
+vtkSmartPointer<vtkPolyData> Particles(const std::vector<std::array<double, 3>>& places)
+{
+  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const auto& place : places)
+  {
+    points->InsertNextPoint(place.data());
+  }
+  particles->SetPoints(points);
+  test::AddArray<vtkDoubleArray>(particles, "Mass", 1, [](vtkIdType, int) { return 2.0; });
+  test::AddArray<vtkDoubleArray>(
+    particles, "Velocity", 3, [&](vtkIdType i, int c) { return 2.0 * points->GetPoint(i)[c]; });
+  return particles;
+}
+
+void CheckWeird()
+{
+  vtkNew<vtkPolyData> nothing;
+  auto split = Split(nothing, nothing);
+  split->Update();
+  CHECK(split->GetTable()->GetNumberOfRows() == 0 && split->GetTable()->GetNumberOfColumns() == 20);
+  CHECK(split->GetOutput()->GetNumberOfPoints() == 0);
+  vtkNew<vtkPlaneSource> plane; // a quad
+  plane->Update();
+  split = Split(plane->GetOutput());
+  int errors = 0;
+  test::CountEvents(split, vtkCommand::ErrorEvent, &errors);
+  split->Update();
+  CHECK(errors > 0);
+}
+
+/// A shell with a cavity in which a drop flies that has a bubble; another ball, an open one.
+void CheckParents()
+{
+  auto open = Sphere(0.4, 0.0, 8.0);
+  open->GetPolys()->ReplaceCellAtId(7, { 0, 0, 0 });
+  auto surface = Together({ Sphere(0.5, 5.0, 0.0), Sphere(2.0, 0.0, 0.0), Sphere(0.6, 0.1, 0.0),
+    Sphere(0.3, 0.1, 0.0, true), Sphere(1.5, 0.0, 0.0, true), open });
+  auto particles = Particles(
+    { { { 0.0, 1.7, 0.0 } }, { { 0.0, -1.7, 0.1 } }, { { 0.1, 0.5, 0.0 } }, { { 0.1, 0.0, 0.0 } },
+      { { 0.0, 1.2, 0.0 } }, { { 9.0, 9.0, 9.0 } }, { { 5.0, 0.0, 0.0 } }, { { 0.0, 8.0, 0.0 } } });
+  auto split = Split(surface, particles);
+  split->Update();
+  vtkTable* table = split->GetTable();
+  CHECK(table->GetNumberOfRows() == 6);
+  const double radius[6] = { 2.0, 1.5, 0.6, 0.5, 0.4, 0.3 };
+  const double parent[6] = { -1, 0, -1, -1, -1, 2 }, held[6] = { 2, -1, 1, 1, -1, -1 };
+  for (int i = 0; i < 6; ++i)
+  {
+    const double r = radius[i], volume = 4.0 / 3.0 * 3.14159265 * r * r * r;
+    const bool closed = i != 4, cavity = i == 1 || i == 5;
+    CHECK(At(table, i, "component") == i && At(table, i, "closed") == (closed ? 1 : 0));
+    CHECK(std::abs(At(table, i, "area") / (4.0 * 3.14159265 * r * r) - 1.0) < 0.01);
+    CHECK(closed ? std::abs(At(table, i, "volume") / (cavity ? -volume : volume) - 1.0) < 0.01
+                 : std::isnan(At(table, i, "volume")));
+    CHECK(!closed || std::abs(At(table, i, "diameter") / (2.0 * r) - 1.0) < 0.005);
+    CHECK(parent[i] < 0 ? std::isnan(At(table, i, "parent")) : At(table, i, "parent") == parent[i]);
+    CHECK(held[i] < 0
+        ? std::isnan(At(table, i, "particles"))
+        : At(table, i, "particles") == held[i] && At(table, i, "mass") == 2.0 * held[i]);
+  }
+  CHECK(std::abs(At(table, 0, "vy")) < 1e-12 && std::abs(At(table, 0, "vz") - 0.1) < 1e-12);
+  CHECK(At(table, 3, "vx") == 10.0 && std::abs(At(table, 3, "x") - 5.0) < 1e-9);
+  CHECK(std::abs(At(table, 3, "xmax") - 5.5) < 0.01 && std::abs(At(table, 3, "zmin") + 0.5) < 0.01);
+  // The drop goes, and the bubble in it; so does the ball of one particle.
+  split->SetLeastParticles(2);
+  split->Update();
+  CHECK(split->GetTable()->GetNumberOfRows() == 3);
+  CHECK(At(split->GetTable(), 2, "component") == 2 && At(split->GetTable(), 2, "closed") == 0);
+  split->SetLeastParticles(0);
+  split->SetLeastVolume(4.0 / 3.0 * 3.14159265 * 0.55 * 0.55 * 0.55);
+  split->Update();
+  CHECK(split->GetTable()->GetNumberOfRows() == 4);
+  auto* ids = split->GetOutput()->GetPointData()->GetArray("ComponentId");
+  CHECK(ids && ids->GetNumberOfTuples() == split->GetOutput()->GetNumberOfPoints());
+  CHECK(ids && ids->GetRange()[1] == 3.0);
+}
+
+/// Each piece of a surface of noise, with VTK's own filters.
+void CheckAgainstVtk()
+{
+  auto cube = test::MakeCube();
+  test::AddArray<vtkDoubleArray>(cube, "Wave", 1,
+    [&](vtkIdType i, int)
+    {
+      const double* x = cube->GetPoint(i);
+      return std::sin(7.0 * x[0]) * std::sin(8.0 * x[1]) * std::sin(6.0 * x[2]);
+    });
+  vtkNew<vtkMarchingCorrectors> filter;
+  filter->SetInputData(cube);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Wave");
+  filter->SetValue(0, 0.3);
+  filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  filter->Update();
+  auto split = Split(filter->GetOutput(), cube);
+  split->Update();
+  vtkTable* table = split->GetTable();
+  vtkPolyData* output = split->GetOutput();
+  auto* pointIds = vtkIdTypeArray::SafeDownCast(output->GetPointData()->GetArray("ComponentId"));
+  auto* cellIds = vtkIdTypeArray::SafeDownCast(output->GetCellData()->GetArray("ComponentId"));
+  CHECK(output->GetNumberOfCells() == filter->GetOutput()->GetNumberOfCells());
+  CHECK(pointIds && cellIds && output->GetPointData()->GetNormals());
+  vtkNew<vtkPolyDataConnectivityFilter> connectivity;
+  connectivity->SetInputData(output);
+  connectivity->SetExtractionModeToAllRegions();
+  connectivity->Update();
+  CHECK(connectivity->GetNumberOfExtractedRegions() == table->GetNumberOfRows());
+  CHECK(table->GetNumberOfRows() > 30);
+  int closed = 0;
+  double area = VTK_DOUBLE_MAX;
+  for (vtkIdType i = 0; pointIds && cellIds && i < table->GetNumberOfRows(); ++i)
+  {
+    vtkNew<vtkPolyData> piece;
+    vtkNew<vtkCellArray> cells;
+    piece->SetPoints(output->GetPoints());
+    for (vtkIdType t = 0; t < output->GetNumberOfCells(); ++t)
+    {
+      if (cellIds->GetValue(t) == i)
+      {
+        vtkNew<vtkIdList> corners;
+        output->GetCellPoints(t, corners);
+        cells->InsertNextCell(corners);
+        CHECK(pointIds->GetValue(corners->GetId(1)) == i);
+      }
+    }
+    piece->SetPolys(cells);
+    vtkNew<vtkMassProperties> mass;
+    mass->SetInputData(piece);
+    mass->Update();
+    CHECK(std::abs(At(table, i, "area") / mass->GetSurfaceArea() - 1.0) < 1e-5);
+    CHECK(At(table, i, "area") <= area);
+    area = At(table, i, "area");
+    if (At(table, i, "closed") == 1.0)
+    {
+      ++closed;
+      CHECK(std::abs(std::abs(At(table, i, "volume")) / mass->GetVolume() - 1.0) < 1e-5);
+    }
+  }
+  CHECK(closed > 10);
+}
+
+/// A ball across a corner of the period is one, wherever the period begins; a cylinder has no volume.
+void CheckPeriod()
+{
+  std::vector<double> areas, volumes;
+  for (const double shift : { 0.0, 0.37 })
+  {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    const int n = 20;
+    for (int i = 0; i < n * n * n; ++i)
+    {
+      const double x[3] = { (i % n) * 0.1, (i / n % n) * 0.1, (i / n / n) * 0.1 };
+      const auto distance = [](double a, double b) { return std::abs(std::remainder(a - b, 2.0)); };
+      const double r =
+        std::hypot(std::hypot(distance(x[0], 0), distance(x[1], 0)), distance(x[2], 0));
+      const double rod = std::hypot(distance(x[0], 1.0), distance(x[1], 1.0));
+      if (r < 0.45 || rod < 0.3)
+      {
+        points->InsertNextPoint(x[0] + shift, x[1] + shift, x[2] + shift);
+      }
+    }
+    vtkNew<vtkPolyData> particles;
+    particles->SetPoints(points);
+    vtkNew<vtkMarchingCorrectors> filter;
+    filter->SetInputData(particles);
+    filter->SetSmoothingLength(0.13);
+    filter->FreeSurfaceOn();
+    filter->SetCubeSize(0.05);
+    filter->SetPeriodicBounds(0, 2, 0, 2, 0, 2);
+    filter->Update();
+    auto split = Split(filter->GetOutput(), particles);
+    split->SetPeriodicBounds(0, 2, 0, 2, 0, 2);
+    split->Update();
+    vtkTable* table = split->GetTable();
+    CHECK(table->GetNumberOfRows() == 2);
+    CHECK(At(table, 0, "closed") == 1.0 && std::isnan(At(table, 0, "volume")));
+    CHECK(At(table, 1, "closed") == 1.0 && At(table, 1, "volume") > 0.3);
+    CHECK(At(table, 1, "xmax") - At(table, 1, "xmin") < 1.3);
+    int inBall = 0;
+    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      points->GetPoint(i, x);
+      double square = 0.0;
+      for (const double c : x)
+      {
+        const double d = std::remainder(c - shift, 2.0);
+        square += d * d;
+      }
+      inBall += square < 0.45 * 0.45;
+    }
+    CHECK(At(table, 1, "particles") == inBall);
+    areas.push_back(At(table, 1, "area"));
+    volumes.push_back(At(table, 1, "volume"));
+  }
+  CHECK(
+    std::abs(areas[0] / areas[1] - 1.0) < 0.01 && std::abs(volumes[0] / volumes[1] - 1.0) < 0.01);
+}
+}
+
+int TestComponents(int, char*[])
+{
+  CheckWeird();
+  CheckParents();
+  CheckAgainstVtk();
+  CheckPeriod();
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

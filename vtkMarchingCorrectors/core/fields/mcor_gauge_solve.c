@@ -1,0 +1,360 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Crossings of the level along lines, from weight sums that somebody else evaluates. All lines go through
+ * the same steps together, so that the device has many points at a time.
+ *
+ * Samples are a quarter of a smoothing length apart, over which the weight sum, as smooth as the kernel,
+ * is almost a parabola. One through three samples goes beyond the middle one by an eighth of their
+ * differences at most; where the level is nearer than four times that, it is looked at more finely. */
+
+#include "mcor_gauge.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_GAUGE_FINER 16   /* parts of a part with an extremum */
+#define MCOR_GAUGE_SECTIONS 8 /* of one with a crossing */
+/* Rounds: an extremum is then known to 1e-7 of a smoothing length, a crossing to 1e-8. */
+#define MCOR_GAUGE_EXTREMUM_ROUNDS 7
+#define MCOR_GAUGE_SOLVE_ROUNDS 8
+#define MCOR_GAUGE_NEAR 0.5
+
+void mcor_free_gauge_parts(mcor_gauge_job* job)
+{
+  free(job->changed.parts);
+  free(job->suspects.parts);
+  job->changed = job->suspects = (mcor_gauge_parts){ 0 };
+}
+
+static mcor_status mcor_append_part(
+  const mcor_gauge_job* job, mcor_gauge_parts* parts, const mcor_gauge_part* part)
+{
+  if (parts->count == parts->capacity)
+  {
+    const int64_t capacity = 2 * parts->capacity + 1024;
+    mcor_gauge_part* grown = realloc(parts->parts, (size_t)capacity * sizeof *grown);
+    MCOR_RETURN_IF(!grown, job->context, MCOR_OUT_OF_CAPACITY,
+      "Host memory for the crossings of gauges could not be allocated.");
+    parts->parts = grown;
+    parts->capacity = capacity;
+  }
+  parts->parts[parts->count++] = *part;
+  return MCOR_OK;
+}
+
+/* Weight sums at successive places of a line, evenly apart. */
+typedef struct mcor_gauge_row
+{
+  int64_t line, count;
+  double first, step;
+  const double* weight; /* [count] */
+} mcor_gauge_row;
+
+static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
+{
+  return row->first + (double)i * row->step;
+}
+
+/* How far sample i is from the level. */
+static double mcor_row_distance(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
+{
+  return fabs(row->weight[i] - job->level);
+}
+
+static bool mcor_row_above(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
+{
+  return row->weight[i] >= job->level;
+}
+
+static mcor_status mcor_append_row_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
+  const mcor_gauge_row* row, int64_t low, int64_t high)
+{
+  const mcor_gauge_part part = { .line = row->line,
+    .low = mcor_row_place(row, low),
+    .high = mcor_row_place(row, high),
+    .low_weight = row->weight[low],
+    .high_weight = row->weight[high] };
+  return mcor_append_part(job, parts, &part);
+}
+
+/* Whether the weight sum may pass the level and come back next to sample i: it is the nearest to the
+ * level of its neighbours, which are on its side. */
+static bool mcor_row_suspect(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
+{
+  const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
+  const double here = mcor_row_distance(job, row, i);
+  const bool side = mcor_row_above(job, row, i);
+  double most = 0;
+  for (int64_t j = i - 1; j <= i + 1; j += 2)
+  {
+    if (j >= 0 && j <= last)
+    {
+      const double there = mcor_row_distance(job, row, j);
+      if (mcor_row_above(job, row, j) != side || there < here || (there == here && j < i))
+      {
+        return false;
+      }
+      most = fmax(most, there - here);
+    }
+  }
+  const double bend = row->weight[at - 1] - 2 * row->weight[at] + row->weight[at + 1];
+  return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
+}
+
+/* Parts of a row with a crossing, and, unless there is no room for more, with an extremum to look at. */
+static mcor_status mcor_scan_row(
+  mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects, bool* found)
+{
+  *found = false;
+  for (int64_t i = 0; i + 1 < row->count; ++i)
+  {
+    if (mcor_row_above(job, row, i) != mcor_row_above(job, row, i + 1))
+    {
+      *found = true;
+      MCOR_TRY(mcor_append_row_part(job, &job->changed, row, i, i + 1));
+    }
+  }
+  for (int64_t i = 0; i < row->count && suspects; ++i)
+  {
+    if (mcor_row_suspect(job, row, i))
+    {
+      const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
+      MCOR_TRY(mcor_append_row_part(job, suspects, row, low, high));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Weight sums within parts, at count - 1 places between the ends of each; free both with free(). */
+typedef struct mcor_gauge_inner
+{
+  double *place, *weight;
+  int64_t* line;
+} mcor_gauge_inner;
+
+static void mcor_free_inner(mcor_gauge_inner* inner)
+{
+  free(inner->place);
+  free(inner->weight);
+  free(inner->line);
+}
+
+static mcor_status mcor_evaluate_inner(
+  mcor_gauge_job* job, const mcor_gauge_parts* parts, int count, mcor_gauge_inner* inner)
+{
+  const int64_t n = parts->count * (count - 1);
+  inner->place = malloc((size_t)(n + 1) * sizeof *inner->place);
+  inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
+  inner->line = malloc((size_t)(n + 1) * sizeof *inner->line);
+  MCOR_RETURN_IF(!inner->place || !inner->weight || !inner->line, job->context,
+    MCOR_OUT_OF_CAPACITY, "Host memory for %lld points of gauges could not be allocated.",
+    (long long)n);
+  for (int64_t p = 0, at = 0; p < parts->count; ++p)
+  {
+    const mcor_gauge_part* part = &parts->parts[p];
+    for (int i = 1; i < count; ++i, ++at)
+    {
+      inner->line[at] = part->line;
+      inner->place[at] = part->low + (part->high - part->low) * i / count;
+    }
+  }
+  return job->evaluate(job, n, inner->line, inner->place, inner->weight);
+}
+
+/* Looks at extrema more finely, until each is beyond the level or cannot be. */
+static mcor_status mcor_refine_suspects(mcor_gauge_job* job)
+{
+  mcor_status status = MCOR_OK;
+  for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
+  {
+    mcor_gauge_parts finer = { 0 };
+    mcor_gauge_inner inner = { 0 };
+    status = mcor_evaluate_inner(job, &job->suspects, MCOR_GAUGE_FINER, &inner);
+    for (int64_t p = 0; p < job->suspects.count && status == MCOR_OK; ++p)
+    {
+      const mcor_gauge_part* part = &job->suspects.parts[p];
+      double weight[MCOR_GAUGE_FINER + 1];
+      weight[0] = part->low_weight;
+      memcpy(weight + 1, inner.weight + p * (MCOR_GAUGE_FINER - 1),
+        (MCOR_GAUGE_FINER - 1) * sizeof *weight);
+      weight[MCOR_GAUGE_FINER] = part->high_weight;
+      const mcor_gauge_row row = { part->line, MCOR_GAUGE_FINER + 1, part->low,
+        (part->high - part->low) / MCOR_GAUGE_FINER, weight };
+      const int64_t before = finer.count;
+      bool found = false;
+      status = mcor_scan_row(job, &row, &finer, &found);
+      finer.count = found ? before : finer.count;
+    }
+    mcor_free_inner(&inner);
+    free(job->suspects.parts);
+    job->suspects = finer;
+    MCOR_TRY(status);
+  }
+  job->suspects.count = 0;
+  return MCOR_OK;
+}
+
+/* The first of a part's sections with a crossing takes its place; *more has the others. */
+static mcor_status mcor_narrow_part(
+  mcor_gauge_job* job, mcor_gauge_part* part, const double* inner, mcor_gauge_parts* more)
+{
+  double weight[MCOR_GAUGE_SECTIONS + 1];
+  weight[0] = part->low_weight;
+  memcpy(weight + 1, inner, (MCOR_GAUGE_SECTIONS - 1) * sizeof *weight);
+  weight[MCOR_GAUGE_SECTIONS] = part->high_weight;
+  const mcor_gauge_part whole = *part;
+  const double step = (whole.high - whole.low) / MCOR_GAUGE_SECTIONS;
+  bool found = false;
+  for (int i = 0; i < MCOR_GAUGE_SECTIONS && !(found && !more); ++i)
+  {
+    if ((weight[i] >= job->level) == (weight[i + 1] >= job->level))
+    {
+      continue;
+    }
+    const mcor_gauge_part section = { whole.line, whole.low + i * step,
+      i + 1 == MCOR_GAUGE_SECTIONS ? whole.high : whole.low + (i + 1) * step, weight[i],
+      weight[i + 1] };
+    if (found)
+    {
+      MCOR_TRY(mcor_append_part(job, more, &section));
+    }
+    else
+    {
+      *part = section;
+      found = true;
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Parts may have several crossings in the first round; later, that would be rounding. */
+static mcor_status mcor_narrow_parts(mcor_gauge_job* job)
+{
+  for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
+  {
+    mcor_gauge_parts more = { 0 };
+    mcor_gauge_inner inner = { 0 };
+    mcor_status status = mcor_evaluate_inner(job, &job->changed, MCOR_GAUGE_SECTIONS, &inner);
+    for (int64_t p = 0; p < job->changed.count && status == MCOR_OK; ++p)
+    {
+      status = mcor_narrow_part(job, &job->changed.parts[p],
+        inner.weight + p * (MCOR_GAUGE_SECTIONS - 1), round == 0 ? &more : NULL);
+    }
+    for (int64_t p = 0; p < more.count && status == MCOR_OK; ++p)
+    {
+      status = mcor_append_part(job, &job->changed, &more.parts[p]);
+    }
+    mcor_free_inner(&inner);
+    free(more.parts);
+    MCOR_TRY(status);
+  }
+  return MCOR_OK;
+}
+
+/* Weight sums at samples of lines, those of one line after the other. */
+static mcor_status mcor_sample_lines(
+  mcor_gauge_job* job, int64_t first, int64_t last, mcor_gauge_inner* inner)
+{
+  int64_t n = 0;
+  for (int64_t l = first; l < last; ++l)
+  {
+    n += job->samples[l].last - job->samples[l].first + 1;
+  }
+  inner->place = malloc((size_t)(n + 1) * sizeof *inner->place);
+  inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
+  inner->line = malloc((size_t)(n + 1) * sizeof *inner->line);
+  MCOR_RETURN_IF(!inner->place || !inner->weight || !inner->line, job->context,
+    MCOR_OUT_OF_CAPACITY, "Host memory for %lld points of gauges could not be allocated.",
+    (long long)n);
+  n = 0;
+  for (int64_t l = first; l < last; ++l)
+  {
+    const mcor_gauge_samples* samples = &job->samples[l];
+    for (int64_t i = samples->first; i <= samples->last; ++i, ++n)
+    {
+      inner->line[n] = l;
+      inner->place[n] = (double)i / (double)samples->steps;
+    }
+  }
+  return job->evaluate(job, n, inner->line, inner->place, inner->weight);
+}
+
+static mcor_status mcor_scan_lines(
+  mcor_gauge_job* job, int64_t first, int64_t last, const mcor_gauge_inner* inner)
+{
+  int64_t at = 0;
+  for (int64_t l = first; l < last; ++l)
+  {
+    const mcor_gauge_samples* samples = &job->samples[l];
+    const mcor_gauge_row row = { l, samples->last - samples->first + 1,
+      (double)samples->first / (double)samples->steps, 1 / (double)samples->steps,
+      inner->weight + at };
+    bool found;
+    if (row.count > 0)
+    {
+      MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
+    }
+    bool outside = true;
+    for (int64_t i = 0; i < row.count; ++i)
+    {
+      outside = outside && row.weight[i] == 0;
+    }
+    job->gauges->readings[l].outside = outside;
+    job->ends[l] = samples->last == samples->steps && row.count > 0 ? row.weight[row.count - 1] : 0;
+    at += row.count;
+  }
+  return MCOR_OK;
+}
+
+static int mcor_compare_parts(const void* a, const void* b)
+{
+  const mcor_gauge_part *left = a, *right = b;
+  return left->line != right->line ? (left->line < right->line ? -1 : 1)
+    : left->low != right->low      ? (left->low < right->low ? -1 : 1)
+                                   : 0;
+}
+
+/* Where on the last, short part of the line the weight sum is the level. */
+static double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part)
+{
+  const double rise = part->high_weight - part->low_weight;
+  const double share = rise != 0 ? (job->level - part->low_weight) / rise : 0.5;
+  return part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
+}
+
+static mcor_status mcor_append_crossings(mcor_gauge_job* job)
+{
+  mcor_gauges* gauges = job->gauges;
+  const int64_t count = gauges->crossing_count + job->changed.count;
+  double* grown = realloc(gauges->crossings, (size_t)(count + 1) * sizeof *grown);
+  MCOR_RETURN_IF(!grown, job->context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld crossings of gauges could not be allocated.", (long long)count);
+  gauges->crossings = grown;
+  for (int64_t p = 0; p < job->changed.count; ++p)
+  {
+    const mcor_gauge_part* part = &job->changed.parts[p];
+    mcor_gauge_reading* reading = &gauges->readings[part->line];
+    reading->first_crossing =
+      reading->crossing_count == 0 ? gauges->crossing_count : reading->first_crossing;
+    reading->crossing_count++;
+    grown[gauges->crossing_count++] = mcor_crossing_of(job, part);
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_gauge_lines(mcor_gauge_job* job, int64_t first, int64_t last)
+{
+  mcor_gauge_inner inner = { 0 };
+  job->changed.count = job->suspects.count = 0;
+  mcor_status status = mcor_sample_lines(job, first, last, &inner);
+  status = status == MCOR_OK ? mcor_scan_lines(job, first, last, &inner) : status;
+  mcor_free_inner(&inner);
+  MCOR_TRY(status);
+  MCOR_TRY(mcor_refine_suspects(job));
+  MCOR_TRY(mcor_narrow_parts(job));
+  qsort(
+    job->changed.parts, (size_t)job->changed.count, sizeof *job->changed.parts, mcor_compare_parts);
+  return mcor_append_crossings(job);
+}

@@ -1,0 +1,359 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHPieces.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkMath.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace
+{
+using Triple = std::array<double, 3>;
+
+/** Of a period: how far from a side a point on it may have been rounded. */
+constexpr double SideTolerance = 1e-5;
+}
+
+//------------------------------------------------------------------------------
+vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
+{
+  std::copy_n(period, 6, this->Period);
+  this->ReadTriangles(mesh);
+  this->JoinPoints();
+  this->JoinSides();
+  this->NumberPieces();
+  this->FindClosed();
+  this->Measure();
+  this->FindParents();
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHPieces::ReadTriangles(vtkPolyData* mesh)
+{
+  this->Points.resize(static_cast<size_t>(mesh->GetNumberOfPoints()));
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    mesh->GetPoint(i, this->Points[static_cast<size_t>(i)].data());
+  }
+  auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType count;
+    const vtkIdType* corners;
+    cells->GetCurrentCell(count, corners);
+    this->Triangles.push_back({ { corners[0], corners[1], corners[2] } });
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkSPHPieces::RootOf(vtkIdType point)
+{
+  vtkIdType root = point;
+  while (this->Root[static_cast<size_t>(root)] != root)
+  {
+    root = this->Root[static_cast<size_t>(root)];
+  }
+  while (this->Root[static_cast<size_t>(point)] != root)
+  {
+    point = std::exchange(this->Root[static_cast<size_t>(point)], root);
+  }
+  return root;
+}
+
+//------------------------------------------------------------------------------
+// The lowest point of each part is its root, whatever the order.
+void vtkSPHPieces::JoinPoints()
+{
+  this->Root.resize(this->Points.size());
+  std::iota(this->Root.begin(), this->Root.end(), vtkIdType(0));
+  for (const auto& triangle : this->Triangles)
+  {
+    for (int i = 1; i < 3; ++i)
+    {
+      const vtkIdType a = this->RootOf(triangle[0]), b = this->RootOf(triangle[i]);
+      this->Root[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  for (size_t i = 0; i < this->Root.size(); ++i)
+  {
+    this->RootOf(static_cast<vtkIdType>(i));
+  }
+}
+
+//------------------------------------------------------------------------------
+// Points on opposite sides are found by their other coordinates. Parts that meet there are one group,
+// of which each part has a shift; where two ways to a part have unlike ones, the group goes around.
+void vtkSPHPieces::JoinSides()
+{
+  const size_t count = this->Points.size();
+  this->Twin.resize(count);
+  std::iota(this->Twin.begin(), this->Twin.end(), vtkIdType(0));
+  this->Group = this->Root;
+  this->GroupShift.assign(count, Shift{ { 0, 0, 0 } });
+  this->GroupEndless.assign(count, 0);
+  std::vector<std::vector<vtkIdType>> members(count); // parts of a group, by its first
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = this->Period[2 * a], high = this->Period[2 * a + 1];
+    if (!(low < high))
+    {
+      continue;
+    }
+    const double tolerance = SideTolerance * (high - low);
+    std::map<std::pair<double, double>, vtkIdType> lower;
+    const auto key = [&](size_t i)
+    { return std::make_pair(this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3]); };
+    for (size_t i = 0; i < count; ++i)
+    {
+      if (std::abs(this->Points[i][a] - low) <= tolerance)
+      {
+        lower.emplace(key(i), static_cast<vtkIdType>(i));
+      }
+    }
+    for (size_t i = 0; i < count; ++i)
+    {
+      const auto found =
+        std::abs(this->Points[i][a] - high) <= tolerance ? lower.find(key(i)) : lower.end();
+      if (found == lower.end())
+      {
+        continue;
+      }
+      const auto twin = static_cast<size_t>(found->second);
+      this->Twin[i] = this->Twin[twin];
+      // The lower point's part, a period higher, joins that of the upper one.
+      const auto from = static_cast<size_t>(this->Root[twin]),
+                 to = static_cast<size_t>(this->Root[i]);
+      Shift shift = this->GroupShift[to];
+      shift[a] += 1;
+      for (int c = 0; c < 3; ++c)
+      {
+        shift[c] -= this->GroupShift[from][c];
+      }
+      const auto old = static_cast<size_t>(this->Group[from]),
+                 kept = static_cast<size_t>(this->Group[to]);
+      if (old == kept)
+      {
+        this->GroupEndless[kept] |= shift != Shift{ { 0, 0, 0 } };
+        continue;
+      }
+      members[old].push_back(static_cast<vtkIdType>(old));
+      for (const vtkIdType part : members[old])
+      {
+        const auto p = static_cast<size_t>(part);
+        this->Group[p] = static_cast<vtkIdType>(kept);
+        for (int c = 0; c < 3; ++c)
+        {
+          this->GroupShift[p][c] += shift[c];
+        }
+      }
+      members[kept].insert(members[kept].end(), members[old].begin(), members[old].end());
+      members[old].clear();
+      this->GroupEndless[kept] |= this->GroupEndless[old];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkSPHPieces::Shift vtkSPHPieces::ShiftOf(vtkIdType point) const
+{
+  return this->GroupShift[static_cast<size_t>(this->Root[static_cast<size_t>(point)])];
+}
+
+//------------------------------------------------------------------------------
+// Where its piece is in one.
+void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
+{
+  const auto& points = this->Triangles[static_cast<size_t>(triangle)];
+  const Shift shift = this->ShiftOf(points[0]);
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      corners[i][a] = this->Points[static_cast<size_t>(points[i])][a] +
+        shift[a] * (this->Period[2 * a + 1] - this->Period[2 * a]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// By area; of equal ones that first whose first triangle comes first.
+void vtkSPHPieces::NumberPieces()
+{
+  std::map<vtkIdType, vtkIdType> numbers; // of groups
+  std::vector<vtkSPHPiece> found;
+  std::vector<vtkIdType> of(this->Triangles.size());
+  for (size_t t = 0; t < this->Triangles.size(); ++t)
+  {
+    const auto root = static_cast<size_t>(this->Root[static_cast<size_t>(this->Triangles[t][0])]);
+    const auto group = this->Group[root];
+    const auto at = numbers.emplace(group, static_cast<vtkIdType>(found.size()));
+    if (at.second)
+    {
+      vtkSPHPiece piece;
+      piece.FirstTriangle = static_cast<vtkIdType>(t);
+      piece.Endless = this->GroupEndless[static_cast<size_t>(group)] != 0;
+      found.push_back(piece);
+    }
+    of[t] = at.first->second;
+    double c[3][3], u[3], v[3], n[3];
+    this->CornersOf(static_cast<vtkIdType>(t), c);
+    vtkMath::Subtract(c[1], c[0], u);
+    vtkMath::Subtract(c[2], c[0], v);
+    vtkMath::Cross(u, v, n);
+    found[static_cast<size_t>(of[t])].Area += 0.5 * vtkMath::Norm(n);
+  }
+  std::vector<size_t> order(found.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::stable_sort(
+    order.begin(), order.end(), [&](size_t a, size_t b) { return found[a].Area > found[b].Area; });
+  std::vector<vtkIdType> place(found.size());
+  for (size_t i = 0; i < order.size(); ++i)
+  {
+    place[order[i]] = static_cast<vtkIdType>(i);
+    this->Pieces.push_back(found[order[i]]);
+  }
+  this->PieceOfTriangle.resize(of.size());
+  this->PieceOfPoint.assign(this->Points.size(), -1);
+  for (size_t t = 0; t < of.size(); ++t)
+  {
+    this->PieceOfTriangle[t] = place[static_cast<size_t>(of[t])];
+    for (const vtkIdType point : this->Triangles[t])
+    {
+      this->PieceOfPoint[static_cast<size_t>(point)] = this->PieceOfTriangle[t];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Each edge is run through as often one way as the other.
+void vtkSPHPieces::FindClosed()
+{
+  struct Edge
+  {
+    vtkIdType Low, High, Way, Piece;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * this->Triangles.size());
+  for (size_t t = 0; t < this->Triangles.size(); ++t)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      const vtkIdType a = this->Twin[static_cast<size_t>(this->Triangles[t][i])];
+      const vtkIdType b = this->Twin[static_cast<size_t>(this->Triangles[t][(i + 1) % 3])];
+      edges.push_back({ std::min(a, b), std::max(a, b), a < b ? 1 : -1, this->PieceOfTriangle[t] });
+    }
+  }
+  std::sort(edges.begin(), edges.end(),
+    [](const Edge& a, const Edge& b) { return a.Low != b.Low ? a.Low < b.Low : a.High < b.High; });
+  for (vtkSPHPiece& piece : this->Pieces)
+  {
+    piece.Closed = true;
+  }
+  for (size_t i = 0, next; i < edges.size(); i = next)
+  {
+    vtkIdType balance = 0;
+    for (next = i; next < edges.size() && edges[next].Low == edges[i].Low &&
+         edges[next].High == edges[i].High;
+         ++next)
+    {
+      balance += edges[next].Way;
+    }
+    if (balance != 0)
+    {
+      this->Pieces[static_cast<size_t>(edges[i].Piece)].Closed = false;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// About the middle of the bounds, as coordinates may be large; the centre is that of the volume, or else
+// of the area.
+void vtkSPHPieces::Measure()
+{
+  const double far = VTK_DOUBLE_MAX;
+  for (vtkSPHPiece& piece : this->Pieces)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      piece.Bounds[2 * a] = far;
+      piece.Bounds[2 * a + 1] = -far;
+    }
+  }
+  std::vector<Triple> byArea(this->Pieces.size()), byVolume(this->Pieces.size());
+  const auto count = static_cast<vtkIdType>(this->Triangles.size());
+  double c[3][3];
+  for (vtkIdType t = 0; t < count; ++t)
+  {
+    vtkSPHPiece& piece =
+      this->Pieces[static_cast<size_t>(this->PieceOfTriangle[static_cast<size_t>(t)])];
+    this->CornersOf(t, c);
+    for (int i = 0; i < 9; ++i)
+    {
+      piece.Bounds[2 * (i % 3)] = std::min(piece.Bounds[2 * (i % 3)], c[i / 3][i % 3]);
+      piece.Bounds[2 * (i % 3) + 1] = std::max(piece.Bounds[2 * (i % 3) + 1], c[i / 3][i % 3]);
+    }
+  }
+  for (vtkIdType t = 0; t < count; ++t)
+  {
+    const auto number = static_cast<size_t>(this->PieceOfTriangle[static_cast<size_t>(t)]);
+    vtkSPHPiece& piece = this->Pieces[number];
+    double u[3], v[3], n[3];
+    this->CornersOf(t, c);
+    for (int i = 0; i < 9; ++i)
+    {
+      c[i / 3][i % 3] -= 0.5 * (piece.Bounds[2 * (i % 3)] + piece.Bounds[2 * (i % 3) + 1]);
+    }
+    vtkMath::Subtract(c[1], c[0], u);
+    vtkMath::Subtract(c[2], c[0], v);
+    vtkMath::Cross(u, v, n);
+    const double area = 0.5 * vtkMath::Norm(n), volume = vtkMath::Dot(c[0], n) / 6.0;
+    piece.Volume += volume;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double sum = c[0][a] + c[1][a] + c[2][a];
+      byArea[number][a] += area * sum / 3.0;
+      byVolume[number][a] += volume * sum / 4.0;
+    }
+  }
+  for (size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    vtkSPHPiece& piece = this->Pieces[i];
+    const bool solid = piece.HasVolume() && piece.Volume != 0.0;
+    const double whole = solid ? piece.Volume : piece.Area > 0.0 ? piece.Area : 1.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      piece.Centre[a] = 0.5 * (piece.Bounds[2 * a] + piece.Bounds[2 * a + 1]) +
+        (solid ? byVolume : byArea)[i][a] / whole;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHPieces::FindParents()
+{
+  std::vector<Triple> places;
+  std::vector<vtkIdType> cavities;
+  for (size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    if (this->Pieces[i].HasVolume() && this->Pieces[i].Volume < 0.0)
+    {
+      double c[3][3];
+      this->CornersOf(this->Pieces[i].FirstTriangle, c);
+      places.push_back({ { c[0][0], c[0][1], c[0][2] } });
+      cavities.push_back(static_cast<vtkIdType>(i));
+    }
+  }
+  const std::vector<vtkIdType> around = this->FindEnclosing(places, cavities);
+  for (size_t i = 0; i < cavities.size(); ++i)
+  {
+    this->Pieces[static_cast<size_t>(cavities[i])].Parent = around[i];
+  }
+}

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHComponents
+ * @brief   the pieces of a surface: drops, bubbles, their volumes and particles
+ *
+ * vtkSPHComponents takes a surface of vtkMarchingCorrectors apart: triangles that share points are one
+ * piece, across the sides of a period, too. Its first output is the surface with the point and cell array
+ * "ComponentId": 0 is the piece of the largest area, and so on. The second output is a vtkTable with a row
+ * for each piece:
+ *
+ *     component            its number
+ *     parent               of a cavity, the piece around it; else NaN
+ *     closed               1 or 0: each edge has triangles on either side
+ *     area, volume         volume of closed pieces alone, below 0 of a cavity
+ *     x, y, z              centre, of the volume; of open pieces, of the area
+ *     xmin, xmax, ...      bounds; of a piece across a period's sides, those of it in one
+ *     diameter             of the sphere of this volume
+ *     particles            fluid particles that it encloses and no piece inside of it does
+ *     mass                 of these
+ *     vx, vy, vz           their mean velocity, weighted by the mass
+ *
+ * NaN where it does not apply. The last five need the particles, the second input; a row is then filled for
+ * each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are left out, with the cavities in
+ * them; open pieces, which have neither, stay.
+ *
+ * The surface may have been cut: what matters are its triangles. Those of a surface with caps are closed by
+ * them.
+ *
+ * @warning
+ * A process takes its piece of the surface for the whole.
+ *
+ * @sa
+ * vtkMarchingCorrectors vtkConnectivityFilter vtkMassProperties
+ */
+
+#ifndef vtkSPHComponents_h
+#define vtkSPHComponents_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // For members
+#include <vector> // For pieces
+
+class vtkSPHPieces;
+class vtkTable;
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHComponents : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkSPHComponents* New();
+  vtkTypeMacro(vtkSPHComponents, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The particles; may be nullptr.
+   */
+  void SetParticlesConnection(vtkAlgorithmOutput* particles)
+  {
+    this->SetInputConnection(1, particles);
+  }
+  void SetParticlesData(vtkDataObject* particles) { this->SetInputData(1, particles); }
+  ///@}
+
+  /**
+   * The table, the second output.
+   */
+  vtkTable* GetTable();
+
+  ///@{
+  /**
+   * Lower and upper sides of one period along each axis; 0 and 0, the default, where nothing repeats.
+   */
+  vtkSetVector6Macro(PeriodicBounds, double);
+  vtkGetVector6Macro(PeriodicBounds, double);
+  ///@}
+
+  ///@{
+  /**
+   * Closed pieces of a smaller volume, or with fewer particles, are left out. 0 by default.
+   */
+  vtkSetClampMacro(LeastVolume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(LeastVolume, double);
+  vtkSetClampMacro(LeastParticles, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(LeastParticles, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
+   * Arrays of the particles; found by their usual names where empty, the default. Mass: one for all, where
+   * it is above 0.
+   */
+  vtkSetStdStringFromCharMacro(MassArrayName);
+  vtkGetCharFromStdStringMacro(MassArrayName);
+  vtkSetMacro(Mass, double);
+  vtkGetMacro(Mass, double);
+  vtkSetStdStringFromCharMacro(VelocityArrayName);
+  vtkGetCharFromStdStringMacro(VelocityArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * Particles whose FluidArrayName has another value than this are solid, and do not count. Empty by
+   * default: all count.
+   */
+  vtkSetStdStringFromCharMacro(FluidArrayName);
+  vtkGetCharFromStdStringMacro(FluidArrayName);
+  vtkSetMacro(FluidValue, double);
+  vtkGetMacro(FluidValue, double);
+  ///@}
+
+protected:
+  vtkSPHComponents();
+  ~vtkSPHComponents() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double LeastVolume = 0.0;
+  vtkIdType LeastParticles = 0;
+  std::string MassArrayName;
+  double Mass = 0.0;
+  std::string VelocityArrayName;
+  std::string FluidArrayName;
+  double FluidValue = 0.0;
+
+private:
+  vtkSPHComponents(const vtkSPHComponents&) = delete;
+  void operator=(const vtkSPHComponents&) = delete;
+
+  struct Content;
+  std::vector<Content> Count(const vtkSPHPieces& pieces, vtkPointSet* particles) const;
+  std::vector<vtkIdType> Choose(
+    const vtkSPHPieces& pieces, const std::vector<Content>& contents) const;
+};
+
+#endif

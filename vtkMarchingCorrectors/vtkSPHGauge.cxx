@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHGauge.h"
+
+#include "mcor.h"
+#include "vtkAbstractArray.h"
+#include "vtkCell.h"
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHParticles.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <set>
+
+namespace
+{
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+template <typename ArrayT>
+ArrayT* AddColumn(vtkTable* table, const char* name, vtkIdType rows)
+{
+  vtkNew<ArrayT> column;
+  column->SetName(name);
+  column->SetNumberOfTuples(rows);
+  table->AddColumn(column);
+  return column;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkStandardNewMacro(vtkSPHGauge);
+
+//------------------------------------------------------------------------------
+vtkSPHGauge::vtkSPHGauge()
+{
+  this->SetNumberOfInputPorts(2);
+  this->SharesRuns = true; // to say that it does not
+}
+
+vtkSPHGauge::~vtkSPHGauge() = default;
+
+//------------------------------------------------------------------------------
+vtkTable* vtkSPHGauge::GetOutput()
+{
+  return vtkTable::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::AddGauge(
+  const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
+{
+  this->Gauges.push_back({ name ? name : "", { x0, y0, z0, x1, y1, z1 } });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::ClearGauges()
+{
+  this->Gauges.clear();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHGauge::GetNumberOfGauges() const
+{
+  return static_cast<int>(this->Gauges.size());
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHGauge::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    return this->Superclass::FillInputPortInformation(port, info);
+  }
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHGauge::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSPHGauge::GetOutputClassName(const char*)
+{
+  return "vtkTable";
+}
+
+//------------------------------------------------------------------------------
+// All of both, whatever piece of the table is wanted.
+int vtkSPHGauge::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkInformation* info = inputVector[port]->GetInformationObject(0);
+    if (info && !this->IsShared())
+    {
+      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+      info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHGauge::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  vtkInformation* asked = outputVector->GetInformationObject(0);
+  vtkInformation* known = input ? input->GetInformation() : nullptr;
+  this->Lines = vtkDataObject::GetData(inputVector[1]);
+  this->InputTime = known && known->Has(vtkDataObject::DATA_TIME_STEP())
+    ? known->Get(vtkDataObject::DATA_TIME_STEP())
+    : asked->Has(Pipeline::UPDATE_TIME_STEP()) ? asked->Get(Pipeline::UPDATE_TIME_STEP())
+                                               : this->Time;
+  const int done = this->Superclass::RequestData(request, inputVector, outputVector);
+  this->Lines = nullptr;
+  return done;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const
+{
+  vtkAbstractArray* names = lines->GetCellData()->GetAbstractArray("Name");
+  for (vtkIdType i = 0; i < lines->GetNumberOfCells(); ++i)
+  {
+    vtkCell* cell = lines->GetCell(i);
+    if (cell->GetCellDimension() != 1)
+    {
+      continue;
+    }
+    Gauge gauge;
+    gauge.Name = names ? names->GetVariantValue(i * names->GetNumberOfComponents()).ToString()
+                       : "line " + std::to_string(i);
+    lines->GetPoint(cell->GetPointId(0), gauge.Ends.data());
+    lines->GetPoint(
+      cell->GetPointId(static_cast<int>(cell->GetNumberOfPoints()) - 1), gauge.Ends.data() + 3);
+    gauges.push_back(gauge);
+  }
+}
+
+//------------------------------------------------------------------------------
+// False, and reported, where two have one name.
+bool vtkSPHGauge::ListGauges(std::vector<Gauge>& gauges)
+{
+  gauges = this->Gauges;
+  if (auto* lines = vtkDataSet::SafeDownCast(this->Lines))
+  {
+    this->AddLines(lines, gauges);
+  }
+  if (gauges.empty() && !this->Lines)
+  {
+    const double *a = this->Point1, *b = this->Point2;
+    gauges.push_back({ "gauge", { a[0], a[1], a[2], b[0], b[1], b[2] } });
+  }
+  std::set<std::string> names;
+  for (const Gauge& gauge : gauges)
+  {
+    if (!names.insert(gauge.Name).second)
+    {
+      this->Fail("Two gauges have the name '" + gauge.Name + "'. Give each a name of its own.");
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
+{
+  auto* particles = vtkPointSet::SafeDownCast(data);
+  this->SetUsedNames(nullptr);
+  std::vector<Gauge> gauges;
+  if (this->IsShared())
+  {
+    this->Fail(
+      "Gauges are measured by one process, and here are several. Run without mpirun, or with one "
+      "process.");
+    return;
+  }
+  if (!particles || this->IsAborted() || !this->ListGauges(gauges))
+  {
+    return;
+  }
+  vtkSPHParticlesChoice choice;
+  this->FillChoice(choice);
+  this->FindFluid(choice, particles);
+  vtkSPHParticles input(choice, particles);
+  if (particles->GetNumberOfPoints() > 0)
+  {
+    const bool usable = input.CollectParticles();
+    this->SetUsedNames(&input);
+    if (!usable)
+    {
+      this->Fail(input.Error);
+      return;
+    }
+    input.FluidCount == 0 ? this->WarnOfNoFluid(choice, "all gauges are dry")
+                          : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
+  }
+  this->Measure(input, particles, gauges, vtkTable::SafeDownCast(output));
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
+  const std::vector<Gauge>& gauges, vtkTable* output)
+{
+  std::vector<mcor_gauge_line> lines;
+  for (const Gauge& gauge : gauges)
+  {
+    mcor_gauge_line line = {};
+    std::copy_n(gauge.Ends.data(), 3, line.from);
+    std::copy_n(gauge.Ends.data() + 3, 3, line.to);
+    line.name = gauge.Name.c_str();
+    lines.push_back(line);
+  }
+  mcor_options options;
+  this->FillOptions(options);
+  if (!this->SetPeriod(particles, options))
+  {
+    return;
+  }
+  const double level = this->Level;
+  options.iso_values = &level;
+  options.iso_count = 1;
+  mcor_gauges found = {};
+  const auto count = static_cast<int64_t>(lines.size());
+  if (!this->CallCore(input, options,
+        [&](mcor_context* context)
+        { return mcor_gauge(context, &input.Core, &options, lines.data(), count, &found); }))
+  {
+    return;
+  }
+  vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
+  auto* times = AddColumn<vtkDoubleArray>(output, "time", count);
+  auto* names = AddColumn<vtkStringArray>(output, "gauge", count);
+  auto* states = AddColumn<vtkStringArray>(output, "state", count);
+  auto* first = AddColumn<vtkDoubleArray>(output, "first", count);
+  auto* last = AddColumn<vtkDoubleArray>(output, "last", count);
+  auto* depth = AddColumn<vtkDoubleArray>(output, "depth", count);
+  auto* crossings = AddColumn<vtkIdTypeArray>(output, "crossings", count);
+  vtkDoubleArray* place[3] = { AddColumn<vtkDoubleArray>(output, "x", count),
+    AddColumn<vtkDoubleArray>(output, "y", count), AddColumn<vtkDoubleArray>(output, "z", count) };
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const mcor_gauge_reading& reading = found.readings[i];
+    const std::string& name = gauges[static_cast<size_t>(i)].Name;
+    times->SetValue(i, this->InputTime);
+    names->SetValue(i, name);
+    states->SetValue(i, mcor_gauge_state_name(reading.state));
+    first->SetValue(i, reading.first);
+    last->SetValue(i, reading.last);
+    depth->SetValue(i, reading.depth);
+    crossings->SetValue(i, reading.crossing_count);
+    for (int a = 0; a < 3; ++a)
+    {
+      place[a]->SetValue(i, reading.place[a]);
+    }
+    if (reading.outside && input.FluidCount > 0)
+    {
+      this->Warn("Gauge '" + name +
+        "' is outside of all fluid: no particle reaches its line. If it is "
+        "always so, check its ends.");
+    }
+  }
+  mcor_free_gauges(&found);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Level: " << this->Level << "\n";
+  os << indent << "Time: " << this->Time << "\n";
+  os << indent << "Point1: " << this->Point1[0] << " " << this->Point1[1] << " " << this->Point1[2]
+     << "\n";
+  os << indent << "Point2: " << this->Point2[0] << " " << this->Point2[1] << " " << this->Point2[2]
+     << "\n";
+  for (const Gauge& gauge : this->Gauges)
+  {
+    os << indent << "Gauge " << gauge.Name << ":";
+    for (const double c : gauge.Ends)
+    {
+      os << " " << c;
+    }
+    os << "\n";
+  }
+}

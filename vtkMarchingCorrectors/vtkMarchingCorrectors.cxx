@@ -14,6 +14,7 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHMeasures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -250,6 +251,7 @@ void vtkMarchingCorrectors::Extract(
   this->WarnOf(input, surface, input.Core, options);
   builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
+  vtkSPHAddMeasures(this->RunStatistics, surface);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
 }

@@ -24,8 +24,8 @@
  * each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are left out, with the cavities in
  * them; open pieces, which have neither, stay.
  *
- * The surface may have been cut: what matters are its triangles. Those of a surface with caps are closed by
- * them.
+ * The surface may have been cut: what matters are its triangles. That of a period with caps is closed by
+ * them: leave PeriodicBounds alone then, so that pieces end there.
  *
  * @warning
  * A process takes its piece of the surface for the whole.

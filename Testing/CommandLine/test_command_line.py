@@ -328,10 +328,10 @@ class Options(CommandLineTest):
     def test_summary(self):
         result = self.extract(*ISO)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles$")
+        self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles; area 0\.98\d*, volume -0\.09\d*$")
         trimmed = self.extract("--scalar", "Radius", "--iso", "0.55")
         self.assertRegex(trimmed.stdout,
-                         r"(?m)^surface     .* triangles \(trimmed from \d+, some of which it cut in two\)$")
+                         r"(?m)^surface     .* triangles \(trimmed from \d+, some of which it cut in two\); area [\d.]+$")
         self.assertRegex(result.stdout, r"(?m)^cells       \d+ of the virtual grid, .* with surface$")
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 

@@ -78,6 +78,22 @@ class Components(CommandLineTest):
         self.assertEqual([(row["time"], row["component"]) for row in self.rows(["time", *COLUMNS])],
                          [("0", "0"), ("0", "1"), ("0.5", "0")])
 
+    def test_period(self):
+        """A block across a side is one; a layer has no end, but with caps."""
+        moved = [((x + 0.5) % 2, y, z) for x, y, z in self.points]
+        files.write_vtp(self.input, [((x + 1) % 2, y, z) for x, y, z in moved], self.arrays)
+        block, = self.pieces("--periodic", "0,2,0,0,0,0")
+        self.assertEqual((block["closed"], block["particles"]), ("1", "992"))
+        self.assertAlmostEqual(float(block["volume"]), 1, delta=0.1)
+        self.assertAlmostEqual(float(block["xmax"]) - float(block["xmin"]), 1, delta=0.02)
+        period = ["--periodic", "-0.5,0.5,-0.5,0.5,0,0"]
+        files.write_vtp(self.input, self.points, self.arrays)
+        sides = self.pieces(*period)
+        self.assertEqual([(row["closed"], row["volume"]) for row in sides], [("1", "")] * 2)
+        layer, = self.pieces(*period, "--capping")
+        self.assertEqual((layer["closed"], layer["particles"]), ("1", "1000"))
+        self.assertAlmostEqual(float(layer["volume"]), 1, delta=0.02)
+
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
                                   ([*FREE, "--least-volume", "1"], "no use for --least-volume"),

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The smallest runs that reach all kernels of adaptive cubes, probe, derivatives, box and period. Prints
+/* The smallest runs that reach all kernels of adaptive cubes, probe, gauges, derivatives, box and period. Prints
  * a hash of all bits of their results, for same_bits.cmake; whether these are right is tested elsewhere.
  * With words: those of these runs. */
 
@@ -161,6 +161,22 @@ static int rooms_derive(mcor_context* context, const mcor_input* input)
   return good;
 }
 
+static int rooms_gauge(mcor_context* context, const mcor_input* input)
+{
+  static const mcor_gauge_line lines[3] = { { .from = { 1, 1.1, -4 }, .to = { 1, 1.1, 6 } },
+    { .from = { -3, 0.2, 0.3 }, .to = { 30, 7, 9 } },
+    { .from = { 99, 0, 0 }, .to = { 99, 0, 1 } } };
+  const mcor_options options = rooms_options(MCOR_WEIGHT_SUM);
+  mcor_gauges found;
+  const mcor_status status = mcor_gauge(context, input, &options, lines, 3, &found);
+  const size_t bytes = (size_t)found.crossing_count * sizeof(double);
+  rooms_print(context, "gauge", found.crossing_count,
+    core_hash_bytes(CORE_HASH_OF_NOTHING, found.crossings, bytes));
+  const int good = status == MCOR_OK && found.crossing_count > 3;
+  mcor_free_gauges(&found);
+  return good;
+}
+
 typedef struct rooms_run
 {
   const char* name;
@@ -170,7 +186,7 @@ typedef struct rooms_run
 int main(int argc, char** argv)
 {
   static const rooms_run runs[] = { { "adaptive", rooms_adaptive }, { "uniform", rooms_uniform },
-    { "probe", rooms_probe }, { "derive", rooms_derive } };
+    { "probe", rooms_probe }, { "derive", rooms_derive }, { "gauge", rooms_gauge } };
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {

@@ -8,6 +8,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkMassProperties.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -335,6 +336,27 @@ void TestFieldData()
   CHECK(!Text(run, "Device").empty());
 }
 
+// As VTK measures them; a cut surface has no volume.
+void TestMeasures()
+{
+  auto filter = test::MakeSphereFilter(MakeParticles());
+  filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  filter->Update();
+  vtkNew<vtkMassProperties> mass;
+  mass->SetInputData(filter->GetOutput());
+  vtkFieldData* run = filter->GetRunStatistics();
+  CHECK(std::fabs(Number(run, "Area") / mass->GetSurfaceArea() - 1.0) < 1e-5);
+  // Values grow outwards: what is above the iso value is outside.
+  CHECK(std::fabs(Number(run, "Volume") / -mass->GetVolume() - 1.0) < 1e-5);
+  const double area = Number(run, "Area");
+  filter->SetBox(-2.0, 0.0, -2.0, 2.0, -2.0, 2.0);
+  filter->UseBoxOn();
+  filter->Update();
+  run = filter->GetRunStatistics();
+  CHECK(!run->HasArray("Volume") && Number(run, "Area") > 0.3 * area &&
+    Number(run, "Area") < 0.7 * area);
+}
+
 // What one run costs, and another one for the same surface may not, is no part of the surface.
 void TestRunStatistics()
 {
@@ -395,6 +417,7 @@ int TestOutput(int, char*[])
   TestPrecision();
   TestFieldData();
   TestRunStatistics();
+  TestMeasures();
   TestState();
   return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

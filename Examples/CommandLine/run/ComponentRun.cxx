@@ -27,7 +27,10 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
   split->SetParticlesData(particles);
-  split->SetPeriodicBounds(surface->GetPeriodicBounds());
+  if (!surface->GetCapping()) // caps end pieces
+  {
+    split->SetPeriodicBounds(surface->GetPeriodicBounds());
+  }
   split->SetMassArrayName(surface->GetMassArrayName());
   split->SetMass(surface->GetMass());
   split->SetFluidArrayName(surface->GetFluidArrayName());

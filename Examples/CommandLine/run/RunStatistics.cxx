@@ -30,12 +30,12 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
   "FlatLoops", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
-  "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "CapTriangles",
-  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
-  "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax",
-  "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak",
-  "MedianNeighbors", "MedianSpacing", "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
-  "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume",
+  "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+  "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
+  "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
+  "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing", "RankParticles", "RankCopies",
+  "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {
@@ -114,6 +114,12 @@ std::string DescribeField(vtkFieldData* run)
       "; field " + Text(run, "Field");
   }
   return line + "; kernel " + Text(run, "Kernel") + "; cube size " + Format(run, "CubeSize");
+}
+
+std::string DescribeMeasures(vtkFieldData* run)
+{
+  return (run->HasArray("Area") ? "; area " + Format(run, "Area") : "") +
+    (run->HasArray("Volume") ? ", volume " + Format(run, "Volume") : "");
 }
 
 std::string DescribeCorrection(vtkFieldData* run)
@@ -209,7 +215,8 @@ void WriteSetting(JsonText& json, const Job& job, vtkFieldData* run)
   const std::string fluid = filter->GetFluidArrayName();
   if (!fluid.empty())
   {
-    static const char* const names[] = { "weight", "ignore", "wall", "auto" }; // by the filter's numbers
+    static const char* const names[] = { "weight", "ignore", "wall",
+      "auto" }; // by the filter's numbers
     json.Begin("fluid");
     json.Value("array", fluid);
     json.Value("value", filter->GetFluidValue());
@@ -268,7 +275,7 @@ std::string DescribeRun(vtkFieldData* run)
        << " without surface), " << Format(run, "CellsUsed") << " with surface\n"
        << "correction  " << DescribeCorrection(run) << "\n"
        << "surface     " << Format(run, "Points") << " points, " << Format(run, "Triangles")
-       << " triangles" << DescribeTrimming(run) << "\n";
+       << " triangles" << DescribeTrimming(run) << DescribeMeasures(run) << "\n";
   return text.str();
 }
 

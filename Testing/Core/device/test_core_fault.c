@@ -88,6 +88,21 @@ static mcor_status derive(
   return status;
 }
 
+static mcor_status gauge(
+  mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
+{
+  static const mcor_gauge_line lines[2] = { { .from = { 0.1, 0.2, -9 }, .to = { 0.1, 0.2, 9 } },
+    { .from = { -3, 0, 0 }, .to = { 1, 1, 1 } } };
+  mcor_gauges found;
+  const mcor_status status = mcor_gauge(context, input, &s->options, lines, 2, &found);
+  CORE_CHECK(status == MCOR_OK ? found.count == 2 && found.crossing_count == 3
+                               : !found.readings && !found.crossings && found.count == 0,
+    "%s: %d crossings", mcor_status_name(status), (int)found.crossing_count);
+  *hash = hash_numbers(found.crossings, found.crossing_count);
+  mcor_free_gauges(&found);
+  return status;
+}
+
 /* Of one rank alone. */
 static int callbacks, fail_callback = -1;
 
@@ -320,6 +335,8 @@ static void test_probe_and_derive(void** state)
   s.input.attribute_count = 1;
   sweep_room(*state, &s, 3, 40);
   s.call = derive;
+  sweep_room(*state, &s, 3, 40);
+  s.call = gauge;
   sweep_room(*state, &s, 3, 40);
   core_free_set(&set);
   free(points);

@@ -126,18 +126,19 @@ static void check_reading(
 }
 
 static void check_lines(mcor_context* context, const core_set* set, const mcor_gauge_line* lines,
-  int count, mcor_type precision, gauge_counts* counts)
+  int count, mcor_sph_kernel kernel, mcor_type precision, gauge_counts* counts)
 {
   const mcor_input input = core_input(set);
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
   options.precision = precision;
+  options.sph_kernel = kernel;
   mcor_gauges gauges;
   CORE_OK(context, mcor_gauge(context, &input, &options, lines, count, &gauges));
   assert_int_equal(gauges.count, count);
   const oracle_particles particles = core_oracle(set);
   oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
+  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, ORACLE_WEIGHT, 1));
   for (int i = 0; i < count; ++i)
   {
     check_line(&field, &lines[i], &gauges, i, 0.025 * oracle_smallest_h(&particles), counts);
@@ -176,7 +177,8 @@ static void test_pool_with_waves(void** state)
   for (int p = 0; p < 2; ++p)
   {
     gauge_counts counts = { 0 };
-    check_lines(*state, &set, lines, 150, p ? MCOR_FLOAT64 : MCOR_FLOAT32, &counts);
+    check_lines(
+      *state, &set, lines, 150, MCOR_CUBIC_SPLINE, p ? MCOR_FLOAT64 : MCOR_FLOAT32, &counts);
     assert_true(counts.crossings > 200 && counts.wet > 50 && counts.full > 10 && counts.dry > 5);
   }
   free(lines);
@@ -194,10 +196,15 @@ static void test_noise(void** state)
   }
   const double low[3] = { -6, -6, -6 }, high[3] = { 6, 6, 6 };
   mcor_gauge_line* lines = random_lines(1000, low, high);
-  gauge_counts counts = { 0 };
-  check_lines(*state, &set, lines, 1000, MCOR_FLOAT32, &counts);
-  assert_true(counts.crossings > 3000);
-  CORE_CHECK(counts.close_pairs > 5, "%d crossings were near each other", counts.close_pairs);
+  for (int kernel = 0; kernel < MCOR_SPH_KERNEL_COUNT; ++kernel)
+  {
+    const mcor_sph_kernel k = (mcor_sph_kernel)kernel;
+    gauge_counts counts = { 0 };
+    check_lines(*state, &set, lines, k == MCOR_CUBIC_SPLINE ? 1000 : 400, k, MCOR_FLOAT32, &counts);
+    CORE_CHECK(counts.crossings > 700, "kernel %d: %d crossings", kernel, counts.crossings);
+    CORE_CHECK(counts.close_pairs > (k == MCOR_CUBIC_SPLINE ? 5 : 0),
+      "kernel %d: %d crossings were near each other", kernel, counts.close_pairs);
+  }
   free(lines);
   core_free_set(&set);
 }

@@ -284,7 +284,7 @@ static void test_endless_range(void** state)
     }
     if (!cases[k].is_good)
     {
-      expect(*state, &call, MCOR_INVALID_DATA, "reach too far|precision");
+      expect(*state, &call, MCOR_INVALID_DATA, "too large for|precision");
       free_call(&call);
       continue;
     }

@@ -239,7 +239,7 @@ static void bad_boxes(void** state)
 {
   const double bad[][6] = { { 1, 0, 0, 1, 0, 1 }, { 0, 1, 2, 2, 0, 1 }, { 0, 1, 0, 1, 0, NAN },
     { 0, 1, 0, 1, NAN, 1 }, { INFINITY, INFINITY, 0, 1, 0, 1 } };
-  const char* sentence[] = { "along x goes from 1 to 0; the first must be the lower one",
+  const char* sentence[] = { "along x goes from 1 to 0; the first must be lower than the second",
     "along y goes from 2 to 2", "along z goes from 0 to nan; both must be numbers",
     "along z goes from nan to 1", "along x goes from inf to inf" };
   const double iso = 0;

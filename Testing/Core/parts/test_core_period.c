@@ -379,7 +379,7 @@ static void lengths(void** state)
   } cases[] = { { { 0, 8, 0, 8, 0, 8 }, 8.0 / 13, NULL }, { { 0, 8, 0, 6, 0, 0 }, 8.0 / 16, NULL },
     { { -4, 4, 0, 10, -1, 11 }, 8.0 / 16, NULL },
     { { 0, 8, 0, 8.123456, 0, 0 }, 0, "not all whole numbers of a cube size" },
-    { { 0, 1e12, 0, 8, 0, 0 }, 0, "cubes in the period along x; 1048576 is the limit" },
+    { { 0, 1e12, 0, 8, 0, 0 }, 0, "cubes in the period along x; the limit is 1048576" },
     { { -1.7e308, 1.7e308, 0, 8, 0, 0 }, 0, "inf cubes in the period along x" },
     { { 0, 5e-324, 0, 0, 0, 0 }, 0, "too little for support radii" },
     { { 0, 0.5, 0, 8, 0, 8 }, 0, "period along x is 0.5, too little" },

@@ -161,7 +161,7 @@ static void given_globals(void** state)
   core_set_box(&options, core_cuts + 3, none);
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   assert_non_null(
-    strstr(mcor_last_error(*state), "of 5 components of attributes; the input has 4"));
+    strstr(mcor_last_error(*state), "for 5 components of attributes, but the input has 4"));
   mcor_free_globals(&globals);
   free(whole.bytes);
   free(all.bytes);

@@ -59,18 +59,12 @@ void vtkMarchingCorrectors::SetFreeSurfaceValue(double value)
 void vtkMarchingCorrectors::SetSolids(int solids)
 {
   const int legal = std::min(std::max<int>(solids, SOLIDS_WEIGHT), static_cast<int>(SOLIDS_AUTO));
-  if (legal != this->GetSolids())
+  if (legal != this->Solids)
   {
+    this->Solids = legal;
     this->IgnoreSolids = legal == SOLIDS_IGNORE;
-    this->UsedSolids = legal == SOLIDS_IGNORE ? this->UsedSolids : legal;
     this->Modified();
   }
-}
-
-//------------------------------------------------------------------------------
-int vtkMarchingCorrectors::GetSolids() const
-{
-  return this->IgnoreSolids ? static_cast<int>(SOLIDS_IGNORE) : this->UsedSolids;
 }
 
 //------------------------------------------------------------------------------
@@ -141,7 +135,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     : MCOR_BOUNDARY_WEIGHT_SUM;
   options.vertex_threshold = this->Trim ? this->VertexThreshold : 0.0;
   const bool endsAtSolids =
-    this->UsedSolids == SOLIDS_WALL || (this->UsedSolids == SOLIDS_AUTO && !this->FreeSurface);
+    this->Solids == SOLIDS_WALL || (this->Solids == SOLIDS_AUTO && !this->FreeSurface);
   options.wall_share = endsAtSolids && (this->Trim || this->FreeSurface) ? this->WallShare : 0.0;
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
@@ -183,7 +177,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 #if MCOR_HAS_RANKS
   if (this->IsShared())
   {
-    this->ProcessTogether(particles, vtkPolyData::SafeDownCast(output));
+    this->ProcessDistributed(particles, vtkPolyData::SafeDownCast(output));
     return;
   }
 #endif

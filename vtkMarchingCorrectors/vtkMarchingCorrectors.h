@@ -446,13 +446,13 @@ public:
   /**
    * What solid particles (see SetFluidArrayName) do to the surface's end. SOLIDS_AUTO, the default: the
    * surface of a scalar ends at the wall, as with SOLIDS_WALL; the free surface runs on, as with
-   * SOLIDS_WEIGHT. SOLIDS_WEIGHT: it runs on behind the wall, as the weight sum does. SOLIDS_IGNORE, as
-   * IgnoreSolids: it ends before the wall, where the fluid's weight is VertexThreshold. SOLIDS_WALL: it ends
+   * SOLIDS_WEIGHT. SOLIDS_WEIGHT: it runs on behind the wall, as the weight sum does. SOLIDS_IGNORE:
+   * it ends before the wall, where the fluid's weight is VertexThreshold. SOLIDS_WALL: it ends
    * where the solids' share of the weight sum becomes greater than WallShare; so does the free surface,
    * which then is open along walls.
    */
   void SetSolids(int solids);
-  int GetSolids() const;
+  vtkGetMacro(Solids, int);
   ///@}
 
   ///@{
@@ -652,7 +652,7 @@ protected:
   double NodeThreshold = 0.1;
   int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;
-  int UsedSolids = SOLIDS_AUTO; ///< unless they are ignored
+  int Solids = SOLIDS_AUTO;
   double WallShare = -1.0;
 
   vtkTypeBool ComputeNormals = 1;
@@ -684,11 +684,12 @@ private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
-  void ProcessTogether(vtkPointSet* particles, vtkPolyData* output);
-  std::vector<double> ListIsoValuesTogether(
+  void ProcessDistributed(vtkPointSet* particles, vtkPolyData* output);
+  std::vector<double> ListIsoValuesDistributed(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
-  void EstimateTogether(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
-  void FinishTogether(vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
+  void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
+  void FinishDistributed(
+    vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options);
   void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);

@@ -376,7 +376,7 @@ bool vtkSPHAlgorithm::CallCore(
 
 #if MCOR_HAS_RANKS
 //------------------------------------------------------------------------------
-bool vtkSPHAlgorithm::CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& particles,
+bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
   mcor_options& options, const std::function<int(mcor_context*)>& call,
   const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
 {

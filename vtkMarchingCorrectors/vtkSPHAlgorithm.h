@@ -260,16 +260,6 @@ public:
 
   ///@{
   /**
-   * Leave solid particles out of the weight sum used for trimming too. Off by default: they count
-   * there, so that the surface reaches the wall.
-   */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
    * Point arrays that are not interpolated, by name. None by default.
    */
   void AddExcludedArray(const std::string& name);
@@ -290,7 +280,7 @@ public:
   ///@{
   /**
    * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
-   * Empty (the default): PoCL, else the first one.
+   * Empty (the default): a GPU if there is one, else the built-in device.
    */
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
@@ -431,7 +421,7 @@ protected:
    */
   vtkSPHRequest FindFirstRequest(vtkPointSet* particles);
   /** The same on all ranks together; these are one's own. */
-  vtkSPHRequest FindFirstRequestTogether(vtkSPHRanks& ranks, vtkPointSet* particles);
+  vtkSPHRequest FindFirstRequestDistributed(vtkSPHRanks& ranks, vtkPointSet* particles);
 
   /**
    * Calls the core: `call` gets a context for the device and returns the core's status. False if
@@ -449,7 +439,7 @@ protected:
    * CallCore() on all ranks together: where it fails on one of them, all say so. `near` lists the
    * ranks that have to do with what is within `reach` of a place; empty: all.
    */
-  bool CallCoreTogether(vtkSPHRanks& ranks, vtkSPHParticles& particles, mcor_options& options,
+  bool CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call,
     const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near =
       nullptr);
@@ -458,7 +448,8 @@ protected:
   /** Names the fluid in the choice, where it is to be found, and is. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
   /** The same on all ranks together; these are one's own. */
-  void FindFluidTogether(vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
+  void FindFluidDistributed(
+    vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
   /**
@@ -467,7 +458,7 @@ protected:
    */
   bool SetPeriod(vtkPointSet* particles, mcor_options& options);
   /** The same on all ranks together; these are one's own. */
-  bool SetPeriodTogether(vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options);
+  bool SetPeriodDistributed(vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options);
   /** False, and reported, where none was found, or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles);
@@ -496,7 +487,7 @@ protected:
   vtkTypeBool DetectFluid = 0;
   std::string UsedFluid;
   int Blocks = TOGETHER;
-  vtkTypeBool IgnoreSolids = 0;
+  vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
   std::vector<std::string> ExcludedArrays;
   int Precision = SINGLE_PRECISION;
   std::string Device;

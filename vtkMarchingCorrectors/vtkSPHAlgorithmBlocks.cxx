@@ -40,7 +40,7 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 #endif
   if (!good)
   {
-    this->Fail("The processes have different numbers of blocks. Merge the blocks of each.");
+    this->Fail("The processes have different numbers of blocks. Merge the blocks of each process.");
   }
   return good;
 }
@@ -131,7 +131,8 @@ void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* part
 #if MCOR_HAS_RANKS
 //------------------------------------------------------------------------------
 // All have the same arrays; what varies on one of them varies.
-vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestTogether(vtkSPHRanks& ranks, vtkPointSet* particles)
+vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
+  vtkSPHRanks& ranks, vtkPointSet* particles)
 {
   vtkSPHRequest request = this->FindRequest(0, particles);
   if (!request.Name.empty())
@@ -181,7 +182,7 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestTogether(vtkSPHRanks& ranks, vtkP
 
 //------------------------------------------------------------------------------
 // All have the same arrays, or no particles.
-void vtkSPHAlgorithm::FindFluidTogether(
+void vtkSPHAlgorithm::FindFluidDistributed(
   vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles)
 {
   const double none = std::numeric_limits<double>::infinity();

@@ -114,7 +114,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 #if MCOR_HAS_RANKS
   if (this->IsShared())
   {
-    this->ProcessTogether(particles, vtkPointSet::SafeDownCast(output));
+    this->ProcessDistributed(particles, vtkPointSet::SafeDownCast(output));
     return;
   }
 #endif

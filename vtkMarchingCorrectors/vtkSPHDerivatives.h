@@ -67,6 +67,15 @@ public:
 
   ///@{
   /**
+   * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
+   */
+  vtkSetMacro(IgnoreSolids, vtkTypeBool);
+  vtkGetMacro(IgnoreSolids, vtkTypeBool);
+  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Take the corrected form of the gradient. On by default.
    */
   vtkSetMacro(CorrectGradients, vtkTypeBool);
@@ -151,8 +160,8 @@ private:
   vtkWanted ListWanted(vtkPointSet* particles) const;
   void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
   void FailNotFinite(const std::string& array, vtkIdType particle);
-  void ProcessTogether(vtkPointSet* particles, vtkPointSet* output);
-  bool DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+  void ProcessDistributed(vtkPointSet* particles, vtkPointSet* output);
+  bool DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
     vtkIdList* numbers, vtkIdType count, vtkPointData* results);
 };
 

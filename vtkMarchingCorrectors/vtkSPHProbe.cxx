@@ -247,7 +247,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 #if MCOR_HAS_RANKS
   if (this->IsShared())
   {
-    this->ProcessTogether(points, vtkDataSet::SafeDownCast(output));
+    this->ProcessDistributed(points, vtkDataSet::SafeDownCast(output));
     return;
   }
 #endif

@@ -74,6 +74,15 @@ public:
 
   ///@{
   /**
+   * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
+   */
+  vtkSetMacro(IgnoreSolids, vtkTypeBool);
+  vtkGetMacro(IgnoreSolids, vtkTypeBool);
+  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Divide the SPH sums by the sum of the weights (Shepard). On by default.
    */
   vtkSetMacro(ShepardNormalization, vtkTypeBool);
@@ -159,8 +168,8 @@ private:
 
   void FillProbeOptions(mcor_options& options) const;
   void Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output);
-  void ProcessTogether(vtkDataSet* points, vtkDataSet* output);
-  bool ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+  void ProcessDistributed(vtkDataSet* points, vtkDataSet* output);
+  bool ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
     vtkDataSet* points, vtkDataSet* output);
   /** A mcor_status: of the core, some points at a time. */
   static int EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,

@@ -136,7 +136,7 @@ bool vtkSPHResample::FindBounds(double bounds[6])
   {
     vtkSPHRanks ranks(this->Controller);
     const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
-    this->FindFluidTogether(ranks, choice, own);
+    this->FindFluidDistributed(ranks, choice, own);
     FindEnds(choice, own, ends);
     ranks.Reduce(vtkSPHRanks::LEAST, ends, 6);
   }
@@ -212,7 +212,7 @@ void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
   }
   if (!this->FindBounds(bounds))
   {
-    this->Warn("No particle is fluid, and so there is nothing to show.");
+    this->Warn("No particle is fluid, so there is nothing to show.");
     return;
   }
   this->Superclass::Process(this->MakePoints(bounds), output);

@@ -149,7 +149,7 @@ bool Execute(Job& job)
 #if MCOR_HAS_RANKS
   if (LaunchedCount() > 1)
   {
-    return RunTogether(job, messages);
+    return RunDistributed(job, messages);
   }
 #endif
   if (job.ListDevices)

@@ -49,7 +49,7 @@ PROPERTIES = {
     "CubeSizeMode": (1, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
-    "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"), "IgnoreSolids": (0, "flag"),
+    "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"),
     "DetectFluid": (0, "flag"), "Blocks": (0, "int", 0, 1),
     "WallShare": (-1.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
     "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
@@ -115,7 +115,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
-        self.UsedSolids = self.SOLIDS_AUTO  # unless they are ignored
+        self.Solids = self.SOLIDS_AUTO
         self._joined = None, None, 0
         self.clear_summary()
         self.ExcludedArrays, self.UsedNames, self.UsedFluid = [], {}, ""
@@ -205,12 +205,11 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def SetSolids(self, solids):
         legal = min(max(int(solids), self.SOLIDS_WEIGHT), self.SOLIDS_AUTO)
         if legal != self.GetSolids():
-            self.IgnoreSolids = int(legal == self.SOLIDS_IGNORE)
-            self.UsedSolids = self.UsedSolids if self.IgnoreSolids else legal
+            self.Solids = legal
             self.Modified()
 
     def GetSolids(self):
-        return self.SOLIDS_IGNORE if self.IgnoreSolids else self.UsedSolids
+        return self.Solids
 
     def SetKernelByName(self, name):
         kernel = lib.mcor_find_sph_kernel((name or "").encode())
@@ -335,8 +334,9 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self._extract(particles, options, output)
 
     def _choice(self):
-        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), UsedSolids=self.UsedSolids, Box=self.Box,
+        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Solids=self.Solids, Box=self.Box,
                                PeriodicBounds=self.PeriodicBounds,
+                               IgnoreSolids=int(self.Solids == self.SOLIDS_IGNORE),
                                **{name: getattr(self, name) for name in PROPERTIES})
 
     @staticmethod
@@ -356,8 +356,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options.periodic[:], options.capping = choice.PeriodicBounds, choice.Capping
         options.node_threshold = choice.NodeThreshold
         options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
-        ends = (choice.Trim or choice.FreeSurface) and (choice.UsedSolids == 2 or (
-            choice.UsedSolids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
+        ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (
+            choice.Solids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
         options.wall_share = choice.WallShare if ends else 0.0
         options.preview, options.tolerance = choice.Preview, choice.Tolerance
         options.iteration_limit = choice.IterationLimit

@@ -12,7 +12,7 @@ lib.mcor_find_period.restype = ctypes.c_int
 lib.mcor_find_period.argtypes = [ctypes.POINTER(c.mcor_field_data), ctypes.c_int,
                                  ctypes.POINTER(ctypes.c_double), _int]
 lib.mcor_tells_of_period.restype, lib.mcor_tells_of_period.argtypes = ctypes.c_int, [ctypes.c_char_p]
-NO_PERIOD = ("The particles' field data tell of no period: there is no array PeriodicBounds, BoxSize, or box "
+NO_PERIOD = ("The field data of the particles give no period: there is no array PeriodicBounds, BoxSize, or box "
              "with boundaryType.")
 
 

@@ -89,14 +89,14 @@ class Usage(CommandLineTest):
             ([*good, "--free-surface", "--kernel"], "--kernel needs NAME"),
             ([*good, "--free-surface", "--iso="], "--iso needs V"),
             ([*good, "--scalar", "--iso", "0.3"], "--scalar needs NAME"),
-            ([*good, *ISO, "--kernel", "gauss"], "--kernel is one of cubic, .*, not 'gauss'"),
-            ([*good, *ISO, "--field", "mean"], "--field is one of shepard, sum, not 'mean'"),
-            ([*good, *ISO, "--seeds", "all"], "--seeds is one of pairs, complete, not 'all'"),
-            ([*good, *ISO, "--topology", "x"], "--topology is one of table, field, not 'x'"),
-            ([*good, *ISO, "--boundary", "x"], "--boundary is one of weight, eigenvalue, not 'x'"),
-            ([*good, *ISO, "--solids", "x"], "--solids is one of auto, weight, ignore, wall, not 'x'"),
+            ([*good, *ISO, "--kernel", "gauss"], "--kernel must be one of cubic, .*, not 'gauss'"),
+            ([*good, *ISO, "--field", "mean"], "--field must be one of shepard, sum, not 'mean'"),
+            ([*good, *ISO, "--seeds", "all"], "--seeds must be one of pairs, complete, not 'all'"),
+            ([*good, *ISO, "--topology", "x"], "--topology must be one of table, field, not 'x'"),
+            ([*good, *ISO, "--boundary", "x"], "--boundary must be one of weight, eigenvalue, not 'x'"),
+            ([*good, *ISO, "--solids", "x"], "--solids must be one of auto, weight, ignore, wall, not 'x'"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
-            ([*good, *ISO, "--precision", "half"], "--precision is one of single, double"),
+            ([*good, *ISO, "--precision", "half"], "--precision must be one of single, double"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
             ([*good, "--scalar", "Radius", "--iso", "1,"], "--iso needs a finite number, not ''"),
             ([*good, "--scalar", "Radius", "--iso", "nan"], "--iso needs a finite number"),
@@ -143,16 +143,16 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--box", "0,1,0,nan,0,1"], "--box needs a finite number, not 'nan'"),
             ([*good, *ISO, "--fluid", "Kind=x"], "--fluid needs a finite number, not 'x'"),
             ([*good, *ISO, "--screenshot", "a.jpg"], "--screenshot writes a .png file"),
-            ([*good, *ISO, "--up", "z"], "only a picture, --screenshot, has use for --up"),
-            ([*good, *ISO, "--screenshot", "a.png", "--up", "up"], "--up is one of x, y, z, -x, -y, -z, not 'up'"),
+            ([*good, *ISO, "--up", "z"], "without --screenshot there is no picture; leave out --up"),
+            ([*good, *ISO, "--screenshot", "a.png", "--up", "up"], "--up must be one of x, y, z, -x, -y, -z, not 'up'"),
             ([*good, *ISO, "--screenshot", "a.png", "--view", "0,0,0"], "--view needs three numbers, not all 0"),
-            ([*good, *ISO, "--color-by", "Radius"], r"or a .ply file has use for --color-by"),
+            ([*good, *ISO, "--color-by", "Radius"], r"or a .ply file there are no colours; leave out --color-by"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
-            ([*good, *ISO, "--resolution", "9"], "only --slice and --line have use for --resolution"),
-            ([*good, "--slice", "0.1"], "--slice needs an axis and a place on it, as z=0.1"),
+            ([*good, *ISO, "--resolution", "9"], "without --slice or --line there is no resolution; leave out --resolution"),
+            ([*good, "--slice", "0.1"], "--slice needs an axis and a position, such as z=0.1"),
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
-            ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different places"),
+            ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
             ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "has points already; leave out --line"),
             ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "a line is to be plotted"),
             ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
@@ -581,7 +581,7 @@ class Options(CommandLineTest):
         for arguments, words in [
             (["--smoothing-length", "0.26"], "neighbours.*smoothing length is 0.26.*support radius"),
             (["--support-radius"], "neighbours.*smoothing length is 0.065"),
-            (["--scalar", "Radius", "--iso", "0.3,99"], "Iso value 99 is outside of the range of Radius, 0.0"),
+            (["--scalar", "Radius", "--iso", "0.3,99"], "Iso value 99 is outside the range of Radius, 0.0"),
             (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5"),
             (["--density", "1e6"], "node threshold 0.1"),
         ]:
@@ -712,7 +712,7 @@ class Options(CommandLineTest):
         self.output.unlink()
         self.refuse(self.extract(*free, "--periodic", "1e-3,0,0"), 1, "period along x")
         self.refuse(self.extract("--periodic", f"{2 * half!r},0,0", "--capping", "--seeds", "pairs", *ISO), 1,
-                    "Capping does not go with pairs")
+                    "Capping cannot be combined with pair seeds")
 
     def test_period_of_field_data(self):
         """Said where it is there, used when asked for."""
@@ -743,7 +743,7 @@ class Options(CommandLineTest):
             self.input.write_text(plain.replace(
                 "<PolyData>", f'<PolyData><FieldData><DataArray type="Float64" Name="{wrong}" NumberOfTuples="6" '
                 'format="ascii">0 1 0 1 0 1</DataArray></FieldData>'))
-            self.refuse(self.extract(*free, "--periodic", "auto"), 1, "field data tell of no period")
+            self.refuse(self.extract(*free, "--periodic", "auto"), 1, "field data of the particles give no period")
 
     def test_boundary_detection(self):
         cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block

@@ -272,11 +272,11 @@ class Film(CommandLineTest):
         mine = self.directory / "film_0001.vtp"
         for content in ("precious", self.without_mark(mine)):
             mine.write_text(content)
-            self.one_sentence(self.make("steps.pvd"), 2, "film_0001.vtp is there already, and is no step")
+            self.one_sentence(self.make("steps.pvd"), 2, "film_0001.vtp already exists and is not a step")
             self.assertEqual(mine.read_text(), content)
         mine.unlink()
         mine.symlink_to("nowhere")
-        self.one_sentence(self.make("steps.pvd"), 2, "film_0001.vtp is there already")
+        self.one_sentence(self.make("steps.pvd"), 2, "film_0001.vtp already exists")
         mine.unlink()
         self.one_sentence(self.make("steps.pvd", "--stats", self.film), 2, "written twice")
         paths[0].rename(self.directory / "film_0000.vtp")
@@ -306,12 +306,12 @@ class Film(CommandLineTest):
             ([pvd, "film.vtp"], "output of several steps is a .pvd file"),
             ([pvd, pvd, "film.pvd"], "a .pvd file is the only input"),
             ([paths[0], pvd, "film.pvd"], "a .pvd file is the only input"),
-            ([self.input, "surface.vtp", "--times", "1"], "only films, .* have use for --times"),
-            ([self.input, "surface.vtp", "--time-step", "2"], "only films, .* have use for --time-step"),
+            ([self.input, "surface.vtp", "--times", "1"], "not a film, .*; leave out --times"),
+            ([self.input, "surface.vtp", "--time-step", "2"], "not a film, .*; leave out --time-step"),
             ([pvd, "film.pvd", "--time-step", "2"], "a .pvd file has times"),
             ([*paths, "film.pvd", "--time-step", "0"], "--time-step must be greater than 0"),
             ([pvd, "film.pvd", "--times", "0.05,x"], "--times needs a finite number, not 'x'"),
-            ([pvd, "film.pvd", "--times", "0.05,0.3"], "0.3 is outside of the steps' times, 0 to 0.1"),
+            ([pvd, "film.pvd", "--times", "0.05,0.3"], "0.3 is outside the times of the steps, 0 to 0.1"),
             ([pvd, "film.pvd", "--times=-0.1"], "-0.1 is outside"),
             ([pvd, "film.pvd", "--repeat", "2"], "--repeat is for one surface"),
             ([pvd, "film.pvd", "--screenshot", "a.png"], "a film has a picture of each step: --screenshot frame_%04d.png"),

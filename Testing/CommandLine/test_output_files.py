@@ -238,7 +238,7 @@ class OutputFiles(CommandLineTest):
             refused = self.extract(*FREE, preexec_fn=drop_privileges)
         finally:
             folder.chmod(0o755)
-        self.one_sentence(refused, 1, r"no file can be made in the folder .*folder \(Permission denied")
+        self.one_sentence(refused, 1, r"no file can be created in the folder .*folder \(Permission denied")
         self.assertEqual(self.output.read_text(), "old")
 
     def test_unreadable_input(self):

@@ -90,7 +90,7 @@ std::vector<Step> Steps()
     { "constant smoothing length", [](Filter* f, vtkPolyData*) { f->SetSmoothingLength(0.15); } },
     { "solids", [](Filter* f, vtkPolyData*) { f->SetFluidArrayName("Type"); } },
     { "other solids", [](Filter* f, vtkPolyData*) { f->SetFluidValue(1.0); } },
-    { "solids ignored", [](Filter* f, vtkPolyData*) { f->IgnoreSolidsOn(); } },
+    { "solids ignored", [](Filter* f, vtkPolyData*) { f->SetSolids(Filter::SOLIDS_IGNORE); } },
     { "double precision",
       [](Filter* f, vtkPolyData*) { f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION); } },
     { "memory released", [](Filter* f, vtkPolyData*) { f->ReleaseDeviceMemory(); } },

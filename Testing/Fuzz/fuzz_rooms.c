@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The rooms beside the phases: box, period, walls, adaptive cubes, globals, ranks, probe, derivatives. */
+/* The modules beside the phases: box, period, walls, adaptive cubes, globals, ranks, probe, derivatives. */
 
 #include "fuzz.h"
 

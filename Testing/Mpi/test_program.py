@@ -94,7 +94,7 @@ class Program(unittest.TestCase):
         """The field data of one piece tell of the period, those of two tell of different ones."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
-        self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "tell of no period")
+        self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
         self.set_box_size("piece_1.vtp", 0, 0, 3.1)
         for output, run, period in ("alone.ply", self.run_alone, "0,0,3.1"), ("ranks.ply", self.run_ranks, "auto"):
             done = run(PARTICLES if run == self.run_alone else pieces, self.path(output), *how, period)

@@ -290,7 +290,7 @@ static void run_several(oracle_suite* suite, const oracle_particles* particles)
   options.seeds = MCOR_PAIRS;
   expect(suite,
     mcor_extract(suite->context, &input, &options, &all) == MCOR_INVALID_ARGUMENT &&
-      strstr(mcor_last_error(suite->context), "Capping does not go with pairs"),
+      strstr(mcor_last_error(suite->context), "Capping cannot be combined with pair seeds"),
     "several", mcor_last_error(suite->context), 0.0);
 }
 

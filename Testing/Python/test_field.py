@@ -137,7 +137,7 @@ class TestPeriod(unittest.TestCase):
             errors = []
             filter_.AddObserver("ErrorEvent", lambda *_, errors=errors: errors.append(1))
             filter_.Update()
-            self.assertIn("tell of no period", filter_.GetErrorMessage())
+            self.assertIn("give no period", filter_.GetErrorMessage())
             self.assertTrue(errors)
             size = vtkFloatArray()
             size.SetName("BoxSize")

@@ -25,7 +25,6 @@ NOT_IN_XML = {
     "SetBox": "set by SetPanelBoxPosition and SetPanelBoxLength",
     "SetDetectArrays": "(automatic) in the panel's lists of arrays",
     "SetNumberOfFreeSurfaceValues": "SetFreeSurfaceValue makes it 1",
-    "SetIgnoreSolids": "set by SetSolids",
     "SetScalarComponent": "set by SetPanelComponent",
 }
 

@@ -50,7 +50,7 @@ class TestWarnings(unittest.TestCase):
     def test_iso_value(self):
         found = warnings_of(test_filter.make_filter(self.particles, iso=7))
         self.assertEqual(len(found), 1)
-        self.assertRegex(found[0], "Iso value 7 is outside of the range of Radius, 0 to 0.86")
+        self.assertRegex(found[0], "Iso value 7 is outside the range of Radius, 0 to 0.86")
 
     def test_once_in_a_run(self):
         extract = test_filter.make_filter(blocks_of(a=self.particles, b=self.particles))
@@ -66,7 +66,7 @@ class TestWarnings(unittest.TestCase):
     def test_walls_in_a_block(self):
         fluid = self.particles
         for apart, words in ((1, "Block 'PartBound', index 2 of 2 seems to hold walls.*together"),
-                             (0, "Names of blocks tell of walls.*'WallBlock'")):
+                             (0, "Some blocks have names of walls.*'WallBlock'")):
             extract = test_filter.make_filter(blocks_of(PartFluid=fluid, PartBound=fluid))
             extract.SetBlocks(apart)
             found = warnings_of(extract)

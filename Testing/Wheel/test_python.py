@@ -150,7 +150,7 @@ class Warned(unittest.TestCase):
         self.assertEqual(caught(sphere), [])
 
     def test_of_the_core(self):
-        for words, sentence in (({"iso": 99.0}, "Iso value 99 is outside of the range"),
+        for words, sentence in (({"iso": 99.0}, "Iso value 99 is outside the range"),
                                 ({"smoothing_length": 0.5}, "neighbours within its support radius.*support radius"),
                                 ({"volume": V / 1000}, "node threshold 0.1")):
             found = caught(sphere, **words)

@@ -90,7 +90,7 @@ class Test(unittest.TestCase):
                              "box": (x0 - 0.05, x1, -9, 9, -9, 9)}.items():
             told.field_data.clear()
             extract, _ = run_filter(told, scalar="Speed", value=1.5, DetectPeriod=1)
-            self.assertIn("tell of no period", extract.GetErrorMessage())
+            self.assertIn("give no period", extract.GetErrorMessage())
             told.field_data["boundaryType"] = (1, 0, 2)
             told.field_data[name] = values
             extract, again = run_filter(told, scalar="Speed", value=1.5, OutputPointsPrecision=1, DetectPeriod=1)

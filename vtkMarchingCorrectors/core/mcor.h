@@ -18,10 +18,10 @@
  *   mcor_free_surface(&surface);
  *   mcor_free_context(context);
  *
- * Every function that can fail returns a mcor_status, MCOR_OK being 0; outputs are then empty and
- * safe to free. The library never prints, never exits and keeps no global state. A context may be
- * used by one thread at a time; different contexts by different threads. mcor_extract has up to 15
- * threads help it, on the processors that its caller's thread may use; they end before it returns.
+ * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs are empty
+ * and safe to free. The library never prints, never exits and keeps no global state. A context may be
+ * used by one thread at a time; several contexts by several threads at once. mcor_extract starts up to
+ * 15 helper threads, on the processors that its calling thread may use; they end before it returns.
  *
  * Lengths are in the unit of the particle positions ("length unit L").
  */
@@ -70,12 +70,12 @@ extern "C"
     MCOR_SHEPARD = 0,   /* sum V A W / sum V W; the default */
     MCOR_SUM = 1,       /* sum V A W, the paper's field; 0 in all empty space, so iso value 0 with
                          * node threshold 0 gives no sensible surface */
-    MCOR_WEIGHT_SUM = 2 /* sum V W: the free surface; needs no scalar, applies no threshold */
+    MCOR_WEIGHT_SUM = 2 /* sum V W: the free surface; needs no scalar and applies no threshold */
   } mcor_field;
 
   typedef enum mcor_seed_mode
   {
-    MCOR_COMPLETE = 0, /* every cell that a bound cannot exclude is examined; nothing is missed */
+    MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
     MCOR_PAIRS = 1     /* the paper's: cells between pairs of particles no farther apart than the
                         * smoothing length (not scaled) that straddle the iso value; the same as
                         * complete for MCOR_WEIGHT_SUM, which has no values at particles */
@@ -87,9 +87,9 @@ extern "C"
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
-    MCOR_TOPOLOGY_FIELD = 1 /* as the field is at the saddle of the face's bilinear interpolant, and
-                              * at those of the cell's trilinear one: bridges and tunnels as wide as
-                              * a cube are those of the field */
+    MCOR_TOPOLOGY_FIELD = 1  /* by the field at the saddle of the face's bilinear interpolant and at
+                              * the saddles of the cell's trilinear one: bridges and tunnels as wide
+                              * as a cube are those of the field */
   } mcor_topology;
 
 /* Levels of cubes, 0 to 24. The cubes of the virtual grid are as fine as the particles are: their edge
@@ -109,15 +109,16 @@ extern "C"
                                    * sum V (x_j - x) (outer product) grad W(x - x_j), the inverse of
                                    * the renormalisation matrix (Marrone et al. 2010), over the same
                                    * particles. Set vertex_threshold too: 0.3 trims about where a
-                                   * weight of 0.5 does; 0.75 within the fluid, 0.9 smoothing lengths
-                                   * from a flat surface. Not 0.5, which it has there over a depth of
-                                   * half a smoothing length. */
+                                   * weight of 0.5 does, 0.75 trims within the fluid, 0.9 smoothing
+                                   * lengths from a flat surface. Avoid 0.5: near a flat surface the
+                                   * eigenvalue stays at 0.5 over a depth of half a smoothing length. */
   } mcor_boundary_detection;
 
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
-    const void* data; /* [count][components], finite (but attributes); borrowed until return;
+    const void*
+      data; /* [count][components], finite (attributes need not be); borrowed until return;
                        * NULL: constant */
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */
@@ -144,9 +145,9 @@ extern "C"
 
     /* Particle volume, unit L^3, > 0: `volume` if given (data, or a constant other than 0); else
      * mass / density if both are given; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
-     * 1 / sum_k W(x_j - x_k, h_j). These sums leave out solids that are ignored, and all solids for
-     * MCOR_WEIGHT_SUM (unless that ends at them), so that such volumes next to walls differ between
-     * the fields. */
+     * 1 / sum_k W(x_j - x_k, h_j). These sums leave out ignored solids and, for MCOR_WEIGHT_SUM,
+     * all solids unless the free surface ends at them. Computed volumes next to walls therefore
+     * differ between the fields. */
     mcor_array volume, mass, density;
 
     /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. With 2 or more components,
@@ -163,8 +164,8 @@ extern "C"
     const uint8_t* solid;
     int ignore_solids;
 
-    /* Other per-particle arrays to interpolate to the surface (Shepard mean of fluid particles). One
-     * that is not finite for a fluid particle is left out, see attribute_not_finite. */
+    /* Other per-particle arrays to interpolate to the surface (Shepard mean of fluid particles). An
+     * array that is not finite at a fluid particle is left out, see attribute_not_finite. */
     const mcor_array* attributes; /* [attribute_count] */
     int attribute_count;
 
@@ -177,13 +178,13 @@ extern "C"
     uint64_t attributes_version;
   } mcor_input;
 
-/* The default wall share: of a scalar's surface the one that is measured, of the free surface none. */
+/* The default wall share: measured for the surface of a scalar, none for the free surface. */
 #define MCOR_WALL_SHARE_AUTO (-2)
 
-/* A wall share that is measured: the solids' share of the weight at some solids themselves, the median,
- * each one counting as much as the fluid weighs there. A surface of the scalar then ends, in the median, on
- * the solids that face the fluid, whether they are one layer or more, and how far away the fluid keeps.
- * The free surface keeps in front of that layer: there it is 0.5. */
+/* A measured wall share: the solids' share of the weight at a sample of the solids; of these values the
+ * median, each solid weighted by the weight of the fluid there. The surface of a scalar then ends, in the
+ * median, on the layer of solids that faces the fluid, however many layers there are and however far away
+ * the fluid stays. The free surface stays in front of that layer; its wall share is 0.5. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
   /* A surface in parts, made by several processes or from some of the particles: see mcor_parts.h. */
@@ -203,23 +204,24 @@ extern "C"
                               * mcor_probe and mcor_derive do not read it */
     const double* iso_values; /* [iso_count], finite; none give an empty surface */
     int iso_count;
-    double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. So
-                            * are Shepard cells with a node of a fluid weight below 0.001. */
+    double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. With
+                            * MCOR_SHEPARD, so are cells with a node of fluid weight below 0.001. */
     mcor_boundary_detection boundary_detection;
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
-                              * is lower; default 0.5. A Shepard mean's are, at any rate, where the
-                              * fluid's own weight is below 0.001, with M'4, whose lobes let it pass 0,
-                              * below 0.05: no mean is there, but a pole. */
-    double wall_share;    /* above 0: the surface, the free surface too, also ends where the solids'
-                        * share of the weight, unless they are ignored, becomes greater than this;
-                        * 0.5: where they weigh more than the fluid. 0: nowhere. MCOR_WALL_SHARE_AUTO (the
-                        * default), MCOR_WALL_SHARE_MEASURED: see there */
-    int preview;          /* nonzero: vertices by linear interpolation, no correction */
-    double tolerance;     /* |f - iso| reached by the correction / range of A; default 1e-6 */
+                              * is lower; default 0.5. With MCOR_SHEPARD they are always trimmed where
+                              * the fluid's own weight is below 0.001, or below 0.05 with M'4, whose
+                              * negative lobes let the weight pass 0: the mean has a pole there. */
+    double
+      wall_share;     /* above 0: any surface, a free surface too, also ends where the solids' share
+                        * of the weight exceeds this, unless solids are ignored; 0.5: where they
+                        * weigh more than the fluid. 0: it does not end at solids. Or
+                        * MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED */
+    int preview;      /* nonzero: vertices by linear interpolation, no correction */
+    double tolerance; /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;  /* of the field evaluation on the device; MCOR_FLOAT32 by default */
-    int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: all there is. What
-                              * is kept for reuse is given back before a run fails for want of it. */
+    int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: no limit. Memory
+                              * kept for reuse is given back before a run fails for lack of memory. */
 
     /* Not all 0: the surface is that of the cells whose centres are in the box, box[2 a] <= x <
      * box[2 a + 1] along axis a, to the last bit: boxes side by side make the whole surface. Sides
@@ -229,37 +231,39 @@ extern "C"
      * evaluated up to the correction. mcor_probe and mcor_derive read the box only with globals. */
     double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
 
-    /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, particles and all they carry repeat along x
-     * with that period: each is taken to where it is between x0 and x1, and its images count. The
-     * surface is that of one period, open at its sides, where it meets itself: points a period apart
-     * agree in all bits, but for the coordinate along it, which is rounded. All periods are whole numbers
-     * of cubes: the cube size is made to fit, smaller by less than a half. x0 = x1, the default 0: open.
-     * For mcor_probe and mcor_derive, too: points may be anywhere. */
+    /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
+     * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that
+     * of one period, open at the periodic sides, where it meets itself: points a period apart agree in
+     * all bits except for the coordinate along the period, which is rounded. Each period is a whole
+     * number of cubes: the cube size is reduced to fit, by less than a half. x0 = x1 (default 0): not
+     * periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
     double periodic[6];
-    /* Nonzero: the surface is closed at periodic sides by flat triangles there, around the particles'
-     * side of it: where values are above the iso value. Its border's points are shared; the others
-     * are nodes of the virtual grid, with normals out of the period, boundary flag 8, and a residual
-     * that means nothing. Trimming cuts caps, too, and leaves its border open. All cubes are then of the
-     * smallest size. Of a box the sides of its cells are closed that are sides of the period, but not
-     * of one that no particle reaches, where a sum's iso value of 0 has empty space above it. Not with
-     * MCOR_PAIRS; of no effect without a period. */
+    /* Nonzero: flat triangles close the surface at the periodic sides, where values are above the iso
+     * value. These caps share the points of the surface's border; their other points are nodes of the
+     * virtual grid, with normals pointing out of the period, boundary flag 8, and a meaningless
+     * residual. Trimming also cuts caps, and leaves its own border open. All cubes then have the
+     * smallest size. With a box, those sides of its cells are closed that lie on a periodic side; a box
+     * that no particle reaches gets no caps, though with the iso value 0 of a sum it counts as above.
+     * Not with MCOR_PAIRS; no effect without a period. */
     int capping;
 
-    /* NULL: measured over the input. Else of all particles, of which the input holds some: at least
-     * those whose supports miss the box by no more than mcor_reach_margin, with computed volumes also all within the
-     * (unscaled) support of these, with MCOR_PAIRS also all within the (unscaled) smoothing length of
-     * the box, and of these. The surface is, to the last bit, that from all of them. Borrowed
-     * until return. See mcor_measure_globals. For mcor_probe and mcor_derive these are of
-     * mcor_measure_probe_globals, and the box tells where results are wanted: at points in it, its
-     * sides too; others' mean nothing, those of particles two cubes away from it and more are 0. */
+    /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, while
+     * the input holds only some of them: at least those whose supports miss the box by no more than
+     * mcor_reach_margin; with computed volumes, also all particles within the (unscaled) support of
+     * those; with MCOR_PAIRS, also all within one (unscaled) smoothing length of the box or of those. The
+     * surface is, to the last bit, that of all particles. Borrowed until return. For mcor_probe and
+     * mcor_derive: the result of mcor_measure_probe_globals; the box then says where results are wanted.
+     * They are valid in the box and on its sides; elsewhere they are meaningless, or 0 for particles two
+     * cubes or more away from the box. */
     const mcor_globals* globals;
 
-    /* NULL: alone. mcor_measure_globals measures over all ranks' inputs, each particle being in one of
-     * them (a rank without any has count 0, and data that are not NULL where others have data): what it
-     * returns are, to the last bit, the globals of all particles in one input, but for not_finite, a
-     * number on the rank that has the least. So does mcor_measure_probe_globals. mcor_extract with these globals, and MCOR_PAIRS, lets cells
-     * grow from box to box; each cell is to be in the box of one rank. Borrowed until return; others do
-     * not read it. */
+    /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals measure over
+     * the inputs of all ranks; each particle is in exactly one of them. (A rank without particles has
+     * count 0, and data that are not NULL where the other ranks have data.) The result is, to the last
+     * bit, that of all particles in one input, except for not_finite, which is a particle's number on the
+     * rank that has the lowest one. mcor_extract needs these globals, and with MCOR_PAIRS lets cells grow
+     * from box to box; each cell must be in the box of exactly one rank. Other functions do not read
+     * ranks. Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* What the surface carries besides points and triangles. */
@@ -293,69 +297,70 @@ extern "C"
     double seconds[MCOR_PHASE_COUNT];
     double build_seconds; /* compiling or loading kernels, in whichever phase; in none of seconds */
     int64_t fluid_particles, solid_particles;
-    int64_t particles_in_reach; /* on the device: with a box those that are needed there */
+    int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
-    /* Medians over some fluid particles: smoothing length; particles, itself and solids too, within
-     * its unscaled support radius; distance to the nearest other one of these, 0: there is none;
-     * share of the support that their volumes fill, as far as they are as large as the particle's,
-     * 0 where volumes are computed. */
+    /* Medians over a sample of the fluid particles: smoothing length; number of particles within the
+     * unscaled support radius, the particle itself and solids included; distance to the nearest other
+     * one (0: there is none); share of the support that these particles fill if all are as large as the
+     * particle itself (0 where volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;             /* in use; 0: the surface does not end at solids */
     double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
     double cube_size;              /* unit L */
     double scalar_min, scalar_max; /* over fluid particles */
-    /* Of the part of the virtual grid in the box, where there is one; so are all counts of cells and
-     * triangles, and those of vertices; a vertex that several ranks have is counted by one of them.
-     * Those of bricks, nodes, faces and evaluations are of what was done, around the box, too. */
+    /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; a
+     * vertex that several ranks have is counted by one of them. Counts of bricks, nodes, faces and
+     * evaluations include the work done around the box. */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
-    /* Complete seeds: of uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not exclude; of
-     * adaptive ones, those in leaves that the surface passes through. Pairs: the cells between them, of
-     * adaptive cubes in such leaves alone. And those that the surface does not use. Summed over iso
-     * values, as are the next. */
+    /* Complete seeds: of uniform cubes, cells that the bounds over 8 x 8 x 8 nodes do not exclude; of
+     * adaptive ones, cells of leaves that the surface passes through. Pairs: the cells between them, of
+     * adaptive cubes in such leaves only. And how many of these the surface does not use. These and
+     * the following counts are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
-    int64_t cap_triangles; /* of caps; not among the ones before */
+    int64_t cap_triangles; /* not included in triangles_before_trimming */
     int64_t march_rounds;
-    /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. Loops
-     * of a cell's triangles that lie in one side of it, next to finer cells, whose part of the surface
-     * they cut off. */
+    /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
+    /* Loops of triangles that lie in one side of a cell, next to finer cells: the cell cuts off the part
+     * of the surface that the finer ones see. */
     int64_t flat_loops;
-    int highest_level; /* that cubes may have, by smoothing lengths, level_limit and periods */
-    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and those where nodes above are joined, unlike by the
-     * table; cells with two loops that might be a tunnel, and those where they are. */
+    int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
+    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of these join the nodes above, which the table
+     * keeps apart; cells with two loops that may form a tunnel, and how many of these do. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Correction, Table V: distance between linear and corrected vertex, unit L. */
     double correction_mean, correction_max, correction_deviation;
-    int64_t correction_count; /* vertices that the mean is of: the surface's but for cuts */
+    int64_t correction_count; /* vertices in the mean: those of the surface that are not cuts */
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
     double residual_max; /* max |f - iso| as evaluated on the device, in the scalar's unit */
-    /* Rounding of positions on the device, unit L, at most: residuals are of positions so rounded. */
+    /* Largest rounding of positions on the device, unit L; residuals are evaluated at rounded positions. */
     double position_error;
     int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut */
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* A point's key: number of the iso value and whether it is a cut or of a cap, then its lattice edge, the two
-   * between whose points it was cut, or the cap's square. Points of a surface have different keys, ascending one number
-   * after the other; those of a box's surface have the keys that they have in the whole surface. */
+  /* The key of a point: the number of the iso value and the kind of the point, then its lattice edge, or for
+   * a cut the two lattice edges between whose points it lies, or the square of a cap. The points of a
+   * surface have different keys, in ascending lexicographic order. In the surface of a box, points have the
+   * same keys as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
-  /* A triangle's key: number of the iso value, then its cell, or its square of a cap. Keys ascend from triangle to triangle; those of
-   * one cell have the same. A box's triangles have the keys that they have in the whole surface, each
-   * cell being in one box, so that the whole surface's triangles are those of boxes, sorted by key and
-   * otherwise left in order. */
+  /* The key of a triangle: the number of the iso value, then its cell or the square of a cap. Keys ascend
+   * from triangle to triangle; triangles of one cell have the same key. In the surface of a box, triangles
+   * have the same keys as in the whole surface. Each cell is in one box, so a stable sort by key of the
+   * triangles of all boxes gives the triangles of the whole surface in order. */
 #define MCOR_TRIANGLE_KEY 2
 
-  /* A triangle mesh. Vertices are shared; a triangle's normal (right-hand rule) points to lower
-   * values of the field, as vtkContourFilter orients it. Owned; free with mcor_free_surface. */
+  /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to lower
+   * values of the field, as with vtkContourFilter. Owned; free with mcor_free_surface. */
   typedef struct mcor_surface
   {
     int64_t point_count, triangle_count;
@@ -369,35 +374,37 @@ extern "C"
     float* boundary_eigenvalue; /* [point_count], see MCOR_BOUNDARY_EIGENVALUE */
     float* correction_length;   /* [point_count], unit L */
     float* residual;            /* [point_count], f - iso, scalar unit */
-    uint8_t* boundary_flag;     /* [point_count], 0 inside; 1 on the trim boundary, weight (or
-                             * eigenvalue) = vertex threshold or solids' share = wall share; 2 same, but left at the linear cut;
-                             * 4 on a lattice edge next to a cell that the node threshold
-                             * discarded; 8 of a cap alone, see capping */
-    double* iso_value;          /* [point_count] */
-    int64_t* nearest_particle;  /* [point_count], index of the nearest fluid particle */
-    uint64_t* point_keys;       /* [point_count][MCOR_POINT_KEY] */
-    double** attributes;        /* [attribute_count] -> [point_count][components] */
+    uint8_t*
+      boundary_flag;   /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or
+                             * eigenvalue) is the vertex threshold or the solids' share the wall
+                             * share; 2: the same, but left at the linear cut; 4: on a lattice edge
+                             * next to a cell that the node threshold discarded; 8: belongs to a cap
+                             * alone, see capping */
+    double* iso_value; /* [point_count] */
+    int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
+    uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
+    double** attributes;       /* [attribute_count] -> [point_count][components] */
     int64_t*
-      attribute_not_finite; /* [attribute_count], -1; or, of an attribute that holds NaN or an
-                             * infinite value, the first fluid particle that has it: this attribute
-                             * was left out, its entry in `attributes` is NULL */
+      attribute_not_finite; /* [attribute_count]: -1; or the first fluid particle at which the
+                             * attribute is NaN or infinite. Such an attribute is left out; its
+                             * entry in `attributes` is NULL */
     int attribute_count;
     mcor_statistics statistics;
   } mcor_surface;
 
   typedef struct mcor_context mcor_context;
 
-  /* Device: NULL or "" the default (PoCL's, else the first one), a number as listed by
-   * mcor_list_devices, or part of a device's or platform's name. On failure *context still holds a
-   * context whose mcor_last_error says why (NULL only if host memory ran out). */
+  /* device: NULL or "" for the default (a GPU if there is one, else the built-in device), a number as
+   * listed by mcor_list_devices, or part of the name of a device or platform. On failure *context is
+   * still a context, whose mcor_last_error says why (NULL only if host memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
-  /* One line per device, "number: device (platform)\n"; *text is to be freed with free(). An empty
-   * text means that there is no OpenCL device. */
+  /* One line per device, "number: device (platform)\n". Free *text with free(). It is empty if there is
+   * no OpenCL device. */
   mcor_status mcor_list_devices(char** text);
 
-  /* The sentence that belongs to the last failure of this context, "" if there was none. Valid
+  /* What went wrong in the last call that failed on this context, in one sentence; "" if none did. Valid
    * until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
@@ -409,7 +416,7 @@ extern "C"
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
 
-  /* What a particle array may hold, by its name. */
+  /* What a particle array holds, judging by its name. */
   typedef enum mcor_quantity
   {
     MCOR_SMOOTHING_LENGTH = 0,
@@ -417,26 +424,27 @@ extern "C"
     MCOR_MASS,
     MCOR_DENSITY,
     MCOR_VELOCITY,
-    MCOR_PARTICLE_ID,   /* a whole number of its own, the same at all times */
+    MCOR_PARTICLE_ID,   /* a whole number that identifies the particle at all times */
     MCOR_PARTICLE_TYPE, /* what tells fluid from solids */
     MCOR_QUANTITY_COUNT
   } mcor_quantity;
 
-  /* 0 for the name that is most usual for the quantity, more for less usual ones, -1 for others.
+  /* 0 for the most usual name of the quantity, higher for less usual ones, -1 for any other name.
    * Case, blanks, "_" and "-" do not matter. */
   int mcor_name_priority(mcor_quantity quantity, const char* name);
 
-  /* Whether an array of this name, whose values are whole and range from low to high over all particles,
-   * says clearly which of them are fluid: *fluid becomes the value that these have. So do 0 and 1 alone,
-   * and the codes of DualSPHysics. */
+  /* Whether an array of this name, with whole numbers from low to high over all particles, tells clearly
+   * which particles are fluid; *fluid becomes the value of fluid particles. That holds for arrays of 0
+   * and 1 only, and for the codes of DualSPHysics. */
   int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
 
-  /* How fit an array of this name is to be looked at where nobody has chosen one; the least is best:
-   * velocities, other vectors, scalars, what describes particles, the rest. -1: not fit, as it does
-   * not vary (`varies`: whether any component has two values), or numbers particles or their types. */
+  /* Which array to show where the user has chosen none: the one with the lowest priority number.
+   * Velocities come first, then other vectors, scalars, particle properties, and the rest. -1: not to be
+   * shown, as it does not vary (`varies`: whether any component has two different values), or holds
+   * particle ids or types. */
   int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
-  /* The solver whose output has arrays of these names, each on a line: "DualSPHysics", "PySPH",
+  /* The solver whose output has arrays of these names (one per line): "DualSPHysics", "PySPH",
    * "SWIFT", "GADGET", "SPH-EXA", "Phantom"; "" for others. */
   const char* mcor_find_layout(const char* names);
 
@@ -448,17 +456,18 @@ extern "C"
     int64_t count;
   } mcor_field_data;
 
-  /* The period that field data tell of: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box where
-   * boundaryType says that it repeats (SPH-EXA). Spelt as for mcor_name_priority. Returns how many numbers
-   * `period` has: 6 bounds, as mcor_options.periodic; 3 lengths, for mcor_place_period; 0: no array
-   * tells of a period. which: the number of the array; may be NULL. */
+  /* The period given by field data: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box with a
+   * boundaryType that says it is periodic (SPH-EXA); spelling as for mcor_name_priority. Returns how many
+   * numbers `period` has: 6 for bounds, as in mcor_options.periodic; 3 for lengths, see
+   * mcor_place_period; 0 if no array gives a period. which: the index of the array; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 
-  /* Bounds of a period of which only the lengths are known: along each axis from 0 on or around 0, if
-   * the particles, of this extent (x0, x1, ...), lie in them, else from the first particle on. */
+  /* The bounds of a period of known lengths: along each axis, they begin at 0 or are centred at 0 if the
+   * particles, whose extent is (x0, x1, ...), then lie within them; otherwise they begin at the lowest
+   * particle. */
   void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
 
-  /* Whether mcor_find_period looks at arrays of this name. */
+  /* Whether mcor_find_period reads arrays of this name. */
   int mcor_tells_of_period(const char* name);
 
   /* Whether the options have a box. */
@@ -467,53 +476,53 @@ extern "C"
   /* Sets every option to its default; iso_values stays empty. */
   void mcor_set_default_options(mcor_options* options);
 
-  /* Extracts the surface. *surface is overwritten: initialise it with {0} or free it before. */
+  /* Extracts the surface. *surface is overwritten; free what it held before the call. */
   mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
 
-  /* Least and greatest value of the scalar at fluid particles, where it is finite, and an iso value for
-   * those who have named none: one of the values, the median; where all are positive and range over
-   * three decades (without the 2 % lowest and highest), the middle of the range in logarithms. Of the input
-   * the scalar and solids alone are read; of all ranks, unless that is NULL. Returns 0, and changes
-   * nothing, where there is no such particle, or a rank has given up. */
+  /* The range of the finite values of the scalar at fluid particles, and a suggested iso value: their
+   * median (one of the values), or the logarithmic middle of the range if all values are positive and
+   * span three decades (not counting the lowest and highest 2 %). Reads only the scalar and the solids of
+   * the input; over all ranks unless `ranks` is NULL. Returns 0 and changes nothing if there is no such
+   * particle or another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* What may be wrong with the input of an extraction that succeeded. */
+  /* What may be wrong with the input although the extraction succeeded. */
   typedef enum mcor_warning
   {
     MCOR_WARN_NEIGHBOURS = 0, /* far too few or too many, see neighbours_median */
     MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
-    MCOR_WARN_ISO_VALUE,      /* outside of the field's range */
+    MCOR_WARN_ISO_VALUE,      /* outside the range of the field */
     MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
     MCOR_WARN_PRECISION,      /* positions are rounded too much, see position_error */
-    MCOR_WARN_TOLERANCE, /* some vertices are off the iso value, see vertices_above_tolerance */
+    MCOR_WARN_TOLERANCE, /* some vertices are not on the iso value, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* A sentence with figures for one of these, to be freed with free(); NULL where nothing is wrong,
-   * or memory ran out. Takes what mcor_extract was given and made. */
+  /* The warning in words, with numbers; free it with free(). NULL if there is no such warning, or if
+   * memory ran out. Pass the input, options and surface of mcor_extract. */
   char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
-  /* A sentence, to be freed with free(), about an array of particle types (MCOR_PARTICLE_TYPE) where
-   * all particles count as fluid: it has counts[i] times values[i]. NULL where such an array tells
-   * nothing, as it has one value, or more than MCOR_PARTICLE_TYPES; or memory ran out. */
+  /* A warning that an array of particle types (MCOR_PARTICLE_TYPE), in which values[i] occurs counts[i]
+   * times, is not used, so that all particles count as fluid; free it with free(). NULL if the array says
+   * nothing, having only one value or more than MCOR_PARTICLE_TYPES, or if memory ran out. */
   char* mcor_describe_unused_type(
     const char* name, const double* values, const int64_t* counts, int count);
 #define MCOR_PARTICLE_TYPES 8
-/* The array that says, of blocks that are one set, which particles are of blocks whose names tell of walls. */
+/* The array that marks, in blocks joined to one set, the particles of blocks with names of walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 
-  /* The field at points of the caller's choice. Owned; free with mcor_free_samples. */
+  /* The field at given points. Owned; free with mcor_free_samples. */
   typedef struct mcor_samples
   {
     int64_t count;           /* of points */
     double* weight_sum;      /* [count], of fluid particles */
     double* weight_gradient; /* [count][3], unit 1 / L; NULL unless options.gradients */
     uint8_t* valid; /* [count], 1 where the weight sum is not below options.node_threshold */
-    /* Of each attribute of the input the field at the points, the Shepard mean or the sum as
+    /* For each attribute of the input, the field at the points, the Shepard mean or the sum as
      * options.field says (MCOR_WEIGHT_SUM: the mean), and its gradient. 0 where not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
     double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
@@ -524,10 +533,10 @@ extern "C"
   } mcor_samples;
 
   /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The
-   * input's scalar is not read. Of the options sph_kernel, field, h_scale, gradients, node_threshold,
-   * precision, memory_limit, periodic and progress count; cube_size and cube_size_factor are the unit of
-   * length on the device, made to fit periods, and do not matter otherwise. A point's bits do not depend on
-   * the other points. *samples is overwritten. */
+   * scalar of the input is not read. The options that apply are sph_kernel, field, h_scale, gradients,
+   * node_threshold, precision, memory_limit, periodic and progress; cube_size and cube_size_factor only
+   * set the unit of length on the device, made to fit periods. The bits of a point do not depend on the
+   * other points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);
@@ -601,15 +610,15 @@ extern "C"
     mcor_statistics statistics;
   } mcor_derivatives;
 
-  /* Gradients of the input's attributes. Sums are over fluid particles. Options count as for
-   * mcor_probe, but field, gradients and node_threshold. A gradient that is too large for a double is
+  /* Gradients of the attributes of the input. Sums are over fluid particles. The same options apply as
+   * for mcor_probe, except field, gradients and node_threshold. A gradient too large for a double is
    * infinite. *derivatives is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
   void mcor_free_derivatives(mcor_derivatives* derivatives);
 
-  /* What is wanted of velocity gradients J = S + O, S symmetric, O antisymmetric; NULL: not
-   * wanted. The caller's arrays, unit of J or its square. */
+  /* Arrays of the caller for quantities of velocity gradients J = S + O (S symmetric, O antisymmetric), in
+   * the unit of J or its square; NULL: not wanted. */
   typedef struct mcor_flow
   {
     double* divergence;  /* [count], tr J */
@@ -623,7 +632,7 @@ extern "C"
   mcor_status mcor_decompose_gradients(
     const double* gradients, int64_t count, const mcor_flow* flow);
 
-  /* Drops all that the context keeps between calls: results for reuse, and large buffers. */
+  /* Frees all that the context keeps between calls: results for reuse, and large buffers. */
   void mcor_release_memory(mcor_context* context);
 
 #ifdef __cplusplus

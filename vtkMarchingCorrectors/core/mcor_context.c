@@ -57,7 +57,7 @@ mcor_status mcor_create_shared_context(
   const mcor_status status = place >= 0 && place < count
     ? mcor_open_device(*context, device, place, count)
     : mcor_fail(
-        *context, MCOR_INVALID_ARGUMENT, "There is no number %d of %d processes.", place, count);
+        *context, MCOR_INVALID_ARGUMENT, "place is %d; it must be from 0 to %d.", place, count - 1);
   (*context)->created = status == MCOR_OK;
   return status;
 }

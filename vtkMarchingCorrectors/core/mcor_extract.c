@@ -53,7 +53,8 @@ static mcor_status mcor_extract_all(
   mcor_free_surface(surface); /* of an attempt before */
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
-    "Ranks were given, but no global values. Measure them over all ranks first.");
+    "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
+    "first.");
   MCOR_TRY(mcor_list_attributes(context, input, surface));
   if (input->count == 0)
   {

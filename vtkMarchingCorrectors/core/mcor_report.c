@@ -16,7 +16,7 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
   context->report_time = mcor_seconds();
   MCOR_RETURN_IF(
     options->progress && options->progress(options->progress_user, context->fraction, doing) != 0,
-    context, MCOR_CANCELLED, "The run was cancelled. It was at: %s.", doing);
+    context, MCOR_CANCELLED, "The run was cancelled during: %s.", doing);
   return MCOR_OK;
 }
 

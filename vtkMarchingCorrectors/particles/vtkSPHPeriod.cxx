@@ -67,7 +67,7 @@ bool vtkSPHAlgorithm::CheckPeriod(const vtkSPHPeriod& found, const std::string& 
   const std::string sentence = !problem.empty() ? problem
     : !found.Period.empty()
     ? ""
-    : "The particles' field data tell of no period: there is no array PeriodicBounds, "
+    : "The field data of the particles give no period: there is no array PeriodicBounds, "
       "BoxSize, or box with boundaryType.";
   if (!sentence.empty())
   {

@@ -37,11 +37,11 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
  * The same where many processes hold the particles: of the first of them whose field data tell of a period.
  * `problem` becomes a sentence where those of another one tell of another period. Collective.
  */
-VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodTogether(
+VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
 
 /** The same of all processes' particles; a process may have none. Collective. */
-VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodTogether(
+VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 
 #endif

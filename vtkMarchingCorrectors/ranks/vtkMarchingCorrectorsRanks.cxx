@@ -39,7 +39,7 @@ struct vtkMarchingCorrectorsRun
 };
 
 //------------------------------------------------------------------------------
-std::vector<double> vtkMarchingCorrectors::ListIsoValuesTogether(
+std::vector<double> vtkMarchingCorrectors::ListIsoValuesDistributed(
   vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input)
 {
   if (this->GetNumberOfContours() > 0 || input.Choice.FreeSurface)
@@ -53,7 +53,7 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValuesTogether(
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::EstimateTogether(
+void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
 {
   double least = vtkMarchingCorrectorsLeastLength(own);
@@ -68,7 +68,7 @@ void vtkMarchingCorrectors::EstimateTogether(
 
 //------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
-void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData* output)
+void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyData* output)
 {
   vtkSPHRanks ranks(this->Controller);
   const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
@@ -83,8 +83,8 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(options);
   this->FillChoice(choice, own);
-  this->FindFluidTogether(ranks, choice, own);
-  choice.Scalar = this->FindFirstRequestTogether(ranks, own);
+  this->FindFluidDistributed(ranks, choice, own);
+  choice.Scalar = this->FindFirstRequestDistributed(ranks, own);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput mine(choice, own);
   std::string message = mine.Collect() ? "" : mine.Error;
@@ -101,11 +101,11 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
     fluid == 0 ? this->WarnOfNoFluid(choice, "no surface")
                : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
   }
-  if (fluid == 0 || !this->SetPeriodTogether(ranks, own, options))
+  if (fluid == 0 || !this->SetPeriodDistributed(ranks, own, options))
   {
     return;
   }
-  const std::vector<double> isoValues = this->ListIsoValuesTogether(ranks, mine);
+  const std::vector<double> isoValues = this->ListIsoValuesDistributed(ranks, mine);
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = mine.FromNearest.empty() ? 0 : 1;
@@ -114,13 +114,13 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreTogether(ranks, mine, options,
+  if (!this->CallCoreDistributed(ranks, mine, options,
         [&](mcor_context* context)
         { return mcor_measure_globals(context, &mine.Core, &options, &globals); }))
   {
     return;
   }
-  this->EstimateTogether(ranks, mine.Core, options);
+  this->EstimateDistributed(ranks, mine.Core, options);
   vtkSPHRanksBalance balance;
   balance.HasWork = true;
   balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, globals)
@@ -148,7 +148,7 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
   mcor_surface surface = {};
   const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
     &surface, mcor_free_surface);
-  if (this->CallCoreTogether(
+  if (this->CallCoreDistributed(
         ranks, input, boxed,
         [&](mcor_context* context)
         {
@@ -161,12 +161,12 @@ void vtkMarchingCorrectors::ProcessTogether(vtkPointSet* particles, vtkPolyData*
         [&route](const double at[3], double reach, std::vector<int>& found)
         { route.FindReached(at, reach, found); }))
   {
-    this->FinishTogether(ranks, { input, options, route, surface, counts[0] }, output);
+    this->FinishDistributed(ranks, { input, options, route, surface, counts[0] }, output);
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::FinishTogether(
+void vtkMarchingCorrectors::FinishDistributed(
   vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output)
 {
   mcor_surface& surface = run.Surface;

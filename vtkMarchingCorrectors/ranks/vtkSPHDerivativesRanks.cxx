@@ -64,7 +64,7 @@ Lists ListOwners(vtkPolyData* own, vtkIdList* numbers, const vtkSPHRanksRoute& r
 
 //------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
-void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* output)
+void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* output)
 {
   vtkSPHRanks ranks(this->Controller);
   vtkNew<vtkIdList> numbers;
@@ -78,12 +78,12 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
   std::int64_t fluid = 0;
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
-  this->FindFluidTogether(ranks, choice, own);
+  this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
     const bool usable =
-      mine.CollectArray(this->FindFirstRequestTogether(ranks, own)) && mine.CollectParticles();
+      mine.CollectArray(this->FindFirstRequestDistributed(ranks, own)) && mine.CollectParticles();
     std::string message = usable ? "" : mine.Error;
     this->SetUsedNames(&mine);
     if (!ranks.Agree(message))
@@ -101,8 +101,8 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
   }
   vtkNew<vtkPointData> found;
   const vtkIdType count = particles ? particles->GetNumberOfPoints() : 0;
-  if ((fluid == 0 || this->DeriveTogether(ranks, own, mine, numbers, count, found)) && particles &&
-    output)
+  if ((fluid == 0 || this->DeriveDistributed(ranks, own, mine, numbers, count, found)) &&
+    particles && output)
   {
     output->ShallowCopy(particles);
     for (int i = 0; i < found->GetNumberOfArrays(); ++i)
@@ -113,22 +113,22 @@ void vtkSPHDerivatives::ProcessTogether(vtkPointSet* particles, vtkPointSet* out
 }
 
 //------------------------------------------------------------------------------
-bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-  vtkIdList* numbers, vtkIdType count, vtkPointData* results)
+bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
+  vtkSPHParticles& mine, vtkIdList* numbers, vtkIdType count, vtkPointData* results)
 {
   const vtkWanted wanted = this->ListWanted(own);
   const mcor_gradient form =
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
   mcor_options options;
   this->FillOptions(options);
-  if (!this->SetPeriodTogether(ranks, own, options))
+  if (!this->SetPeriodDistributed(ranks, own, options))
   {
     return false;
   }
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreTogether(ranks, mine, options,
+  if (!this->CallCoreDistributed(ranks, mine, options,
         [&](mcor_context* context)
         { return mcor_measure_probe_globals(context, &mine.Core, &options, &globals); }))
   {
@@ -158,7 +158,7 @@ bool vtkSPHDerivatives::DeriveTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtk
   mcor_derivatives derivatives = {};
   const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(
     &derivatives, mcor_free_derivatives);
-  if (!this->CallCoreTogether(ranks, input, options,
+  if (!this->CallCoreDistributed(ranks, input, options,
         [&](mcor_context* context)
         { return mcor_derive(context, &input.Core, &options, form, &derivatives); }))
   {

@@ -120,7 +120,7 @@ std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor
 
 //------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
-void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
+void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
 {
   vtkSPHRanks ranks(this->Controller);
   const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
@@ -133,7 +133,7 @@ void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
   }
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
-  this->FindFluidTogether(ranks, choice, own);
+  this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
@@ -158,7 +158,7 @@ void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
   }
   if (fluid > 0 && counts[1] > 0)
   {
-    this->ProbeTogether(ranks, own, mine, points, output);
+    this->ProbeDistributed(ranks, own, mine, points, output);
   }
   else if (points && output)
   {
@@ -172,19 +172,19 @@ void vtkSPHProbe::ProcessTogether(vtkDataSet* points, vtkDataSet* output)
 }
 
 //------------------------------------------------------------------------------
-bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
   vtkDataSet* points, vtkDataSet* output)
 {
   mcor_options options;
   this->FillProbeOptions(options);
-  if (!this->SetPeriodTogether(ranks, own, options))
+  if (!this->SetPeriodDistributed(ranks, own, options))
   {
     return false;
   }
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreTogether(ranks, mine, options,
+  if (!this->CallCoreDistributed(ranks, mine, options,
         [&](mcor_context* context)
         { return mcor_measure_probe_globals(context, &mine.Core, &options, &globals); }))
   {
@@ -228,7 +228,7 @@ bool vtkSPHProbe::ProbeTogether(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHPart
     input, options, this->ValidPointMaskArrayName, here->GetNumberOfPoints(), this->GetNull());
   samples.NotFinite = ListNotFinite(input, globals);
   vtkFieldData* statistics = this->RunStatistics;
-  if (!this->CallCoreTogether(ranks, input, options,
+  if (!this->CallCoreDistributed(ranks, input, options,
         [&](mcor_context* context)
         { return EvaluateAt(here, context, input.Core, options, samples, statistics); }))
   {

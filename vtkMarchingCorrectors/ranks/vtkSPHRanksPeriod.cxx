@@ -66,7 +66,7 @@ vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& pro
     else if (!found.Period.empty() && found.Period != first.Period && problem.empty())
     {
       std::ostringstream text;
-      text << "The processes' field data tell of different periods: " << Describe(first)
+      text << "The field data of the processes give different periods: " << Describe(first)
            << " on rank " << firstRank << ", " << Describe(found) << " on rank " << rank << ".";
       problem = text.str();
     }
@@ -98,7 +98,7 @@ std::vector<double> BoundsOfPeriod(
 }
 
 //------------------------------------------------------------------------------
-vtkSPHPeriod vtkSPHFindPeriodTogether(
+vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
 {
   vtkSPHRanks ranks(controller);
@@ -106,7 +106,7 @@ vtkSPHPeriod vtkSPHFindPeriodTogether(
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> vtkSPHBoundsOfPeriodTogether(
+std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles)
 {
   vtkSPHRanks ranks(controller);
@@ -114,7 +114,7 @@ std::vector<double> vtkSPHBoundsOfPeriodTogether(
 }
 
 //------------------------------------------------------------------------------
-bool vtkSPHAlgorithm::SetPeriodTogether(
+bool vtkSPHAlgorithm::SetPeriodDistributed(
   vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options)
 {
   if (!this->DetectPeriod)

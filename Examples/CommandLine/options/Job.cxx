@@ -107,7 +107,7 @@ void CheckProbe(const Job& job)
   Exclude(name + " has points already; leave out ",
     { { name != "--slice" && job.Slice.Axis >= 0, "--slice" },
       { name != "--line" && !job.Slice.Line.empty(), "--line" } });
-  Exclude("a line is to be plotted; --line goes without ",
+  Exclude("--line makes data for a plot; leave out ",
     { { name == "--line" && !job.Picture.File.empty(), "--screenshot" } });
   if (name != "--probe" && !EndsWith(job.Output, name == "--slice" ? ".vti" : ".vtp") &&
     !EndsWith(job.Output, ".vtk"))
@@ -123,7 +123,7 @@ void CheckFilm(const Job& job)
   const bool isListed = IsCollectionFile(job.Inputs.front());
   if (!job.IsFilm())
   {
-    Exclude("only films, whose output is a .pvd file or has %04d in its name, have use for ",
+    Exclude("the output is not a film, which is a .pvd file or has %04d in its name; leave out ",
       { { !job.Times.empty(), "--times" }, { job.TimeStep != 1.0, "--time-step" } });
     return;
   }
@@ -151,10 +151,10 @@ void CheckPicture(const Job& job)
   const PictureOptions& picture = job.Picture;
   if (picture.File.empty())
   {
-    Exclude("only a picture, --screenshot, has use for ",
+    Exclude("without --screenshot there is no picture; leave out ",
       { { !picture.View.empty(), "--view" }, { picture.Up != "y", "--up" } });
     const bool hasColors = EndsWith(job.Output, ".ply");
-    Exclude("only a picture, --screenshot, or a .ply file has use for ",
+    Exclude("without --screenshot or a .ply file there are no colours; leave out ",
       { { !hasColors && !picture.ColorBy.empty(), "--color-by" },
         { !hasColors && !picture.ColorRange.empty(), "--color-range" } });
   }
@@ -190,7 +190,7 @@ void Check(const Job& job)
     return;
   }
   CheckPicture(job);
-  Exclude("only --slice and --line have use for ",
+  Exclude("without --slice or --line there is no resolution; leave out ",
     { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
       "--resolution" } });
   CheckComponents(job);

@@ -47,7 +47,8 @@ void SetSolids(Job& job, Text option, Text text)
   const int solids = ToChoice(option, text,
     { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT },
       { "ignore", Filter::SOLIDS_IGNORE }, { "wall", Filter::SOLIDS_WALL } });
-  SetAll<vtkTypeBool>(job, &vtkSPHAlgorithm::SetIgnoreSolids, solids == Filter::SOLIDS_IGNORE);
+  job.Derivatives->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
+  job.Probe->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Surface->SetSolids(solids);
 }
 
@@ -129,7 +130,7 @@ const Options WhatToContour = {
     SetIsoValues },
   { "--free-surface", "", "contour the weight sum; needs no scalar",
     [](Job& j, Text, Text) { j.Surface->FreeSurfaceOn(); } },
-  { "--derive", "NAME", "add Gradients of this array; of a vector also Vorticity, Lambda2, ...",
+  { "--derive", "NAME", "add Gradients of this array; for a vector, also Vorticity, Lambda2, ...",
     [](Job& j, Text, Text v)
     {
       j.Derive = Printable(v);
@@ -138,14 +139,16 @@ const Options WhatToContour = {
     } },
   { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum", SetField },
 
-  { "", "", "No surface, but the field at points; OUTPUT is their data set", {} },
-  { "--probe", "POINTS_FILE", "at the points of this file",
+  { "", "", "The field at points instead of a surface; OUTPUT is a data set of these points", {} },
+  { "--probe", "POINTS_FILE", "at the points in this file",
     [](Job& j, Text, Text v) { j.ProbeFile = v; } },
-  { "--slice", "AXIS=PLACE", "on a plane through the particles, as z=0.1; OUTPUT is an image, .vti",
+  { "--slice", "AXIS=PLACE",
+    "on a plane through the particles, e.g. z=0.1; OUTPUT is an image (.vti)",
     [](Job& j, Text n, Text v) { ToSlice(n, v, j.Slice.Axis, j.Slice.Place); } },
-  { "--line", "X,Y,Z,X,Y,Z", "on a line from one place to another; OUTPUT is a .vtp file",
+  { "--line", "X,Y,Z,X,Y,Z", "on a line between two points; OUTPUT is a .vtp file",
     [](Job& j, Text n, Text v) { j.Slice.Line = ToLine(n, v); } },
-  { "--resolution", "N", "points along the line, or the longest side of the slice (default 512)",
+  { "--resolution", "N",
+    "number of points on the line, or on the longest side of the slice (default 512)",
     [](Job& j, Text n, Text v) { j.Slice.Resolution = ToCount(n, v, 2, 1 << 15); } },
 };
 
@@ -161,14 +164,14 @@ const Options Gauges = {
 };
 
 const Options TheParticles = {
-  { "", "", "The particles (arrays are found by their usual names if not given)", {} },
-  { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or from the spacing",
+  { "", "", "The particles (arrays not given are found by their usual names)", {} },
+  { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or estimated from the spacing",
     [](Job& j, Text n, Text v) { j.SmoothingLength = ToQuantity(n, v); } },
   { "--dp", "D", "particle distance of DualSPHysics: smoothing length coefh x sqrt(3) x D",
     [](Job& j, Text n, Text v) { j.ParticleDistance = ToPositive(n, v); } },
-  { "--coefh", "C", "its coefficient (default 1)",
+  { "--coefh", "C", "coefficient of DualSPHysics, see --dp (default 1)",
     [](Job& j, Text n, Text v) { j.CoefH = ToPositive(n, v); } },
-  { "--support-radius", "", "these are the support radius, not the smoothing length",
+  { "--support-radius", "", "--smoothing-length gives support radii instead",
     [](Job& j, Text, Text)
     { SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true); } },
   { "--volume", "NAME", "array of particle volumes",
@@ -183,14 +186,15 @@ const Options TheParticles = {
     [](Job& j, Text n, Text v) { j.Mass = ToQuantity(n, v); } },
   { "--density", "NAME|VALUE", "array of densities, or one value",
     [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
-  { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others solid", SetFluid },
+  { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others are solid",
+    SetFluid },
   { "--solids", "auto|weight|ignore|wall",
-    "count in the weight that trims, not at all, or end the surface; auto (default): the last for "
-    "a "
-    "scalar, the first for the free surface",
+    "solids count in the weight used for trimming, are ignored, or end the surface; auto "
+    "(default): "
+    "wall for a scalar, weight for the free surface",
     SetSolids },
   { "--wall-share", "S|measured",
-    "where solids end the surface: their share of the weight (default: as measured at the walls)",
+    "solids' share of the weight at which walls end the surface (default: measured)",
     [](Job& j, Text n, Text v) { j.Surface->SetWallShare(ToShare(n, v)); } },
 };
 
@@ -204,20 +208,21 @@ const Options TheMethod = {
     [](Job& j, Text n, Text v) { j.Surface->SetCubeSizeFactor(ToPositive(n, v)); } },
   { "--cube-size", "D", "cube size itself, in the unit of the positions",
     [](Job& j, Text n, Text v) { j.Surface->SetCubeSize(ToPositive(n, v)); } },
-  { "--cubes", "uniform|adaptive", "cubes alike, or as fine as the particles are (default)",
+  { "--cubes", "uniform|adaptive", "cubes of one size, or as fine as the particles (default)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetCubeSizeMode(
         ToChoice(n, v, { { "uniform", Filter::UNIFORM }, { "adaptive", Filter::ADAPTIVE } }));
     } },
   { "--partition", "HOW",
-    "processes of mpirun have as many particles each, or as much work (default work)",
+    "under mpirun, give each process as many particles, or as much expected work (default)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetPartition(
         ToChoice(n, v, { { "particles", Filter::BY_PARTICLES }, { "work", Filter::BY_WORK } }));
     } },
-  { "--max-level", "N", "adaptive cubes are up to 2^N times as large, 0 to 24 (default 24)",
+  { "--max-level", "N",
+    "adaptive cubes grow up to 2^N times the cube size, N from 0 to 24 (default 24)",
     [](Job& j, Text n, Text v) { j.Surface->SetCubeLevelLimit(ToCount(n, v, 0, 24)); } },
   { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
     [](Job& j, Text n, Text v)
@@ -226,22 +231,24 @@ const Options TheMethod = {
       j.Surface->UseBoxOn();
     } },
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
-    "particles repeat: lengths (0: open), x0,x1,y0,y1,z0,z1, or as field data say", SetPeriod },
-  { "--capping", "", "close the surface at periodic sides, around what is above the iso value",
+    "periodic particles: lengths (0: not periodic), x0,x1,y0,y1,z0,z1, or from the field data",
+    SetPeriod },
+  { "--capping", "", "close the surface at periodic sides, where values are above the iso value",
     [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
-  { "--seeds", "pairs|complete", "the paper's seeds, or such that nothing is missed (default)",
+  { "--seeds", "pairs|complete",
+    "seeds as in the paper, or complete ones, which miss nothing (default)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetSeedMode(
         ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }));
     } },
-  { "--topology", "table|field", "ambiguous cells: by the table (default), or as the field is",
+  { "--topology", "table|field", "resolve ambiguous cells by the table (default), or by the field",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetTopology(ToChoice(
         n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }));
     } },
-  { "--preview", "", "no correction, normals of the triangles",
+  { "--preview", "", "faster: no correction; normals from the triangles",
     [](Job& j, Text, Text) { j.Surface->PreviewOn(); } },
   { "--node-threshold", "T", "discard cells with a node of lower weight (default 0.1)",
     [](Job& j, Text n, Text v)
@@ -249,15 +256,17 @@ const Options TheMethod = {
       j.Surface->SetNodeThreshold(ToThreshold(n, v));
       j.Probe->SetWeightThreshold(ToThreshold(n, v));
     } },
-  { "--boundary", "weight|eigenvalue", "trim by the weight (default), or by Marrone's eigenvalue",
-    SetBoundary },
-  { "--vertex-threshold", "T", "trim triangles where that is lower (default 0.5; eigenvalue 0.3)",
+  { "--boundary", "weight|eigenvalue",
+    "trim by the weight (default), or by the eigenvalue of Marrone et al.", SetBoundary },
+  { "--vertex-threshold", "T",
+    "trim triangles where it is lower than T (default 0.5; eigenvalue 0.3)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetVertexThreshold(ToThreshold(n, v));
       j.HasVertexThreshold = true;
     } },
-  { "--precision", "single|double", "of the field evaluation on the device (default single)",
+  { "--precision", "single|double",
+    "precision of the field evaluation on the device (default single)",
     [](Job& j, Text n, Text v)
     {
       SetAll(j, &vtkSPHAlgorithm::SetPrecision,
@@ -279,16 +288,16 @@ const Options Output = {
       j.Surface->ComputeGradientsOn();
       j.Probe->ComputeGradientsOn();
     } },
-  { "--attributes", "NAME[,NAME...]", "carry only these arrays to the surface (default all)",
+  { "--attributes", "NAME[,NAME...]", "interpolate only these arrays to the surface (default all)",
     [](Job& j, Text n, Text v) { j.AttributeNames = ToNames(n, v); } },
-  { "--no-attributes", "", "leave out the particles' other arrays",
+  { "--no-attributes", "", "interpolate no other arrays",
     [](Job& j, Text, Text)
     {
       j.Surface->InterpolateAttributesOff();
       j.Probe->InterpolateAttributesOff();
     } },
   { "--output-precision", "single|double|input",
-    "of the surface's points (default: as the input's)",
+    "precision of the surface's points (default: that of the input)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetOutputPointsPrecision(ToChoice(n, v,
@@ -303,23 +312,24 @@ const Options Output = {
     [](Job& j, Text n, Text v) { j.LeastVolume = ToPositive(n, v); } },
   { "--least-particles", "N", "leave out closed pieces around fewer particles (with --components)",
     [](Job& j, Text n, Text v) { j.LeastParticles = ToCount(n, v, 1); } },
-  { "--times", "T[,T...]", "of a film: at these times, stored ones or between two steps",
+  { "--times", "T[,T...]", "for a film: surfaces at these times, stored or between two steps",
     SetTimes },
-  { "--time-step", "DT", "of a film: time from each INPUT to the next (default 1)",
+  { "--time-step", "DT", "for a film: time between one INPUT and the next (default 1)",
     [](Job& j, Text n, Text v) { j.TimeStep = ToPositive(n, v); } },
   { "--stats", "FILE.json", "write the statistics of the run",
     [](Job& j, Text, Text v) { j.StatisticsFile = v; } },
-  { "--repeat", "N", "run N times, statistics of each (default 1)",
+  { "--repeat", "N", "run N times, with statistics of each run (default 1)",
     [](Job& j, Text n, Text v) { j.Repeat = ToCount(n, v, 1); } },
   { "--quiet", "", "print errors and warnings only", [](Job& j, Text, Text) { j.Quiet = true; } },
 
   { "", "", "Pictures and colours", {} },
   { "--screenshot", "FILE.png",
-    "write a picture (may need a display); of a film frame_%04d.png, one for each step",
+    "write a picture (may need a display); for a film, frame_%04d.png writes one for each step",
     [](Job& j, Text, Text v) { j.Picture.File = v; } },
-  { "--color-by", "NAME", "array that colours the picture, and a .ply file",
+  { "--color-by", "NAME", "array that colours the picture and .ply files",
     [](Job& j, Text, Text v) { j.Picture.ColorBy = Printable(v); } },
-  { "--color-range", "LOW,HIGH", "values of the first and the last colour (default: all there are)",
+  { "--color-range", "LOW,HIGH",
+    "values of the first and last colour (default: the range of the array)",
     [](Job& j, Text n, Text v) { j.Picture.ColorRange = ToRange(n, v); } },
   { "--up", "x|y|z|-x|-y|-z", "axis that points upwards in the picture (default y)",
     [](Job& j, Text n, Text v)
@@ -333,7 +343,7 @@ const Options Output = {
 
 const Options DeviceAndHelp = {
   { "", "", "Device and help", {} },
-  { "--device", "N|SUBSTRING", "OpenCL device: number, or part of its name (see --list-devices)",
+  { "--device", "N|SUBSTRING", "OpenCL device, by number or part of its name (see --list-devices)",
     [](Job& j, Text, Text v)
     {
       for (vtkSPHAlgorithm* filter : j.All())
@@ -344,7 +354,7 @@ const Options DeviceAndHelp = {
   { "--threads", "N", "most threads of the built-in device (default: one for each processor)",
     [](Job&, Text n, Text v)
     { vtksys::SystemTools::PutEnv("MCOR_THREADS=" + std::to_string(ToCount(n, v, 1))); } },
-  { "--memory-limit", "MIB", "most device memory used (default all)",
+  { "--memory-limit", "MIB", "use at most this much device memory (default: no limit)",
     [](Job& j, Text n, Text v)
     { SetAll(j, &vtkSPHAlgorithm::SetDeviceMemoryLimit, ToCount(n, v, 1)); } },
   { "--list-devices", "", "list the OpenCL devices",

@@ -83,7 +83,7 @@ int ToChoice(const std::string& option, const std::string& text,
     }
     list += (list.empty() ? "" : ", ") + std::string(choice.first);
   }
-  throw UsageError(option + " is one of " + list + ", not '" + text + "'");
+  throw UsageError(option + " must be one of " + list + ", not '" + text + "'");
 }
 
 //------------------------------------------------------------------------------
@@ -178,7 +178,7 @@ void ToSlice(const std::string& option, const std::string& text, int& axis, doub
   const std::size_t found = std::string("xyz").find(text.substr(0, 1));
   if (text.size() < 3 || text[1] != '=' || found == std::string::npos)
   {
-    throw UsageError(option + " needs an axis and a place on it, as z=0.1, not '" + text + "'");
+    throw UsageError(option + " needs an axis and a position, such as z=0.1, not '" + text + "'");
   }
   axis = static_cast<int>(found);
   place = ToNumber(option, text.substr(2));
@@ -190,7 +190,7 @@ std::vector<double> ToLine(const std::string& option, const std::string& text)
   const std::vector<double> line = ToNumbers(option, text);
   if (line.size() != 6 || std::equal(line.begin(), line.begin() + 3, line.begin() + 3))
   {
-    throw UsageError(option + " needs two different places, X,Y,Z,X,Y,Z, not '" + text + "'");
+    throw UsageError(option + " needs two different points, X,Y,Z,X,Y,Z, not '" + text + "'");
   }
   return line;
 }
@@ -226,7 +226,7 @@ std::vector<std::string> ToNames(const std::string& option, const std::string& t
   {
     if (name.empty())
     {
-      throw UsageError(option + " needs names with a comma between each two, not '" + text + "'");
+      throw UsageError(option + " needs names separated by commas, not '" + text + "'");
     }
     names.push_back(Printable(name));
   }

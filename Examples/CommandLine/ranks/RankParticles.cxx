@@ -56,11 +56,11 @@ vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet*
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
+vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
   RankSession& session, const std::string& file, MessageCapture* messages)
 {
   vtkSmartPointer<vtkPointSet> particles;
-  session.Together(
+  session.RunOnAll(
     [&] { particles = ReadParticlesPart(file, session.GetRank(), session.GetCount(), messages); });
   return GiveArrays(session, particles);
 }
@@ -72,12 +72,13 @@ void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles)
   {
     std::string problem;
     const vtkSPHPeriod found =
-      vtkSPHFindPeriodTogether(session.GetController(), particles->GetFieldData(), problem);
-    session.Together([&] { job.Periodic = CheckedPeriod(found, problem); });
+      vtkSPHFindPeriodDistributed(session.GetController(), particles->GetFieldData(), problem);
+    session.RunOnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
     job.DetectPeriod = false;
   }
   if (job.Periodic.size() == 3)
   {
-    job.Periodic = vtkSPHBoundsOfPeriodTogether(session.GetController(), job.Periodic, particles);
+    job.Periodic =
+      vtkSPHBoundsOfPeriodDistributed(session.GetController(), job.Periodic, particles);
   }
 }

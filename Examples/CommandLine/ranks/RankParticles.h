@@ -14,7 +14,7 @@ struct Job;
 
 /// Each process's part of a file, with the same arrays in all of them; a single file is the first one's.
 /// Throws std::runtime_error on all of them alike.
-vtkSmartPointer<vtkPointSet> ReadParticlesTogether(
+vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
   RankSession& session, const std::string& file, MessageCapture* messages);
 
 /// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.

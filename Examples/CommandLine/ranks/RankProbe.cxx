@@ -40,7 +40,7 @@ void FindBounds(const RankSession& session, vtkPointSet* particles, double bound
 void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
 {
   vtkSmartPointer<vtkDataSet> points;
-  session.Together(
+  session.RunOnAll(
     [&]
     {
       if (session.IsFirst())
@@ -49,12 +49,12 @@ void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
       }
     });
   const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesTogether(session, job.Inputs.front(), messages);
+    ReadParticlesDistributed(session, job.Inputs.front(), messages);
   ResolvePeriod(job, session, particles);
   double bounds[6];
   FindBounds(session, particles, bounds);
   double seconds = 0.0;
-  session.Together(
+  session.RunOnAll(
     [&]
     {
       if (!points && session.IsFirst())
@@ -64,8 +64,8 @@ void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
       points = points ? points : vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkPolyData>::New());
       SetUpProbe(job, points, particles);
     });
-  session.Together([&] { seconds = RunProbe(job, messages); });
-  session.Together(
+  session.RunOnAll([&] { seconds = RunProbe(job, messages); });
+  session.RunOnAll(
     [&]
     {
       if (session.IsFirst())

@@ -123,10 +123,10 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
 {
   Run run;
   const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesTogether(session, job.Inputs.front(), messages);
+    ReadParticlesDistributed(session, job.Inputs.front(), messages);
   ResolvePeriod(job, session, particles);
-  session.Together([&] { SetUpSurface(job, particles); });
-  session.Together([&] { run = Extract(job, messages); });
+  session.RunOnAll([&] { SetUpSurface(job, particles); });
+  session.RunOnAll([&] { run = Extract(job, messages); });
   vtkDataArray* triangles = run.Statistics->GetArray("Triangles");
   std::vector<std::string> warnings = triangles && triangles->GetComponent(0, 0) > 0
     ? messages->GetWarnings()
@@ -139,7 +139,7 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
   }
   ColorScale colors(job.Picture);
   OutputFiles files;
-  session.Together(
+  session.RunOnAll(
     [&]
     {
       if (whole)
@@ -160,18 +160,18 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
   {
     Report(job, run, warnings);
   }
-  session.Together([&] { files.Commit(); }); // only where all have written all
+  session.RunOnAll([&] { files.Commit(); }); // only where all have written all
 }
 }
 
 //------------------------------------------------------------------------------
-bool RunTogether(Job& job, MessageCapture* messages)
+bool RunDistributed(Job& job, MessageCapture* messages)
 {
   RankSession session;
   const Shared shared(job, session);
   try
   {
-    session.Together([&] { CheckUse(job, session, messages); });
+    session.RunOnAll([&] { CheckUse(job, session, messages); });
     job.IsProbe() ? ShareProbe(job, session, messages) : ShareSurface(job, session, messages);
   }
   catch (const std::exception& error)

@@ -10,6 +10,6 @@ class MessageCapture;
 /// of them, a single one by the first. A surface is written as one piece each for a .pvtp file, else the
 /// first one writes the whole: all write beside the places of their files, which are taken only where none
 /// of them failed. False if it failed; the first process has said why.
-bool RunTogether(Job& job, MessageCapture* messages);
+bool RunDistributed(Job& job, MessageCapture* messages);
 
 #endif

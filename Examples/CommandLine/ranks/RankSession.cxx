@@ -38,7 +38,7 @@ int RankSession::GetCount() const
 }
 
 //------------------------------------------------------------------------------
-void RankSession::Together(const std::function<void()>& work)
+void RankSession::RunOnAll(const std::function<void()>& work)
 {
   std::string sentence;
   try

@@ -24,7 +24,7 @@ public:
 
   /// All ranks do this work, which may differ. Where it throws on some of them, all throw
   /// std::runtime_error with the sentence of the first one.
-  void Together(const std::function<void()>& work);
+  void RunOnAll(const std::function<void()>& work);
 
 private:
   RankSession(const RankSession&) = delete;

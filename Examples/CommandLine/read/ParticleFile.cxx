@@ -233,7 +233,7 @@ vtkSmartPointer<vtkDataObject> ReadWithCare(
   {
   }
   throw std::runtime_error(
-    file + " cannot be read: it asks for more memory than there is; it may be damaged");
+    file + " cannot be read: it needs more memory than is available; it may be damaged");
 }
 
 /// Names go into sentences and into the surface's file, where not all bytes may stand that a legacy

@@ -31,7 +31,7 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
 {
   if (!problem.empty() || found.Period.empty())
   {
-    const std::string none = "The particles' field data tell of no period: there is no array "
+    const std::string none = "The field data of the particles give no period: there is no array "
                              "PeriodicBounds, BoxSize, or box with boundaryType.";
     throw std::runtime_error((problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
   }

@@ -68,7 +68,7 @@ std::vector<double> ListTimes(const Job& job, const Steps& steps)
     }
     if (time < begin || time > end)
     {
-      throw UsageError("--times: " + Text(time) + " is outside of the steps' times, " +
+      throw UsageError("--times: " + Text(time) + " is outside the times of the steps, " +
         Text(begin) + " to " + Text(end));
     }
   }
@@ -132,7 +132,7 @@ void CheckFiles(const Job& job, const Steps& steps, const std::vector<std::strin
       !IsFilmSurface(surface))
     {
       throw UsageError(surface +
-        " is there already, and is no step of a film; choose another name "
+        " already exists and is not a step of a film; choose another name "
         "for the film, or remove the file");
     }
   }

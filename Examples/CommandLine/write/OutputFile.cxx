@@ -116,7 +116,7 @@ void CheckAccess(const Target& target)
   if (access(folder.c_str(), W_OK | X_OK) != 0)
   {
     Fail(target.Name,
-      "no file can be made in the folder " + folder + " (" + std::strerror(errno) + ")");
+      "no file can be created in the folder " + folder + " (" + std::strerror(errno) + ")");
   }
 }
 

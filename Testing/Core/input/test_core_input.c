@@ -119,8 +119,8 @@ static void test_options(void** state)
   ARGUMENT("iteration limit|-1|255", call.options.iteration_limit = -1);
   ARGUMENT("iteration limit|0|255", call.options.iteration_limit = 0);
   ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);
-  ARGUMENT("-1 iso values", call.options.iso_count = -1);
-  ARGUMENT("1 iso values", call.options.iso_values = NULL);
+  ARGUMENT("iso_count is -1", call.options.iso_count = -1);
+  ARGUMENT("iso_count is 1", call.options.iso_values = NULL);
   ARGUMENT("-1 attributes", call.input.attribute_count = -1);
   ARGUMENT("2 attributes|NULL", call.input.attribute_count = 2);
   ARGUMENT("so value 1|finite", call.options.iso_count = 2; call.iso[1] = NAN);
@@ -146,7 +146,7 @@ static void test_components(void** state)
            call.input.scalar.name = "flow"; call.input.scalar_component = 3);
   ARGUMENT("Component -2|0 to 2", call.input.scalar = core_array(call.vector, 3);
            call.input.scalar_component = -2);
-  ARGUMENT("dot product|as many|3|1", call.input.scalar = core_array(call.vector, 3);
+  ARGUMENT("dot product|same number|3|1", call.input.scalar = core_array(call.vector, 3);
            call.input.scalar_dot = core_array(call.set.scalar, 1));
   ARGUMENT("smoothing length|hsml|3 components|must have 1",
            call.input.smoothing_length = core_array(call.vector, 3);
@@ -212,7 +212,7 @@ static void test_lattice_limits(void** state)
   CAPACITY("cube size|axis 2|larger", call.set.position[2] = -1e300);
   CAPACITY("cube size 1e-09|larger", call.options.cube_size = 1e-9);
   CAPACITY(
-    "1e+15 away from the origin|digits",
+    "1e+15 away from the origin|cannot resolve",
     for (int64_t i = 0; i < 3 * call.set.count; ++i) { call.set.position[i] += 1e15; });
   CAPACITY("cube size", call.options.cube_size_factor = 1e-300);
   CAPACITY("cube size", call.set.smoothing_length[5] = 1e-30);
@@ -284,7 +284,7 @@ static void test_endless_range(void** state)
     }
     if (!cases[k].is_good)
     {
-      expect(*state, &call, MCOR_INVALID_DATA, "reach too far|precision");
+      expect(*state, &call, MCOR_INVALID_DATA, "too large for|precision");
       free_call(&call);
       continue;
     }
@@ -557,11 +557,11 @@ static void test_outliers(void** state)
   CAPACITY("cubes in the period|Particle 7 has a smoothing length of 1.3e-06",
            call.set.smoothing_length[7] = 1.3e-6;
            repeat(&call, 10, 0));
-  CAPACITY("1e+15 away from the origin|digits", repeat(&call, 10, 1e15));
+  CAPACITY("1e+15 away from the origin|cannot resolve", repeat(&call, 10, 1e15));
   ARGUMENT("cube size 4 is too large for the period 10 along x|no more than 1.5",
            call.options.cube_size = 4;
            repeat(&call, 10, 0));
-  ARGUMENT("too little for support radii", repeat(&call, 3, 0));
+  ARGUMENT("too short for support radii", repeat(&call, 3, 0));
   expect_good(*state);
 }
 

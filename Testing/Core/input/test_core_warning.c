@@ -81,9 +81,10 @@ static void test_neighbours(void** state)
   SILENT(call.options.field = MCOR_WEIGHT_SUM; call.iso[0] = 0.5);
   SILENT(call.input.estimate_smoothing_length = 1);
   SILENT(call.input.smoothing_length = twice; call.input.smoothing_length_is_support_radius = 1);
-  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 2.6|30 to 100|cubic|support radius (then say",
+  WARNED(MCOR_WARN_NEIGHBOURS,
+    "smoothing length is 2.6|30 to 100|cubic|support radius (there is an option",
     call.input.smoothing_length = twice);
-  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|read as the support radius",
+  WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|not the support radius",
          call.input.smoothing_length_is_support_radius = 1;
          call.options.vertex_threshold = 0);
   WARNED(MCOR_WARN_NEIGHBOURS, "smoothing length is 0.65|unit of the positions",
@@ -114,7 +115,7 @@ static void test_plane(void** state)
 {
   WARNED(MCOR_WARN_PLANE, "along y|0 times", flatten(&call.set, 0);
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_PLANE, "along y|over 0.06", flatten(&call.set, 0.01);
+  WARNED(MCOR_WARN_PLANE, "along y|is 0.06", flatten(&call.set, 0.01);
          call.options.vertex_threshold = 0);
   SILENT(flatten(&call.set, 0.2); call.options.vertex_threshold = 0);
 }
@@ -160,12 +161,12 @@ static void test_trimmed(void** state)
          call.options.wall_share = 0.01;
          call.set.has_solids = 1; for (int i = 0; i < 1000; ++i) call.set.solid[i] = i % 2 == 0;
          call.input = core_input(&call.set));
-  WARNED(MCOR_WARN_TRIMMED, "everywhere there is the solids' share|wall share 0.01",
+  WARNED(MCOR_WARN_TRIMMED, "everywhere on the surface, the solids' share|wall share 0.01",
          call.options.field = MCOR_WEIGHT_SUM;
          call.iso[0] = 0.4; call.options.wall_share = 0.01; call.set.has_solids = 1;
          for (int i = 0; i < 1000; ++i) call.set.solid[i] = i % 2 == 0;
          call.input = core_input(&call.set));
-  WARNED(MCOR_WARN_TRIMMED, "node threshold 0.1|fill but 0.00",
+  WARNED(MCOR_WARN_TRIMMED, "node threshold 0.1|fill only 0.00",
     call.input.volume = (mcor_array){ .constant = 0.001 });
 }
 
@@ -188,14 +189,16 @@ static void test_unused_type(void** state)
   char* text = mcor_describe_unused_type("Type", values, counts, 3);
   assert_non_null(text);
   assert_string_equal(text,
-    "Point array 'Type' is not used, all particles count as fluid: it has 12 x 0, 5000000000 x 3, "
-    "1 x 0.5. If it tells fluid from walls, name it and the fluid's value.");
+    "Point array 'Type' is not used, and all particles count as fluid: it has 12 x 0, 5000000000 x "
+    "3, "
+    "1 x 0.5. If it tells fluid from walls, select it together with the value of the fluid.");
   free(text);
   text = mcor_describe_unused_type("Type", values, counts, 2);
-  assert_non_null(strstr(text, "name it and the fluid's value, which seems to be 3."));
+  assert_non_null(
+    strstr(text, "select it together with the value of the fluid, which seems to be 3."));
   free(text);
   text = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
-  assert_non_null(strstr(text, "Names of blocks tell of walls"));
+  assert_non_null(strstr(text, "Some blocks have names of walls"));
   free(text);
   assert_null(mcor_describe_unused_type("Type", values, counts, 1));
   assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1));

@@ -161,7 +161,7 @@ static void given_globals(void** state)
   core_set_box(&options, core_cuts + 3, none);
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   assert_non_null(
-    strstr(mcor_last_error(*state), "of 5 components of attributes; the input has 4"));
+    strstr(mcor_last_error(*state), "for 5 components of attributes, but the input has 4"));
   mcor_free_globals(&globals);
   free(whole.bytes);
   free(all.bytes);
@@ -239,7 +239,7 @@ static void bad_boxes(void** state)
 {
   const double bad[][6] = { { 1, 0, 0, 1, 0, 1 }, { 0, 1, 2, 2, 0, 1 }, { 0, 1, 0, 1, 0, NAN },
     { 0, 1, 0, 1, NAN, 1 }, { INFINITY, INFINITY, 0, 1, 0, 1 } };
-  const char* sentence[] = { "along x goes from 1 to 0; the first must be the lower one",
+  const char* sentence[] = { "along x goes from 1 to 0; the first must be lower than the second",
     "along y goes from 2 to 2", "along z goes from 0 to nan; both must be numbers",
     "along z goes from nan to 1", "along x goes from inf to inf" };
   const double iso = 0;

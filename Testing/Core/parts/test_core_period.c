@@ -378,11 +378,11 @@ static void lengths(void** state)
     const char* sentence;
   } cases[] = { { { 0, 8, 0, 8, 0, 8 }, 8.0 / 13, NULL }, { { 0, 8, 0, 6, 0, 0 }, 8.0 / 16, NULL },
     { { -4, 4, 0, 10, -1, 11 }, 8.0 / 16, NULL },
-    { { 0, 8, 0, 8.123456, 0, 0 }, 0, "not all whole numbers of a cube size" },
-    { { 0, 1e12, 0, 8, 0, 0 }, 0, "cubes in the period along x; 1048576 is the limit" },
+    { { 0, 8, 0, 8.123456, 0, 0 }, 0, "not whole multiples of any cube size" },
+    { { 0, 1e12, 0, 8, 0, 0 }, 0, "cubes in the period along x; the limit is 1048576" },
     { { -1.7e308, 1.7e308, 0, 8, 0, 0 }, 0, "inf cubes in the period along x" },
-    { { 0, 5e-324, 0, 0, 0, 0 }, 0, "too little for support radii" },
-    { { 0, 0.5, 0, 8, 0, 8 }, 0, "period along x is 0.5, too little" },
+    { { 0, 5e-324, 0, 0, 0, 0 }, 0, "too short for support radii" },
+    { { 0, 0.5, 0, 8, 0, 8 }, 0, "period along x is 0.5, too short" },
     { { 0, 8, 0, -1, 0, 8 }, 0, "period along y goes from 0 to -1" },
     { { 0, NAN, 0, 8, 0, 8 }, 0, "period along x goes from 0 to nan" } };
   const double iso = 0.2;
@@ -579,7 +579,7 @@ static void large_sides(void** state)
   options.capping = 1;
   options.cube_size = 1e-4;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
-  assert_non_null(strstr(mcor_last_error(*state), "Particles reach more than"));
+  assert_non_null(strstr(mcor_last_error(*state), "within reach of particles"));
   options.capping = 0;
   options.iso_values = &iso;
   for (int64_t j = 0; j < set.count; ++j)

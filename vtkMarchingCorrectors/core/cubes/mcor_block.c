@@ -125,8 +125,7 @@ static mcor_status mcor_divide_cubes(mcor_context* context, const mcor_cubes* cu
   const double foreseen = mcor_foresee_blocks(context, *children + added, finer.doublings);
   MCOR_RETURN_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: with cube size %g there may be surface in %s %.3g blocks of "
-    "%d^3 cells; "
-    "%d is the limit. Use a larger cube size.",
+    "%d^3 cells; the limit is %d. Use a larger cube size.",
     context->lattice.cube, foreseen > *children + added ? "more than" : "at least", foreseen,
     MCOR_BLOCK_CUBES, MCOR_BLOCK_LIMIT);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)*children + (size_t)added) * sizeof(cl_ulong)));

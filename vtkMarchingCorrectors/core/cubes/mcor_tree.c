@@ -118,8 +118,7 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   if (globals)
   {
     MCOR_RETURN_IF(!globals->splits, context, MCOR_INVALID_ARGUMENT,
-      "The given global values were measured for uniform cubes. Measure them with the same "
-      "options.");
+      "options.globals was measured for uniform cubes. Measure it with the same options.");
     MCOR_TRY(mcor_number_bricks(context, tree));
     MCOR_TRY(mcor_take_splits(context, tree, globals->splits, globals->split_count));
   }
@@ -129,8 +128,8 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   }
   const bool keys = context->options->point_keys || context->options->triangle_keys;
   MCOR_RETURN_IF(keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
-    "The virtual grid is too large for points with numbers, with cube size %g and %d levels of "
-    "adaptive cubes. Use a larger cube size, or fewer levels.",
+    "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
+    "cubes. Use a larger cube size, or fewer levels.",
     context->lattice.cube, tree->top + 1);
   size_t room = 0;
   MCOR_TRY(mcor_extend_leaves(tree, &room) ? MCOR_OK : mcor_fail_leaves(context));

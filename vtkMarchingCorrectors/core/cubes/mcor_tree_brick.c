@@ -48,7 +48,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
     }
     MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
       "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
-      "remove particles whose smoothing length is far from that of the others.",
+      "remove particles whose smoothing length differs greatly from that of the others.",
       lattice->top + 1);
     rung->base = base;
     rung->unused = 0;
@@ -89,7 +89,7 @@ bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
 mcor_status mcor_fail_leaves(mcor_context* context)
 {
   return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
-    "Adaptive cubes have more than %d leaves, or more than host memory has room for. Use a larger "
+    "Adaptive cubes would have more than %d leaves, or more than fit in host memory. Use a larger "
     "cube size.",
     MCOR_LEAF_LIMIT);
 }

@@ -124,8 +124,8 @@ mcor_status mcor_take_splits(
       ++level;
     }
     MCOR_RETURN_IF(keys[i] >= tree->key_limit || level == 0, context, MCOR_INVALID_ARGUMENT,
-      "The given global values were measured with other options: a brick of adaptive cubes is not "
-      "on the lattice.");
+      "options.globals was measured with other options: a brick of adaptive cubes is not on the "
+      "lattice.");
     const mcor_rung* rung = &tree->rungs[level];
     int b[3];
     mcor_brick_of_key(rung, keys[i], b);

@@ -367,7 +367,7 @@ static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* in
   }
   MCOR_RETURN_IF(leaves > MCOR_LEAF_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: with cube size %g the particles fill about %.3g bricks of %d "
-    "adaptive cubes, and %d is the limit. Use a larger cube size.",
+    "adaptive cubes; the limit is %d. Use a larger cube size.",
     context->lattice.cube, leaves, MCOR_BRICK_NODES, MCOR_LEAF_LIMIT);
   return MCOR_OK;
 }

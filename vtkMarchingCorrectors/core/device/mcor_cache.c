@@ -341,17 +341,16 @@ bool mcor_pocl_folder_fault(char* text, size_t size)
   if (!usable)
   {
     snprintf(text, size,
-      "PoCL compiles kernels into the folder %s, which cannot be written. Set POCL_CACHE_DIR to "
-      "one "
-      "that can.",
+      "PoCL compiles kernels into the folder %s, which is not writable. Set POCL_CACHE_DIR to a "
+      "writable folder.",
       path);
   }
   else if (statvfs(path, &disk) == 0 &&
     (uint64_t)disk.f_bavail * disk.f_frsize < (uint64_t)MCOR_POCL_BYTES)
   {
     snprintf(text, size,
-      "PoCL compiles kernels into the folder %s, whose disk is full. Make room there, or set "
-      "POCL_CACHE_DIR to another one.",
+      "PoCL compiles kernels into the folder %s, whose disk is full. Free some space, or set "
+      "POCL_CACHE_DIR to another folder.",
       path);
   }
   else

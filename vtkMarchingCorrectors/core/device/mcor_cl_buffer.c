@@ -117,10 +117,9 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
   mcor_drop_kept(context, mcor_most_held(cl) - (int64_t)size);
   MCOR_RETURN_IF(size > cl->largest_buffer || (uint64_t)cl->bytes + size > cl->memory_limit,
     context, MCOR_OUT_OF_CAPACITY,
-    "This would need a buffer of %.1f MiB besides %.1f MiB in use, but %.1f MiB of device %s may "
-    "be "
-    "used, %.1f MiB at most in one buffer. Use a larger cube size, fewer particles, or a higher "
-    "memory limit where one is set.",
+    "This needs a buffer of %.1f MiB in addition to %.1f MiB in use, but at most %.1f MiB of "
+    "device %s may be used, and %.1f MiB in one buffer. Use a larger cube size, fewer particles, "
+    "or a higher memory limit if one is set.",
     ldexp((double)size, -20), ldexp((double)cl->bytes, -20), ldexp((double)cl->memory_limit, -20),
     cl->device_name, ldexp((double)cl->largest_buffer, -20));
   cl_int error;

@@ -343,8 +343,8 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
     char devices[300];
     mcor_write_devices(&list, ", ", devices, sizeof devices);
     return mcor_fail(context, MCOR_DEVICE_ERROR,
-      "There is no OpenCL device \"%s\"; give the number of one, or part of its name: %s.", wanted,
-      devices);
+      "There is no OpenCL device \"%s\". Give the number of a device, or part of its name: %s.",
+      wanted, devices);
   }
   return mcor_start_device(context, &list, chosen, place, count);
 }

@@ -400,7 +400,7 @@ mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mc
   *derivatives = (mcor_derivatives){ 0 };
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
   MCOR_RETURN_IF((unsigned)form > MCOR_GRADIENT_STANDARD, context, MCOR_INVALID_ARGUMENT,
-    "There is no form number %d of the gradient.", (int)form);
+    "form is %d; there is no such form of the gradient.", (int)form);
   mcor_options own = *options;
   mcor_derive_call call = { form == MCOR_GRADIENT_STANDARD,
     mcor_evaluate_without_scalar(input, &own), derivatives };

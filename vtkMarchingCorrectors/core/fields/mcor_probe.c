@@ -430,7 +430,7 @@ mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mco
   }
   *samples = (mcor_samples){ 0 };
   MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
-    context, MCOR_INVALID_ARGUMENT, "Input, options or points are missing.");
+    context, MCOR_INVALID_ARGUMENT, "Input, options or points are NULL.");
   mcor_options own = *options;
   mcor_probe_call call = { points, count, options->field == MCOR_SUM,
     mcor_evaluate_without_scalar(input, &own), samples };

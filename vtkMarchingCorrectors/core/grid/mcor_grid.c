@@ -241,12 +241,12 @@ static mcor_status mcor_refuse_density(
     ? mcor_array_at(&input->mass, particle, 0) * mcor_size_scale(context, input)
     : 1;
   MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too "
-    "little for %s precision. Give volumes, or masses and densities, or remove such particles.",
+    "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too small "
+    "for %s precision. Provide volumes, or masses and densities, or remove such particles.",
     (long long)particle, mass, single ? "single" : "double");
   return mcor_fail(context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: with kernel %s, which has negative parts, the "
-    "density there is too low, or negative. Give volumes, or masses and densities.",
+    "The volume of particle %lld cannot be computed: with kernel %s, which has negative lobes, the "
+    "density there is too low or negative. Provide volumes, or masses and densities.",
     (long long)particle, mcor_sph_kernel_name(context->options->sph_kernel));
 }
 
@@ -373,8 +373,8 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   const double most = fmax(high - context->value_shift, context->value_shift - low);
   MCOR_RETURN_IF(!(most * fmax(context->largest_weight, 1) < (single ? 1e33 : 1e290)), context,
     MCOR_INVALID_DATA,
-    "The scalar's values, from %g to %g, reach too far for %s precision. %s remove the particles "
-    "with the outermost values.",
+    "The values of the scalar, from %g to %g, are too large for %s precision. %s remove the "
+    "particles with the most extreme values.",
     low, high, single ? "single" : "double",
     single ? "Use double precision, or" : "Use another unit, or");
   MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, &grid->value, 0));

@@ -16,8 +16,8 @@ static mcor_status mcor_check_period(mcor_context* context, const mcor_options* 
   {
     const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
     MCOR_RETURN_IF(!isfinite(from) || !isfinite(to) || from > to, context, MCOR_INVALID_ARGUMENT,
-      "The period along %c goes from %g to %g; both must be numbers, the first not the greater "
-      "one.",
+      "The period along %c goes from %g to %g; both must be finite, and the second must not be "
+      "lower.",
       'x' + a, from, to);
   }
   return MCOR_OK;
@@ -31,7 +31,8 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
     MCOR_RETURN_IF(isnan(from) || isnan(to), context, MCOR_INVALID_ARGUMENT,
       "The box along %c goes from %g to %g; both must be numbers.", 'x' + a, from, to);
     MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; the first must be the lower one.", 'x' + a, from, to);
+      "The box along %c goes from %g to %g; the first must be lower than the second.", 'x' + a,
+      from, to);
   }
   return MCOR_OK;
 }
@@ -40,7 +41,7 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
 static mcor_status mcor_check_capping(mcor_context* context, const mcor_options* options)
 {
   MCOR_RETURN_IF(options->capping && mcor_wants_pairs(options), context, MCOR_INVALID_ARGUMENT,
-    "Capping does not go with pairs as seeds. Turn one of them off.");
+    "Capping cannot be combined with pair seeds. Turn one of them off.");
   return MCOR_OK;
 }
 
@@ -60,8 +61,7 @@ static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals*
       isfinite(g->scalar_shift) && g->mass_max >= 0 && g->wall_share >= 0 && g->wall_share <= 1;
   }
   MCOR_RETURN_IF(!good, context, MCOR_INVALID_ARGUMENT,
-    "The given global values are none of an input. Take those that mcor_measure_globals has "
-    "measured.");
+    "options.globals was not produced by mcor_measure_globals, or has been changed.");
   return MCOR_OK;
 }
 
@@ -70,24 +70,25 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 #define MCOR_NEED(condition, ...)                                                                  \
   MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
   MCOR_NEED((unsigned)options->sph_kernel < MCOR_SPH_KERNEL_COUNT,
-    "There is no SPH kernel number %d.", (int)options->sph_kernel);
-  MCOR_NEED((unsigned)options->field <= MCOR_WEIGHT_SUM, "There is no field number %d.",
+    "sph_kernel is %d; there is no such SPH kernel.", (int)options->sph_kernel);
+  MCOR_NEED((unsigned)options->field <= MCOR_WEIGHT_SUM, "field is %d; there is no such field.",
     (int)options->field);
-  MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "There is no seed mode number %d.",
+  MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "seeds is %d; there is no such seed mode.",
     (int)options->seeds);
-  MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD, "There is no topology number %d.",
-    (int)options->topology);
+  MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD,
+    "topology is %d; there is no such topology.", (int)options->topology);
   MCOR_NEED(options->level_limit >= 0 && options->level_limit < MCOR_CUBE_LEVELS,
     "The level limit is %d; it must be from 0 (uniform cubes) to %d.", options->level_limit,
     MCOR_CUBE_LEVELS - 1);
   MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
-    "There is no boundary detection number %d.", (int)options->boundary_detection);
-  MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64, "There is no precision number %d.",
-    (int)options->precision);
+    "boundary_detection is %d; there is no such boundary detection.",
+    (int)options->boundary_detection);
+  MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64,
+    "precision is %d; there is no such precision.", (int)options->precision);
   MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,
     "The h scale factor is %g; it must be above 0.", options->h_scale);
   MCOR_NEED(isfinite(options->cube_size) && options->cube_size >= 0,
-    "The cube size is %g; it must be above 0, or 0 to use the cube size factor.",
+    "The cube size is %g; it must be positive, or 0 to use the cube size factor.",
     options->cube_size);
   MCOR_NEED(options->cube_size > 0 ||
       (isfinite(options->cube_size_factor) && options->cube_size_factor > 0),
@@ -99,23 +100,23 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
   MCOR_NEED((options->wall_share >= 0 && options->wall_share < 1) ||
       options->wall_share == MCOR_WALL_SHARE_MEASURED ||
       options->wall_share == MCOR_WALL_SHARE_AUTO,
-    "The wall share is %g; it must be from 0 (the surface does not end at solids) to below 1, "
-    "MCOR_WALL_SHARE_MEASURED or MCOR_WALL_SHARE_AUTO.",
+    "The wall share is %g; it must be at least 0 (the surface does not end at solids) and below 1, "
+    "or MCOR_WALL_SHARE_MEASURED (-1) or MCOR_WALL_SHARE_AUTO (-2).",
     options->wall_share);
   MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
     "The tolerance is %g; it must be above 0.", options->tolerance);
   MCOR_NEED(options->iteration_limit >= 1 && options->iteration_limit <= 255,
-    "The iteration limit is %d; it must be 1 to 255.", options->iteration_limit);
+    "The iteration limit is %d; it must be from 1 to 255.", options->iteration_limit);
   MCOR_NEED(options->memory_limit >= 0,
-    "The memory limit is %lld bytes; it must be above 0, or 0 for no limit.",
+    "The memory limit is %lld bytes; it must be positive, or 0 for no limit.",
     (long long)options->memory_limit);
   MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
-    "There are %d iso values.", options->iso_count);
+    "iso_count is %d; it must match iso_values and not be negative.", options->iso_count);
   for (int i = 0; i < options->iso_count; ++i)
   {
     MCOR_NEED(isfinite(options->iso_values[i]), "Iso value %d is not a finite number.", i);
     MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
-      "The iso value of the free surface is %g; it must be above 0 (0.5 is usual).",
+      "The iso value of the free surface is %g; it must be above 0 (usually 0.5).",
       options->iso_values[i]);
   }
 #undef MCOR_NEED
@@ -252,16 +253,18 @@ static mcor_status mcor_check_scalar(
   }
   const int components = mcor_components(&input->scalar);
   MCOR_RETURN_IF(!input->scalar.data, context, MCOR_INVALID_ARGUMENT,
-    "There is no scalar to contour. Choose a point array, or the free surface, which needs none.");
+    "There is no scalar to contour. Choose a point array, or the free surface, which needs no "
+    "scalar.");
   MCOR_RETURN_IF(components > 1 && !input->scalar_dot.data &&
       input->scalar_component != MCOR_MAGNITUDE &&
       (input->scalar_component < 0 || input->scalar_component >= components),
     context, MCOR_INVALID_ARGUMENT,
-    "Component %d of array %s was asked for, but it has %d. Choose 0 to %d, or the magnitude.",
+    "Component %d of array %s was requested, but the array has %d components. Choose 0 to %d, or "
+    "the magnitude.",
     input->scalar_component, mcor_array_name(&input->scalar, "scalar"), components, components - 1);
   MCOR_RETURN_IF(input->scalar_dot.data && mcor_components(&input->scalar_dot) != components,
     context, MCOR_INVALID_ARGUMENT,
-    "The dot product needs two arrays with as many components each; %s has %d and %s has %d.",
+    "The dot product needs two arrays with the same number of components; %s has %d and %s has %d.",
     mcor_array_name(&input->scalar, "the first"), components,
     mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
   MCOR_TRY(mcor_check_array(
@@ -281,7 +284,7 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
   {
     MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
       MCOR_INVALID_ARGUMENT,
-      "There is no smoothing length. Name its array, give a constant, or ask for an estimate.");
+      "There is no smoothing length. Name its array, give a constant, or have it estimated.");
     MCOR_TRY(
       mcor_check_array(context, &input->smoothing_length, NULL, "smoothing length", n, 1, true));
   }
@@ -310,7 +313,7 @@ mcor_status mcor_check_input(
     context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
     input->attributes ? "" : ", but their list is NULL");
   MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
-    MCOR_OUT_OF_CAPACITY, "There are %lld particles; %d is the limit.", (long long)input->count,
+    MCOR_OUT_OF_CAPACITY, "There are %lld particles; the limit is %d.", (long long)input->count,
     MCOR_PARTICLE_LIMIT);
   if (input->count == 0)
   {

@@ -303,11 +303,11 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
   const char* other = mcor_array_name(&input->scalar_dot, "scalar");
   const long long i = context->measure.not_finite;
   MCOR_RETURN_IF(i < INT64_MAX && input->scalar_dot.data, context, MCOR_INVALID_DATA,
-    "The dot product of arrays %s and %s of particle %lld is too large for a number. Use other "
+    "The dot product of arrays %s and %s at particle %lld is too large for a double. Use other "
     "units, or remove such particles.",
     name, other, i);
   MCOR_RETURN_IF(i < INT64_MAX, context, MCOR_INVALID_DATA,
-    "The magnitude of array %s of particle %lld is too large for a number. Use another unit, or "
+    "The magnitude of array %s at particle %lld is too large for a double. Use another unit, or "
     "remove such particles.",
     name, i);
   return MCOR_OK;
@@ -319,8 +319,8 @@ mcor_status mcor_check_digits(mcor_context* context, double low, double high, do
 {
   const double farthest = fmax(fabs(low), fabs(high));
   MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
-    "The particles are about %g away from the origin, but a number has no digits for cubes of size "
-    "%g there. Move the particles towards the origin.",
+    "The particles are about %g away from the origin, where a double cannot resolve cubes of size "
+    "%g. Move the particles towards the origin.",
     farthest, cube);
   return MCOR_OK;
 }
@@ -336,8 +336,8 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     "length.",
     cube, MCOR_LEAST_CUBE, MCOR_MOST_CUBE);
   MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size %g is more than %g times the least support radius %g. Use a smaller cube size, "
-    "or remove particles of such a smoothing length.",
+    "The cube size %g is more than %g times the smallest support radius %g. Use a smaller cube "
+    "size, or remove particles with such a small smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   lattice->top = mcor_tree_top(m, options);
   MCOR_TRY(mcor_fit_period(context, options, &cube));
@@ -349,7 +349,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   {
     const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
     MCOR_RETURN_IF(!(last - first <= MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along axis %d; %d is the limit. "
+      "With cube size %g the virtual grid would have %.3g cells along axis %d; the limit is %d. "
       "Use a larger cube size, or remove particles that are far away from the rest.",
       cube, last - first, a, MCOR_LATTICE_LIMIT);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], cube));

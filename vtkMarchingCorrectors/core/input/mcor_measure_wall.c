@@ -228,7 +228,7 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
     return MCOR_OK;
   }
   MCOR_RETURN_IF(context->options->globals, context, MCOR_INVALID_ARGUMENT,
-    "The global values have no wall share. Measure them with the same options.");
+    "options.globals has no wall share. Measure it with the same options.");
   if (context->options->field == MCOR_WEIGHT_SUM)
   {
     m->wall_share = MCOR_FREE_WALL_SHARE;

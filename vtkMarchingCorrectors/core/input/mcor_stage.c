@@ -322,8 +322,8 @@ static mcor_status mcor_refuse_heavy(
   mcor_stage_chunk chunk = { .count = 1 };
   mcor_read_stage_chunk(context, input, i, staging, NULL, &chunk);
   return mcor_fail(context, MCOR_INVALID_DATA,
-    "The volume of particle %lld is %.3g times the cube of its smoothing length, too much for %s "
-    "precision. Correct it or remove such particles.",
+    "The volume of particle %lld is %.3g times the cube of its smoothing length, too large for %s "
+    "precision. Correct the volume, or remove such particles.",
     (long long)i, mcor_stage_weight(context, &chunk, 0),
     context->cl.real_size == sizeof(float) ? "single" : "double");
 }
@@ -340,7 +340,7 @@ static mcor_status mcor_make_room(mcor_context* context, mcor_stage_job* job, mc
     total += job->used[s];
   }
   MCOR_RETURN_IF(total > MCOR_PARTICLE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "With their images there are %lld particles; %d is the limit.", (long long)total,
+    "Including periodic images there are %lld particles; the limit is %d.", (long long)total,
     MCOR_PARTICLE_LIMIT);
   staging->count = (int)total;
   const size_t bytes = (size_t)staging->count * sizeof(int32_t);
@@ -369,15 +369,15 @@ static mcor_status mcor_stage_particles(
     mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
   MCOR_RETURN_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
     MCOR_INVALID_ARGUMENT,
-    "The h scale factor is %g, too little for computed volumes. Give volumes, or choose a larger "
-    "one.",
+    "The h scale factor is %g, too small for computed volumes. Provide volumes, or choose a larger "
+    "factor.",
     context->options->h_scale);
   for (int s = 0; s < slices; ++s)
   {
     MCOR_RETURN_IF(job->changed[s], context, MCOR_INVALID_DATA,
-      "The particles' arrays were changed during the call%s. Let no other thread write to them "
-      "until it returns.",
-      context->options->globals ? ", or options.globals were measured of other particles" : "");
+      "The particle arrays were changed during the call%s. No other thread may write to them until "
+      "the call returns.",
+      context->options->globals ? ", or options.globals was measured over other particles" : "");
     if (job->heavy[s] >= 0)
     {
       return mcor_refuse_heavy(context, input, staging, job->heavy[s]);

@@ -84,15 +84,16 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   }
   if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
   {
-    return mcor_say(s, "All %lld fluid particles are at one point. Is that the array of positions?",
+    return mcor_say(s,
+      "All %lld fluid particles are at the same point. Is this the array of positions?",
       (long long)n->fluid_particles);
   }
   const char* why = few && s->input->smoothing_length_is_support_radius
-    ? "Perhaps what is read as the support radius is the smoothing length, or it is not in the "
-      "unit "
+    ? "Perhaps the array holds the smoothing length, not the support radius, or is not in the unit "
       "of the positions."
-    : few ? "Perhaps it is not in the unit of the positions."
-          : "Perhaps it is the support radius (then say so), or not in the unit of the positions.";
+    : few ? "Perhaps the smoothing length is not in the unit of the positions."
+          : "Perhaps the array holds the support radius (there is an option for that), or is not "
+            "in the unit of the positions.";
   const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
   char times[100] = "no other particle is within that";
   if (spacing > 0)
@@ -102,7 +103,7 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   }
   return mcor_say(s,
     "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
-    "%s (medians). Usual for the %s kernel are %s neighbours and 1 to %g times. %s%s%s%s",
+    "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
     n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel],
     wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
@@ -118,9 +119,9 @@ static bool mcor_warn_plane(mcor_suspicion* s)
     if (n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h && other > 8 * h)
     {
       return mcor_say(s,
-        "The fluid particles lie in a plane: along %c they extend over %.3g, %.4g times the "
-        "smoothing length. The kernels are those of three dimensions, so that weights are not "
-        "about 1 in the fluid of a two-dimensional simulation.",
+        "The fluid particles lie in a plane: their extent along %c is %.3g, %.4g times the "
+        "smoothing length. The kernels are three-dimensional, so in a two-dimensional simulation "
+        "the weights in the fluid are not about 1.",
         "xyz"[a], e[a], e[a] / h);
     }
   }
@@ -154,7 +155,7 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
   {
     snprintf(others, sizeof others, " (and %d more)", outside - 1);
   }
-  return mcor_say(s, "Iso value %.6g%s is outside of the range of %s, %.6g to %.6g.",
+  return mcor_say(s, "Iso value %.6g%s is outside the range of %s, %.6g to %.6g.",
     o->iso_values[first], others, name, low, high);
 }
 
@@ -169,9 +170,9 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
     return false;
   }
   return mcor_say(s,
-    "There is no surface, as the node threshold %g discards cells of a lower weight sum: the "
-    "particles' volumes fill but %.3g of their supports (median). Are volumes, or masses and "
-    "densities, in the units of the smoothing length?",
+    "There is no surface, because the node threshold %g discards all cells of lower weight sum: "
+    "the particle volumes fill only %.3g of the supports (median). Are volumes, or masses and "
+    "densities, in the same units as the smoothing length?",
     o->node_threshold, n->filled_median);
 }
 
@@ -193,12 +194,12 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   }
   if (wall)
   {
-    snprintf(share, sizeof share, "the solids' share of the weight above the wall share %g",
+    snprintf(share, sizeof share, "the solids' share of the weight is above the wall share %g",
       n->wall_share);
   }
   if (o->field == MCOR_WEIGHT_SUM)
   {
-    return mcor_say(s, "All %lld triangles were trimmed: everywhere there is %s.",
+    return mcor_say(s, "All %lld triangles were trimmed: everywhere on the surface, %s.",
       (long long)n->triangles_before_trimming, share);
   }
   return mcor_say(s,
@@ -207,7 +208,7 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
     (long long)n->triangles_before_trimming, eigenvalue ? "boundary eigenvalue" : "weight sum",
     o->vertex_threshold, wall ? ", or " : "", share,
     eigenvalue ? "Try 0.3."
-               : "Weights are about 1 in the fluid if volumes, masses and densities are right.");
+               : "In the fluid, weights are about 1 if volumes, masses and densities are right.");
 }
 
 /* As a share of the smallest smoothing length: residuals then are off by about as much of the range. */
@@ -226,11 +227,9 @@ static bool mcor_warn_precision(mcor_suspicion* s)
     return false;
   }
   return mcor_say(s,
-    "The virtual grid is so long, with cubes of %.3g, that positions in single precision are "
-    "rounded by up "
-    "to %.3g, %.2g of the smallest smoothing length: surfaces near the smallest particles are off "
-    "by about "
-    "as much. Try double precision.",
+    "The virtual grid is so long compared to its cubes of %.3g that single precision rounds "
+    "positions by up to %.3g, %.2g of the smallest smoothing length; surfaces near the smallest "
+    "particles are off by about that much. Try double precision.",
     n->cube_size, n->position_error, share);
 }
 
@@ -312,17 +311,17 @@ char* mcor_describe_unused_type(
   if (strcmp(name, MCOR_WALL_BLOCK) == 0)
   {
     return mcor_copy_text(
-      "Names of blocks tell of walls, but all particles count as fluid. Have the fluid detected, "
-      "or name '" MCOR_WALL_BLOCK "' as what tells fluid from walls, and 0 as the fluid's value.");
+      "Some blocks have names of walls, but all particles count as fluid. Have the fluid detected, "
+      "or select '" MCOR_WALL_BLOCK "' as the array that marks the fluid, with the value 0.");
   }
   mcor_suggest_fluid(name, values, count, seems, sizeof seems);
   end += snprintf(end, MCOR_SENTENCE / 2,
-    "Point array '%.200s' is not used, all particles count as fluid: it has", name);
+    "Point array '%.200s' is not used, and all particles count as fluid: it has", name);
   for (int i = 0; i < count; ++i)
   {
     end += snprintf(end, 40, "%s %lld x %g", i ? "," : "", (long long)counts[i], values[i]);
   }
   snprintf(end, (size_t)(text + sizeof text - end),
-    ". If it tells fluid from walls, name it and the fluid's value%s.", seems);
+    ". If it tells fluid from walls, select it together with the value of the fluid%s.", seems);
   return mcor_copy_text(text);
 }

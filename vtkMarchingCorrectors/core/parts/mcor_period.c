@@ -86,7 +86,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
   }
   const double least = ceil(length[axis] / *cube * (1 - MCOR_PERIOD_ERROR));
   MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
-    "With cube size %g there would be %.3g cubes in the period along %c; %d is the limit. Use a "
+    "With cube size %g there would be %.3g cubes in the period along %c; the limit is %d. Use a "
     "larger cube size, or a shorter period.",
     *cube, least, 'x' + axis, MCOR_LATTICE_LIMIT);
   const int64_t fewest = (int64_t)least;
@@ -95,8 +95,8 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
   int64_t count = mcor_count_graded_cubes(length, axis, fewest, &lattice->top);
   count = count == 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
-    "The periods %g, %g and %g (0: open) are not all whole numbers of a cube size near %g. Give "
-    "another cube size, or periods to all their digits.",
+    "The periods %g, %g and %g (0: not periodic) are not whole multiples of any cube size near %g. "
+    "Use another cube size, or give the periods with all their digits.",
     length[0], length[1], length[2], *cube);
   *cube = length[axis] / (double)count;
   const double reach = mcor_image_reach(context, options, *cube);
@@ -107,7 +107,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     {
       const double most = MCOR_MOST_PERIODS * length[a];
       MCOR_RETURN_IF(reach - 8 * *cube > most, context, MCOR_INVALID_ARGUMENT,
-        "The period along %c is %g, too little for support radii of up to %g.", 'x' + a, length[a],
+        "The period along %c is %g, too short for support radii of up to %g.", 'x' + a, length[a],
         m->support_max);
       MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
         "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "

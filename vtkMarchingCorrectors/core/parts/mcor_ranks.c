@@ -10,7 +10,7 @@
 static mcor_status mcor_heard(mcor_context* context, int failed)
 {
   MCOR_RETURN_IF(failed != 0, context, MCOR_CANCELLED,
-    "Another rank failed, or the exchange with it. See that rank's message.");
+    "Another rank, or the communication with it, failed. See the message of that rank.");
   return MCOR_OK;
 }
 

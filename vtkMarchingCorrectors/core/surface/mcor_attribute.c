@@ -88,7 +88,7 @@ static mcor_status mcor_check_components(mcor_context* context, const mcor_input
   const mcor_globals* globals = context->options->globals;
   const int components = (int)mcor_count_components(input);
   MCOR_RETURN_IF(globals && globals->component_count != components, context, MCOR_INVALID_ARGUMENT,
-    "The global values are of %d components of attributes; the input has %d.",
+    "options.globals was measured for %d components of attributes, but the input has %d.",
     globals->component_count, components);
   return MCOR_OK;
 }

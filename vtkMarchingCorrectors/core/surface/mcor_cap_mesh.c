@@ -118,7 +118,7 @@ mcor_status mcor_append_caps(mcor_cap_job* job, double iso)
   const size_t width = 3 * sizeof(cl_int), cell = sizeof(cl_ulong);
   int groups;
   MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
-    "With its caps the surface would have %zu triangles, %d is the limit. Use a larger cube size.",
+    "With its caps the surface would have %zu triangles; the limit is %d. Use a larger cube size.",
     old + more, MCOR_COUNT_LIMIT / 3);
   MCOR_TRY(mcor_keep_cap_keys(job));
   MCOR_TRY(mcor_append_cap_vertices(job));

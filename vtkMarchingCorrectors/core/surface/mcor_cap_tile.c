@@ -70,9 +70,8 @@ static mcor_status mcor_note_tiles(
     }
   }
   MCOR_RETURN_IF(face->tile_count > MCOR_CAP_TILE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "Particles reach more than %d nodes of a side of the period along %c, with cube size %g; a cap "
-    "may have "
-    "no more. Use a larger cube size, or no caps.",
+    "More than %d nodes of a periodic side along %c are within reach of particles, with cube size "
+    "%g: too many for a cap. Use a larger cube size, or no caps.",
     MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, 'x' + face->axis, context->lattice.cube);
   return MCOR_OK;
 }
@@ -149,7 +148,7 @@ static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_
   const double low[2] = { 0, 0 }, high[2] = { face->count[0], face->count[1] };
   const size_t places = (size_t)face->tiles[0] * (size_t)face->tiles[1];
   MCOR_RETURN_IF(places > MCOR_CAP_PLACE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "A side of the period has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
+    "A periodic side has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
     "caps.",
     (long long)face->count[0], (long long)face->count[1]);
   face->tile = calloc(places, sizeof *face->tile);

@@ -393,7 +393,8 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   int count;
   MCOR_TRY(mcor_count_used(context, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; 2147483647 is the limit.", (long long)(base + count));
+    "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
+    (long long)(base + count));
   if (count > 0)
   {
     MCOR_TRY(mcor_map_vertices(context, download));

@@ -97,8 +97,8 @@ FAULTS = [
           "crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));",
           "crossed & (q[0] & q[3] & ~q[1] & ~q[2]);"),
     Fault("march: edges next to cells that are not used are not told apart", ["core_trim"],
-          "(q[1] & q[2] & ~q[0] & ~q[3])); to[a] = crossed; to[3 + a] = crossed & ~(q[0] & q[1] & q[2] & q[3]);",
-          "(q[1] & q[2] & ~q[0] & ~q[3])); to[a] = crossed; to[3 + a] = 0;"),
+          "(q[1] & q[2] & ~q[0] & ~q[3])); to[axis] = crossed; to[3 + axis] = crossed & ~(q[0] & q[1] & q[2] & q[3]);",
+          "(q[1] & q[2] & ~q[0] & ~q[3])); to[axis] = crossed; to[3 + axis] = 0;"),
     # ---- complete seeds ----
     Fault("seeds: M'4's lowest lobe is missing in the bound", ["core_bound"],
           "far > mcor_turning_mprime4) ? (realv)mcor_lowest_mprime4", "far > mcor_turning_mprime4) ? (realv)0"),

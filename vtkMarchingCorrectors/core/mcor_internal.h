@@ -506,6 +506,8 @@ mcor_status mcor_find_side_flags(mcor_context* context, double iso);
 mcor_status mcor_begin_topology(mcor_context* context);
 mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
+/* Room for the vertices and triangles that are counted; the vertices. */
+mcor_status mcor_emit_vertices(mcor_context* context, double iso);
 mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(
   mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);

@@ -20,10 +20,6 @@
 
 /* ---- Nodes ---- */
 
-#define MCOR_SLOT_ARGS(c)                                                                          \
-  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->graded.bucket_shift),                             \
-    MCOR_BUFFER(&(c)->graded.keys), MCOR_BUFFER(&(c)->graded.buckets)
-
 #define MCOR_LEAF_ARGS(c)                                                                          \
   MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
     MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
@@ -315,22 +311,6 @@ static mcor_status mcor_emit_leaf_triangles(
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
 }
 
-static mcor_status mcor_emit_leaves(mcor_context* context, double iso)
-{
-  mcor_graded* graded = &context->graded;
-  mcor_mesh* mesh = &context->mesh;
-  const mcor_brick_data* now = &context->bricks.now;
-  const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
-  MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
-  MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_vertices", MCOR_MEDIUM, now->count,
-    MCOR_SLOT_ARGS(context), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&now->bricks),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
-  return mcor_emit_in_box(context, mcor_emit_leaf_triangles);
-}
-
 /* Counts the triangles of each level, in the box where there is one. */
 static mcor_status mcor_count_triangles(mcor_context* context)
 {
@@ -370,7 +350,8 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_emit_leaves(context, iso));
+  MCOR_TRY(mcor_emit_vertices(context, iso));
+  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_leaf_triangles));
   return mcor_count_triangles(context);
 }
 

@@ -20,6 +20,11 @@ static inline int mcor_marched_count(const mcor_context* context)
   return mcor_is_graded(context) ? context->graded.count : context->bricks.now.count;
 }
 
+/* Slots by keys. */
+#define MCOR_SLOT_ARGS(c)                                                                          \
+  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->graded.bucket_shift),                             \
+    MCOR_BUFFER(&(c)->graded.keys), MCOR_BUFFER(&(c)->graded.buckets)
+
 /* The leaves where there may be surface, with their nodes' values; then their vertices and
  * triangles. iso: relative to A0. */
 mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);

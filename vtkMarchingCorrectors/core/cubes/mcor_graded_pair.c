@@ -12,155 +12,34 @@
 
 #include "mcor_graded_pair.h"
 #include "mcor_box.h"
-#include "mcor_tree.h"
-
-#include <stdlib.h>
 
 /* ---- Leaves by their place ---- */
 
-/* A brick by its key: number of its leaf, or -1. */
-typedef struct mcor_place
-{
-  uint64_t key;
-  cl_int leaf;
-} mcor_place;
-
-static int mcor_compare_places(const void* a, const void* b)
-{
-  const uint64_t x = ((const mcor_place*)a)->key, y = ((const mcor_place*)b)->key;
-  return (x > y) - (x < y);
-}
-
-/* Bricks that leaves are parts of, by level. */
-typedef struct mcor_above
-{
-  mcor_brick_set sets[MCOR_TREE_LEVEL_LIMIT + 2];
-} mcor_above;
-
-/* False where memory ran out. */
-static bool mcor_add_above(
-  const mcor_tree* tree, const cl_int* leaves, int count, mcor_above* above)
-{
-  for (int i = 0; i < count; ++i)
-  {
-    const cl_int* leaf = leaves + 4 * (int64_t)i;
-    int brick[3] = { leaf[0], leaf[1], leaf[2] };
-    for (int level = leaf[3] + 1; level <= tree->top; ++level)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        brick[a] /= 2;
-      }
-      const uint64_t key = mcor_cluster_key(&tree->rungs[level], brick);
-      const uint64_t bit = UINT64_C(1) << mcor_cluster_bit(brick);
-      if (mcor_set_find(&above->sets[level], key) & bit)
-      {
-        break;
-      }
-      if (!mcor_set_add(&above->sets[level], key, bit))
-      {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-static size_t mcor_count_above(const mcor_above* above)
-{
-  size_t count = 0;
-  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
-  {
-    count += above->sets[l].count;
-  }
-  return count;
-}
-
-/* Lists the bricks of a set; returns where the next place goes. */
-static mcor_place* mcor_list_set(const mcor_rung* rung, const mcor_brick_set* set, mcor_place* to)
-{
-  for (size_t i = 0; i < set->capacity; ++i)
-  {
-    int first[3];
-    mcor_first_of_cluster(rung, set->slots[i].key, first);
-    for (int bit = 0; bit < 64; ++bit)
-    {
-      const int brick[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3),
-        first[2] + (bit >> 4) };
-      if (set->slots[i].bricks >> bit & 1)
-      {
-        *to++ = (mcor_place){ mcor_tree_key(rung, brick), -1 };
-      }
-    }
-  }
-  return to;
-}
-
-static void mcor_list_places(const mcor_tree* tree, const cl_int* leaves, int count,
-  const mcor_above* above, mcor_place* places)
-{
-  mcor_place* to = places;
-  for (int i = 0; i < count; ++i)
-  {
-    const cl_int* leaf = leaves + 4 * (int64_t)i;
-    *to++ = (mcor_place){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), i };
-  }
-  for (int level = 1; level <= tree->top; ++level)
-  {
-    to = mcor_list_set(&tree->rungs[level], &above->sets[level], to);
-  }
-  qsort(places, (size_t)(to - places), sizeof *places, mcor_compare_places);
-}
-
-/* Takes the places, sorted, to the device. */
-static mcor_status mcor_write_places(mcor_context* context, const mcor_place* places, size_t count)
-{
-  mcor_graded_pairs* pairs = &context->graded_pairs;
-  void *keys, *leaves;
-  pairs->place_count = (int)count;
-  MCOR_TRY(mcor_reserve(context, &pairs->place_keys, count * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &pairs->place_leaves, count * sizeof(cl_int)));
-  MCOR_TRY(mcor_map(context, &pairs->place_keys, count * sizeof(cl_ulong), true, &keys));
-  for (size_t i = 0; i < count; ++i)
-  {
-    ((cl_ulong*)keys)[i] = places[i].key;
-  }
-  MCOR_TRY(mcor_unmap(context, &pairs->place_keys, &keys));
-  MCOR_TRY(mcor_map(context, &pairs->place_leaves, count * sizeof(cl_int), true, &leaves));
-  for (size_t i = 0; i < count; ++i)
-  {
-    ((cl_int*)leaves)[i] = places[i].leaf;
-  }
-  return mcor_unmap(context, &pairs->place_leaves, &leaves);
-}
-
-/* Leaves where there may be surface, and what they are parts of, by their keys. */
+/* Leaves where there may be surface, and the bricks that they are parts of, by their keys. */
 static mcor_status mcor_find_places(mcor_context* context)
 {
-  const mcor_graded* graded = &context->graded;
-  const size_t leaves = (size_t)graded->count;
-  mcor_above above = { 0 };
-  void* view;
-  MCOR_TRY(mcor_map(context, &graded->cells, leaves * 4 * sizeof(cl_int), false, &view));
-  const bool added = mcor_add_above(&context->tree, view, graded->count, &above);
-  const size_t count = leaves + mcor_count_above(&above);
-  mcor_place* places = added ? malloc(count * sizeof *places) : NULL;
-  if (places)
-  {
-    mcor_list_places(&context->tree, view, graded->count, &above, places);
-  }
-  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
-  {
-    mcor_set_free(&above.sets[l]);
-  }
-  mcor_status status = mcor_unmap(context, &graded->cells, &view);
-  if (status == MCOR_OK)
-  {
-    status = places ? mcor_write_places(context, places, count)
-                    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  }
-  free(places);
-  return status;
+  mcor_graded* graded = &context->graded;
+  mcor_graded_pairs* pairs = &context->graded_pairs;
+  const int count = graded->count, top = context->tree.top;
+  const int64_t keys = (int64_t)count * (top + 1);
+  MCOR_RETURN_IF(keys > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "Pairs as seeds are limited to %d bricks times levels of adaptive cubes; here are %d bricks on "
+    "%d "
+    "levels. Use complete seeds, or a larger cube size.",
+    MCOR_COUNT_LIMIT, count, top + 1);
+  MCOR_TRY(mcor_reserve(context, &graded->requests, (size_t)keys * sizeof(cl_ulong)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_graded_pair_keys", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(top),
+      MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells), MCOR_BUFFER(&graded->requests)));
+  MCOR_TRY(mcor_unique(context, &graded->requests, (int)keys, context->tree.key_limit,
+    &pairs->place_keys, &graded->index, &pairs->place_count));
+  MCOR_TRY(
+    mcor_fill(context, &pairs->place_leaves, 0xff, (size_t)pairs->place_count * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_pair_places", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(top), MCOR_BUFFER(&graded->index), MCOR_BUFFER(&pairs->place_leaves)));
+  MCOR_RELEASE(context, &graded->requests, &graded->index);
+  mcor_release_sort(context);
+  return MCOR_OK;
 }
 
 #define MCOR_PLACE_ARGS(c)                                                                         \

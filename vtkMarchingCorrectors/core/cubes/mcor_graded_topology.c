@@ -39,9 +39,8 @@ mcor_status mcor_resolve_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_decide_topology(context, &topology->used, iso));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)graded->count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_recount", MCOR_MEDIUM, graded->count,
-    MCOR_INT(graded->count), MCOR_BUFFER(&graded->tables), MCOR_BUFFER(&context->bricks.neighbours),
+    MCOR_INT(graded->count), MCOR_BUFFER(&graded->tables), MCOR_DECISION_ARGS(context),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->used),
-    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->cases), MCOR_BUFFER(&topology->rows),
     MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&context->mesh.triangle_base),
     MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, graded->count, &tunnels));

@@ -4,6 +4,7 @@
 /* Extraction [III-D.1]. */
 
 #include "mcor_box.h"
+#include "mcor_graded.h"
 
 /* The used cells, among those examined, of the box and its ring. */
 static mcor_status mcor_classify_cells(mcor_context* context)
@@ -103,6 +104,22 @@ static mcor_status mcor_count_edges(mcor_context* context)
   return MCOR_OK;
 }
 
+mcor_status mcor_emit_vertices(mcor_context* context, double iso)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
+  MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
+    MCOR_SLOT_ARGS(context), MCOR_INT(mcor_is_graded(context)),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->graded.rungs),
+    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->ends));
+}
+
 /* Triangles, and their cells, of which those between the sides are owned. */
 static mcor_status mcor_emit_triangles(
   mcor_context* context, const int sides[6], mcor_buffer* cells)
@@ -123,20 +140,12 @@ static mcor_status mcor_emit_triangles(
 /* Vertices and triangles. iso: relative to A0. */
 mcor_status mcor_march(mcor_context* context, double iso)
 {
-  mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
   int owned;
   MCOR_TRY(mcor_find_cells(context, iso));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));
-  const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
-  MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
-  MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_REAL(iso), MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends)));
+  MCOR_TRY(mcor_emit_vertices(context, iso));
   MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
   MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
   context->statistics->triangles_before_trimming += owned;

@@ -95,6 +95,37 @@ bool mcor_request_brick(__global uint* brick_bits, int m)
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
+/* Adds cells to those of a brick or leaf, 64 bits in two words; which of them are new. */
+ulong mcor_add_cells(__global uint* cells, int at, ulong added)
+{
+  const uint low = (uint)added, high = (uint)(added >> 32);
+  const uint new_low = low ? low & ~atomic_or(cells + 2L * at, low) : 0;
+  const uint new_high = high ? high & ~atomic_or(cells + 2L * at + 1, high) : 0;
+  return new_low | (ulong)new_high << 32;
+}
+
+/* ---- Adaptive cubes: bricks by their level and place ---- */
+
+/* Key of a brick of a level. */
+ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
+{
+  __global const mcor_rung* rung = rungs + level;
+  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
+}
+
+#define MCOR_SLOT_PARAMS                                                                           \
+  const int slot_count, const int bucket_shift, __global const ulong *keys,                        \
+    __global const int *buckets
+#define MCOR_SLOT_ARGS slot_count, bucket_shift, keys, buckets
+
+/* Slot of a brick with a key, or -1. */
+int mcor_graded_find(MCOR_SLOT_PARAMS, ulong key)
+{
+  const ulong bucket = key >> bucket_shift;
+  const int low = mcor_find_key(keys, buckets[bucket], buckets[bucket + 1], key);
+  return low < slot_count && keys[low] == key ? low : -1;
+}
+
 #if MCOR_OF_LATTICE
 /* One work-item = one word of 32 bricks. Counts its bricks. */
 __kernel void mcor_brick_count(

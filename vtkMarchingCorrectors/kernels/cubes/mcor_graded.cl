@@ -90,19 +90,6 @@ __kernel void mcor_graded_bricks(const int count, const int top, __global const 
   bricks[i] = (int4)(block.x, block.y, block.z, level);
 }
 
-#define MCOR_SLOT_PARAMS                                                                           \
-  const int slot_count, const int bucket_shift, __global const ulong *keys,                        \
-    __global const int *buckets
-#define MCOR_SLOT_ARGS slot_count, bucket_shift, keys, buckets
-
-/* Slot of a brick with a key, or -1. */
-int mcor_graded_find(MCOR_SLOT_PARAMS, ulong key)
-{
-  const ulong bucket = key >> bucket_shift;
-  const int low = mcor_find_key(keys, buckets[bucket], buckets[bucket + 1], key);
-  return low < slot_count && keys[low] == key ? low : -1;
-}
-
 /* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
 __kernel void mcor_graded_tables(MCOR_SLOT_PARAMS, const int count, __global const mcor_rung* rungs,
   __global const int4* cells, __global const uint* finer, __global int* tables)

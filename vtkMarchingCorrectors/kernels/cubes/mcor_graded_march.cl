@@ -323,10 +323,9 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
     flat_loops += within >> cell & 1 ? caps : 0;
     mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
   }
-  for (ulong rest = cells & ~graded; rest; rest &= rest - 1)
-  {
-    triangles += case_table[mcor_march_case(leaf.corners_above, mcor_ctz(rest)) * 16 + 15];
-  }
+  int tunnels = 0; /* which the field decides on later */
+  triangles += mcor_cells_count(
+    leaf.corners_above, case_table, 0, 0, 0, 0, 0, leaf.slots[0], cells & ~graded, &tunnels);
   mcor_leaf_mark_plain(&leaf, cells & ~graded, quadrants);
   used[i] = cells;
   triangle_count[i] = triangles;
@@ -353,78 +352,9 @@ __kernel void mcor_graded_edges(const int slot_count, __global const uint* quadr
     {
       q[k] = (ulong)words[8 * a + 2 * k + 1] << 32 | words[8 * a + 2 * k];
     }
-    const ulong crossed = q[0] | q[1] | q[2] | q[3];
-    const ulong pinched = (q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]);
-    to[a] = crossed;
-    to[3 + a] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
-    to[6 + a] = pinched;
-    vertices += (int)(popcount(crossed) + popcount(pinched));
+    vertices += mcor_march_edges(~0UL, q, a, to);
   }
   vertex_count[slot] = vertices;
-}
-
-/* Value at the upper end of the edge from node n of a slot along an axis; beyond its brick, of the brick
- * there, or of the finer one that has the node. */
-real mcor_graded_end(MCOR_SLOT_PARAMS, __global const mcor_rung* rungs, int4 brick, int slot, int n,
-  int axis, __global const real* node_value)
-{
-  int x = 4 * brick.x + (n & 3) + (axis == 0), y = 4 * brick.y + (n >> 2 & 3) + (axis == 1),
-      z = 4 * brick.z + (n >> 4) + (axis == 2), level = brick.w;
-  const int step = 1 << (2 * axis);
-  if ((n >> (2 * axis) & 3) != 3)
-  {
-    return node_value[slot * 64L + n + step];
-  }
-  int other =
-    mcor_graded_find(MCOR_SLOT_ARGS, mcor_graded_key(rungs, level, x >> 2, y >> 2, z >> 2));
-  if (other < 0)
-  {
-    x *= 2;
-    y *= 2;
-    z *= 2;
-    other =
-      mcor_graded_find(MCOR_SLOT_ARGS, mcor_graded_key(rungs, level - 1, x >> 2, y >> 2, z >> 2));
-  }
-  return node_value[other * 64L + (x & 3) + 4 * (y & 3) + 16 * (z & 3)];
-}
-
-/* One work-item = one slot. Reads its crossed edges and node values. Writes its vertices: lattice edge
- * of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times the level),
- * and the two values against the iso value. */
-__kernel void mcor_graded_vertices(MCOR_SLOT_PARAMS, __global const mcor_rung* rungs,
-  __global const int4* bricks, __global const ulong* edges, __global const real* node_value,
-  __global const int* vertex_base, const real iso, __global int4* vertex_edge,
-  __global real* vertex_ends)
-{
-  const int slot = get_global_id(0);
-  if (slot >= slot_count)
-  {
-    return;
-  }
-  const int4 brick = bricks[slot];
-  __global const ulong* e = edges + (long)slot * MCOR_EDGE_MASKS;
-  int to = vertex_base[slot];
-  for (ulong rest = e[0] | e[1] | e[2]; rest; rest &= rest - 1)
-  {
-    const int n = mcor_ctz(rest);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (e[axis] >> n & 1)
-      {
-        const int copies = 1 + (int)(e[6 + axis] >> n & 1);
-        const int4 edge = (int4)(brick.x * MCOR_BRICK + (n & 3),
-          brick.y * MCOR_BRICK + (n >> 2 & 3), brick.z * MCOR_BRICK + (n >> 4),
-          axis | (int)(e[3 + axis] >> n & 1) << 2 | brick.w << MCOR_LEVEL_SHIFT);
-        const real end = mcor_graded_end(MCOR_SLOT_ARGS, rungs, brick, slot, n, axis, node_value);
-        for (int copy = 0; copy < copies; ++copy, ++to)
-        {
-          vertex_edge[to] = edge;
-          vertex_ends[2L * to] = node_value[slot * 64L + n] - iso;
-          vertex_ends[2L * to + 1] = end - iso;
-        }
-      }
-    }
-  }
 }
 
 /* Vertex of a cell's edge, given as in mcor_graded_cell.h. */

@@ -29,26 +29,45 @@ int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
   return at < place_count && place_keys[at] == key ? place_leaves[at] : MCOR_PLACE_NONE;
 }
 
-/* Adds cells to a leaf's; whether any is new. */
-bool mcor_leaf_add(__global uint* reached, int leaf, ulong cells)
-{
-  const uint low = (uint)cells, high = (uint)(cells >> 32);
-  const uint new_low = low ? low & ~atomic_or(reached + 2L * leaf, low) : 0;
-  const uint new_high = high ? high & ~atomic_or(reached + 2L * leaf + 1, high) : 0;
-  return new_low || new_high;
-}
-
 /* Adds a cell of a level to those of its leaf, if that is one. flags: 1 where it is new. */
 void mcor_leaf_reach(
   MCOR_PLACE_PARAMS, int level, int x, int y, int z, __global uint* reached, __global int* flags)
 {
   const int leaf = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
   const ulong cell = 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-  if (leaf >= 0 && mcor_leaf_add(reached, leaf, cell))
+  if (leaf >= 0 && mcor_add_cells(reached, leaf, cell))
   {
     atomic_or(flags, 1);
   }
 }
+
+#if MCOR_OF_LATTICE
+/* One work-item = one leaf. Writes its key, and those of the bricks that it is part of: of each level one, of the
+ * levels up to its own that of itself. */
+__kernel void mcor_graded_pair_keys(const int count, const int top, __global const mcor_rung* rungs,
+  __global const int4* leaves, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  for (int l = 0; l <= top && i < count; ++l)
+  {
+    const int4 leaf = leaves[i];
+    const int up = max(l - leaf.w, 0);
+    keys[i * (top + 1L) + l] =
+      mcor_graded_key(rungs, leaf.w + up, leaf.x >> up, leaf.y >> up, leaf.z >> up);
+  }
+}
+
+/* One work-item = one leaf. Enters it at its key, of which `index` has the place. */
+__kernel void mcor_graded_pair_places(
+  const int count, const int top, __global const int* index, __global int* place_leaves)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    place_leaves[index[i * (top + 1L)]] = i;
+  }
+}
+#endif
 
 /* ---- Cells between pairs ---- */
 
@@ -63,7 +82,7 @@ bool mcor_leaf_seed_cell(MCOR_MARK_PARAMS, int level, int x, int y, int z)
   const int leaf = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
   if (leaf >= 0)
   {
-    mcor_leaf_add(reached, leaf, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
+    mcor_add_cells(reached, leaf, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
   }
   return leaf == MCOR_PLACE_SPLIT;
 }
@@ -192,10 +211,7 @@ ulong mcor_leaf_grow(
     }
     looked_at = cells;
     const ulong used = cells & faces->used;
-    cells |= domain &
-      (mcor_from_next_x(used & faces->lower[0], 0) | mcor_from_last_x(used & faces->upper[0], 0) |
-        mcor_from_next_y(used & faces->lower[1], 0) | mcor_from_last_y(used & faces->upper[1], 0) |
-        mcor_from_next_z(used & faces->lower[2], 0) | mcor_from_last_z(used & faces->upper[2], 0));
+    cells |= domain & mcor_cells_beside(used, faces->lower, faces->upper);
   }
   return cells;
 }
@@ -235,7 +251,7 @@ void mcor_leaf_reach_across(const mcor_leaf* leaf, int4 brick, ulong cells, int 
   const int other = mcor_find_place(MCOR_PLACE_ARGS, brick.w, to.x, to.y, to.z);
   if (other >= 0)
   {
-    if (mcor_leaf_add(reached, other, side ? cells >> shift : cells << shift))
+    if (mcor_add_cells(reached, other, side ? cells >> shift : cells << shift))
     {
       atomic_or(flags, 1);
     }
@@ -280,7 +296,7 @@ __kernel void mcor_graded_pair_grow(const int count, __global const uint* finer,
   mcor_leaf_faces faces = mcor_leaf_plain_faces(&leaf, graded);
   cells = mcor_leaf_grow(&leaf, graded, cells, domain[i], &faces);
   grown[i] = cells;
-  mcor_leaf_add(reached, i, cells);
+  mcor_add_cells(reached, i, cells);
   const ulong fresh = cells & ~before & faces.used;
   const ulong low[3] = { MCOR_LOW_X, MCOR_LOW_Y, MCOR_LOW_Z };
   for (int face = 0; face < 6 && fresh; ++face)

@@ -14,13 +14,6 @@
  * finer. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
-/* Key of a brick of a level. */
-ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
-{
-  __global const mcor_rung* rung = rungs + level;
-  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
-}
-
 #if MCOR_OF_LATTICE
 /* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
 __kernel void mcor_graded_scale(

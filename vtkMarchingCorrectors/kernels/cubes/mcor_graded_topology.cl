@@ -35,10 +35,9 @@ __kernel void mcor_graded_plain(const int count, __global const uint* finer,
 
 /* One work-item = one leaf. Reads all decisions. Adds to its number of triangles what its plain cells have
  * more or fewer than by the case table; writes the number of their tunnels. */
-__kernel void mcor_graded_recount(const int count, __global const int* tables,
-  __global const int* neighbours, __global const ulong* above, __global const ulong* used,
-  __global const ulong* decisions, __global const int* cases, __global const mcor_cell_row* rows,
-  __global const uchar* case_table, __global int* triangle_count, __global int* tunnel_count)
+__kernel void mcor_graded_recount(const int count, __global const int* tables, MCOR_DECISION_PARAMS,
+  __global const ulong* above, __global const ulong* used, __global const uchar* case_table,
+  __global int* triangle_count, __global int* tunnel_count)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -47,17 +46,11 @@ __kernel void mcor_graded_recount(const int count, __global const int* tables,
   }
   const int slot = tables[i * (long)MCOR_LEAF_SLOTS];
   ulong m[8];
+  int tunnels = 0;
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  int triangles = 0, tunnels = 0, tunnel;
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    triangles +=
-      mcor_topology_cell(m, neighbours, decisions, cases, rows, slot, cell, &tunnel)->triangles -
-      case_table[mcor_march_case(m, cell) * 16 + 15];
-    tunnels += tunnel;
-  }
-  triangle_count[i] += triangles;
+  triangle_count[i] +=
+    mcor_cells_count(m, case_table, MCOR_DECISION_ARGS, slot, used[slot], &tunnels) -
+    mcor_cells_count(m, case_table, 0, 0, 0, 0, 0, slot, used[slot], &tunnels);
   tunnel_count[i] = tunnels;
 }

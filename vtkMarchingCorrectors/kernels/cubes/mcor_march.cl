@@ -126,6 +126,14 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
   return some & ~all;
 }
 
+/* A brick's cells that are beside these through crossed faces. */
+ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
+{
+  return mcor_from_next_x(used & lower[0], 0) | mcor_from_last_x(used & upper[0], 0) |
+    mcor_from_next_y(used & lower[1], 0) | mcor_from_last_y(used & upper[1], 0) |
+    mcor_from_next_z(used & lower[2], 0) | mcor_from_last_z(used & upper[2], 0);
+}
+
 /* Cells that are valid at all nodes and have nodes on both sides. above: of their corners. */
 ulong mcor_cell_crossed(
   const ulong* above, __global const int* neighbours, __global const ulong* valid, int slot)
@@ -180,6 +188,18 @@ MCOR_ONE_COPY void mcor_march_around(const ulong* m, int axis, ulong* q)
  * axis. */
 
 #if MCOR_OF_LATTICE
+/* Writes those of a brick's edges along an axis, of which these change sides and have used cells around them;
+ * returns their number of vertices. */
+int mcor_march_edges(ulong changes, const ulong* q, int axis, __global ulong* to)
+{
+  const ulong crossed = changes & (q[0] | q[1] | q[2] | q[3]);
+  const ulong pinched = crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
+  to[axis] = crossed;
+  to[3 + axis] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
+  to[6 + axis] = pinched;
+  return (int)(popcount(crossed) + popcount(pinched));
+}
+
 /* One work-item = one brick. Reads used cells, node masks and decisions. Writes the edge masks for edges
  * that have their lower node in the brick and a used cell around them; counts vertices, triangles and
  * tunnels. */
@@ -204,43 +224,61 @@ __kernel void mcor_march_count(const int brick_count, MCOR_DECISION_PARAMS,
   {
     ulong q[4];
     mcor_march_around(lower, a, q);
-    const ulong crossed = changes[a] & (q[0] | q[1] | q[2] | q[3]);
-    const ulong pinched = crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
-    to[a] = crossed;
-    to[3 + a] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
-    to[6 + a] = pinched;
-    vertices += (int)(popcount(crossed) + popcount(pinched));
+    vertices += mcor_march_edges(changes[a], q, a, to);
   }
   vertex_count[slot] = vertices;
-  int triangles = 0, tunnels = 0;
+  int tunnels = 0;
   mcor_cell_corners(m);
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
-  {
-    const mcor_cell_cut cut =
-      mcor_cell_cut_of(m, case_table, MCOR_DECISION_ARGS, slot, mcor_ctz(rest));
-    triangles += cut.triangles;
-    tunnels += cut.tunnel;
-  }
-  triangle_count[slot] = triangles;
+  triangle_count[slot] =
+    mcor_cells_count(m, case_table, MCOR_DECISION_ARGS, slot, used[slot], &tunnels);
   if (resolved)
   {
     tunnel_count[slot] = tunnels;
   }
 }
 
+/* Value at the upper end of the edge from node n of a brick along an axis; beyond it, of the brick there, or of the
+ * finer one that has the node. Bricks of several levels are found by their keys. */
+real mcor_march_end(const int levels, __global const int* neighbours, MCOR_SLOT_PARAMS,
+  __global const mcor_rung* rungs, int4 brick, int slot, int n, int axis,
+  __global const real* node_value)
+{
+  const int step = 1 << (2 * axis);
+  if ((n >> (2 * axis) & 3) != 3)
+  {
+    return node_value[slot * 64L + n + step];
+  }
+  if (!levels)
+  {
+    return node_value[neighbours[slot * 14L + (1 << axis) - 1] * 64L + n - 3 * step];
+  }
+  int4 at = brick * MCOR_BRICK +
+    (int4)((n & 3) + (axis == 0), (n >> 2 & 3) + (axis == 1), (n >> 4) + (axis == 2), 0);
+  int other = mcor_graded_find(
+    MCOR_SLOT_ARGS, mcor_graded_key(rungs, brick.w, at.x >> 2, at.y >> 2, at.z >> 2));
+  if (other < 0)
+  {
+    at *= 2;
+    other = mcor_graded_find(
+      MCOR_SLOT_ARGS, mcor_graded_key(rungs, brick.w - 1, at.x >> 2, at.y >> 2, at.z >> 2));
+  }
+  return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
+}
+
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
- * edge (lower node; axis, plus 4 where a cell around it is not used), and the two values against
- * the iso value. */
-__kernel void mcor_march_vertices(const int brick_count, __global const int4* bricks,
-  __global const int* neighbours, __global const ulong* edges, __global const real* node_value,
-  __global const int* vertex_base, const real iso, __global int4* vertex_edge,
-  __global real* vertex_ends)
+ * edge of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times the level),
+ * and the two values against the iso value. */
+__kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, const int levels,
+  __global const int* neighbours, __global const mcor_rung* rungs, __global const int4* bricks,
+  __global const ulong* edges, __global const real* node_value, __global const int* vertex_base,
+  const real iso, __global int4* vertex_edge, __global real* vertex_ends)
 {
   const int slot = get_global_id(0);
-  if (slot >= brick_count)
+  if (slot >= slot_count)
   {
     return;
   }
+  const int4 brick = bricks[slot];
   __global const ulong* e = edges + (long)slot * MCOR_EDGE_MASKS;
   int to = vertex_base[slot];
   for (ulong rest = e[0] | e[1] | e[2]; rest; rest &= rest - 1)
@@ -250,19 +288,17 @@ __kernel void mcor_march_vertices(const int brick_count, __global const int4* br
     {
       if (e[axis] >> n & 1)
       {
-        const int step = 1 << (2 * axis);
-        const bool outside = (n >> (2 * axis) & 3) == 3;
-        const int other = outside ? neighbours[slot * 14L + (1 << axis) - 1] : slot;
-        const int m = outside ? n - 3 * step : n + step;
         const int copies = 1 + (int)(e[6 + axis] >> n & 1);
-        const int4 edge =
-          (int4)(bricks[slot].x * MCOR_BRICK + (n & 3), bricks[slot].y * MCOR_BRICK + (n >> 2 & 3),
-            bricks[slot].z * MCOR_BRICK + (n >> 4), axis | (int)(e[3 + axis] >> n & 1) << 2);
+        const int4 edge = (int4)(brick.x * MCOR_BRICK + (n & 3),
+          brick.y * MCOR_BRICK + (n >> 2 & 3), brick.z * MCOR_BRICK + (n >> 4),
+          axis | (int)(e[3 + axis] >> n & 1) << 2 | brick.w << MCOR_LEVEL_SHIFT);
+        const real end = mcor_march_end(
+          levels, neighbours, MCOR_SLOT_ARGS, rungs, brick, slot, n, axis, node_value);
         for (int copy = 0; copy < copies; ++copy, ++to)
         {
           vertex_edge[to] = edge;
           vertex_ends[2L * to] = node_value[slot * 64L + n] - iso;
-          vertex_ends[2L * to + 1] = node_value[other * 64L + m] - iso;
+          vertex_ends[2L * to + 1] = end - iso;
         }
       }
     }

@@ -269,10 +269,7 @@ bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __glo
   }
   if (slot >= 0)
   {
-    const uint low = (uint)pushed, high = (uint)(pushed >> 32);
-    const uint new_low = low & ~atomic_or(cells + 2 * slot, low);
-    const uint new_high = high & ~atomic_or(cells + 2 * slot + 1, high);
-    pushed = new_low | (ulong)new_high << 32;
+    pushed = mcor_add_cells(cells, slot, pushed);
     if (pushed == 0)
     {
       return true;
@@ -321,9 +318,7 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   {
     last = now;
     const ulong used = now & crossed;
-    now |= mcor_from_next_x(used & faces[0], 0) | mcor_from_last_x(used & upper[0], 0) |
-      mcor_from_next_y(used & faces[1], 0) | mcor_from_last_y(used & upper[1], 0) |
-      mcor_from_next_z(used & faces[2], 0) | mcor_from_last_z(used & upper[2], 0);
+    now |= mcor_cells_beside(used, faces, upper);
   }
   const ulong used = now & crossed;
   const int4 brick = bricks[slot];
@@ -384,8 +379,8 @@ __kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int count, __global const 
   const int4 cell = reached[i];
   const int m = mcor_brick_number(MCOR_BLOCK_ARGS, cell.x >> 2, cell.y >> 2, cell.z >> 2);
   const int slot = m < 0 ? -1 : slot_of[m];
-  const uint bit = 1u << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 1) << 4);
-  if (slot >= 0 && !(atomic_or(cells + 2 * slot + (cell.z >> 1 & 1), bit) & bit))
+  const ulong bit = 1UL << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 3) << 4);
+  if (slot >= 0 && mcor_add_cells(cells, slot, bit))
   {
     atomic_or(flags, 1);
   }

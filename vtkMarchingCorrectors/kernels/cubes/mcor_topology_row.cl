@@ -95,3 +95,18 @@ mcor_cell_cut mcor_cell_cut_of(
   cut.tunnel = 0;
   return cut;
 }
+
+/* The number of triangles of these of a brick's cells; adds to that of tunnels. */
+int mcor_cells_count(const ulong* corners, __global const uchar* case_table, MCOR_DECISION_PARAMS,
+  int slot, ulong cells, int* tunnels)
+{
+  int triangles = 0;
+  for (ulong rest = cells; rest; rest &= rest - 1)
+  {
+    const mcor_cell_cut cut =
+      mcor_cell_cut_of(corners, case_table, MCOR_DECISION_ARGS, slot, mcor_ctz(rest));
+    triangles += cut.triangles;
+    *tunnels += cut.tunnel;
+  }
+  return triangles;
+}

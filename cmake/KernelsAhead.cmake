@@ -83,7 +83,7 @@ macro (mcor_compile_variants instructions flags lanes double)
       string(REPLACE "." ";" variant "${variant}")
       list(GET variant 0 field)
       list(GET variant 1 solids)
-      foreach (program IN ITEMS FIELD PROBE GRADED)
+      foreach (program IN ITEMS FIELD PROBE ADAPTIVE)
         list(FIND mcor_programs ${program} number)
         string(TOLOWER "${mcor_ahead_name}_${program}_${w}_${field}_${solids}" name)
         mcor_compile_program(${program} ${name} ${instructions} "${flags}"

@@ -40,7 +40,7 @@ struct DataCase
   double HScale;
   bool Double;
   double Eigenvalue = 0.0; // above 0: trimmed where the boundary eigenvalue is lower
-  bool Graded = false;     // adaptive cubes
+  bool Adaptive = false;   // adaptive cubes
   char PeriodAxis = 0;     // 'x', 'y' or 'z'; from 0 on, through the middle of the data
   double Period = 0.0;
 };
@@ -169,7 +169,7 @@ void NameCase(const DataCase& one, oracle_case& at)
     one.Scalar ? one.Scalar : "free", one.Iso, mcor_sph_kernel_name(one.Kernel), fields[one.Field],
     one.CubeSize > 0.0 ? one.CubeSize : at.options.cube_size_factor, at.options.h_scale,
     std::strcmp(one.SmoothingLength, Adaptive) == 0 ? "/adaptive" : "", one.Double ? "/double" : "",
-    eigenvalue, one.Graded ? "/graded" : "", period);
+    eigenvalue, one.Adaptive ? "/adaptive" : "", period);
 }
 
 void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& one)
@@ -189,9 +189,9 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
     at.options.vertex_threshold = one.Eigenvalue;
     at.options.boundary_eigenvalue = 1;
   }
-  at.options.level_limit = one.Graded ? MCOR_CUBE_LEVELS - 1 : 0;
+  at.options.level_limit = one.Adaptive ? MCOR_CUBE_LEVELS - 1 : 0;
   at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;
-  at.no_table = one.Graded;
+  at.no_table = one.Adaptive;
   if (one.PeriodAxis)
   {
     at.options.periodic[2 * (one.PeriodAxis - 'x') + 1] = one.Period;

@@ -175,9 +175,9 @@ int oracle_set_iso(oracle_reference* reference, double iso)
   reference->field.center = iso;
   reference->limits.close = relative * reference->range;
   reference->limits.margin = relative;
-  if (reference->adaptive)
+  if (reference->is_adaptive)
   {
-    oracle_march_graded(&reference->graded, &reference->field, &reference->limits);
+    oracle_march_adaptive(&reference->adaptive, &reference->field, &reference->limits);
     return 1;
   }
   oracle_free_surface(&reference->surface);
@@ -186,7 +186,7 @@ int oracle_set_iso(oracle_reference* reference, double iso)
 }
 
 /* Whether cubes of more than one size are asked for. */
-static int reference_is_graded(const oracle_particles* particles, const mcor_options* options)
+static int reference_is_adaptive(const oracle_particles* particles, const mcor_options* options)
 {
   double largest = 0.0;
   for (int64_t j = 0; j < particles->count; ++j)
@@ -202,10 +202,10 @@ static int reference_lattice(
 {
   const double cube = reference_cube(&reference->particles, options);
   const oracle_lattice* nodes =
-    reference->adaptive ? &reference->graded.nodes : &reference->lattice;
-  const int enough = reference->adaptive
-    ? oracle_create_graded(
-        &reference->graded, &reference->field, cube, options->level_limit, node_limit)
+    reference->is_adaptive ? &reference->adaptive.nodes : &reference->lattice;
+  const int enough = reference->is_adaptive
+    ? oracle_create_adaptive(
+        &reference->adaptive, &reference->field, cube, options->level_limit, node_limit)
     : oracle_create_lattice(&reference->lattice, &reference->field, cube, node_limit);
   reference->lattice.cube = cube;
   if (enough && oracle_is_periodic(options))
@@ -242,7 +242,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
-  reference->adaptive = reference_is_graded(&reference->particles, options);
+  reference->is_adaptive = reference_is_adaptive(&reference->particles, options);
   reference->range =
     options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
   if (!(reference->range > 0.0))
@@ -269,7 +269,7 @@ void oracle_free_reference(oracle_reference* reference)
 {
   oracle_free_surface(&reference->surface);
   oracle_free_lattice(&reference->lattice);
-  oracle_free_graded(&reference->graded);
+  oracle_free_adaptive(&reference->adaptive);
   oracle_free_field(&reference->field);
   oracle_free_particles(&reference->particles);
   memset(reference, 0, sizeof(*reference));

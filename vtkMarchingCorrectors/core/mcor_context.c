@@ -3,9 +3,9 @@
 
 /* The life of a context: what it begins with, what is given back when; and how any call on it runs. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
-#include "mcor_graded.h"
 #include "mcor_input.h"
 
 #include <stdlib.h>
@@ -79,7 +79,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_attributes(context);
   mcor_release_box(context);
   mcor_end_rounds(context);
-  mcor_release_graded(context);
+  mcor_release_adaptive(context);
   mcor_release(context, &context->sort.sums);
   mcor_drop_kept(context, 0);
   free(context->source);
@@ -120,7 +120,7 @@ mcor_status mcor_prepare(
   MCOR_TRY(mcor_choose_build(context, &build));
   if (!context->grid_valid)
   {
-    mcor_release_graded(context);
+    mcor_release_adaptive(context);
     mcor_release_grid(context); /* that of the last call is memory for this one's particles */
     MCOR_TRY(mcor_make_grid(context, input));
   }

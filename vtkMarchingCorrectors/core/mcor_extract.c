@@ -4,9 +4,9 @@
 /* mcor_extract: the phases in order. Section numbers in brackets, here and in the phases' files,
  * are those of the paper named in mcor.h. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
-#include "mcor_graded.h"
 
 /* One iso value's surface, appended. */
 static mcor_status mcor_extract_iso(
@@ -18,11 +18,11 @@ static mcor_status mcor_extract_iso(
   context->iso_number = i;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
-  const bool graded = mcor_is_graded(context);
-  MCOR_TRY(graded ? mcor_select_leaves(context, input, iso) : mcor_select_seeds(context, iso));
+  const bool adaptive = mcor_is_adaptive(context);
+  MCOR_TRY(adaptive ? mcor_select_leaves(context, input, iso) : mcor_select_seeds(context, iso));
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
-  MCOR_TRY(graded ? mcor_march_leaves(context, iso) : mcor_march(context, iso));
+  MCOR_TRY(adaptive ? mcor_march_leaves(context, iso) : mcor_march(context, iso));
   if (last && input->scalar_version == 0)
   {
     mcor_release_nodes(context);
@@ -72,7 +72,7 @@ static mcor_status mcor_extract_all(
     MCOR_TRY(mcor_finish_normals(context, surface));
   }
   MCOR_TRY(mcor_crop_surface(context, input, surface));
-  if (!mcor_is_graded(context))
+  if (!mcor_is_adaptive(context))
   {
     surface->statistics.cells_of_level[0] = surface->statistics.cells_used;
     surface->statistics.triangles_of_level[0] = surface->statistics.triangles_before_trimming;

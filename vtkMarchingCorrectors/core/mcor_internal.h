@@ -169,8 +169,8 @@ typedef struct mcor_tree
   int region_count, first_region[MCOR_TREE_LEVEL_LIMIT + 2];
 } mcor_tree;
 
-/* Marching of leaves; see mcor_graded.c. Slots are those of mcor_brick_data. */
-typedef struct mcor_graded
+/* Marching of leaves; see mcor_adaptive.c. Slots are those of mcor_brick_data. */
+typedef struct mcor_adaptive
 {
   int count;                                 /* leaves where there may be surface */
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
@@ -190,11 +190,11 @@ typedef struct mcor_graded
   mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
   mcor_buffer flat;      /* int, of each leaf, scanned */
   mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
-} mcor_graded;
+} mcor_adaptive;
 
-/* Of adaptive cubes, which cells pairs reach; see mcor_graded_pair.c. Masks are of the leaves where there
+/* Of adaptive cubes, which cells pairs reach; see mcor_adaptive_pair.c. Masks are of the leaves where there
  * may be surface. */
-typedef struct mcor_graded_pairs
+typedef struct mcor_adaptive_pairs
 {
   int place_count;
   mcor_buffer place_keys, place_leaves; /* ulong, sorted; int */
@@ -202,7 +202,7 @@ typedef struct mcor_graded_pairs
   mcor_buffer domain;                   /* ulong: where growth may go */
   mcor_buffer heard;                    /* int4: cells that other boxes have reached */
   mcor_buffer found;                    /* int: what a kernel found in any leaf */
-} mcor_graded_pairs;
+} mcor_adaptive_pairs;
 
 /* Of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
@@ -210,7 +210,7 @@ typedef struct mcor_topology_data
   mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
   mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
   mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
-  mcor_buffer plain, used; /* ulong: of adaptive cubes, see mcor_graded_topology.c */
+  mcor_buffer plain, used; /* ulong: of adaptive cubes, see mcor_adaptive_topology.c */
 } mcor_topology_data;
 
 /* Points at which the field is evaluated, see mcor_make_groups. */
@@ -304,8 +304,8 @@ struct mcor_context
   mcor_attributes attributes;
   mcor_box box;
   mcor_tree tree;
-  mcor_graded graded;
-  mcor_graded_pairs graded_pairs;
+  mcor_adaptive adaptive;
+  mcor_adaptive_pairs adaptive_pairs;
   int32_t* source;           /* [grid.count] input index of each device particle; NULL: the same */
   double value_shift;        /* A0 */
   double largest_weight;     /* no particle has a greater V / (scaled h)^3 */
@@ -599,12 +599,12 @@ extern const char mcor_source_mcor_probe_cl[];
 extern const char mcor_source_mcor_probe_lanes_cl[];
 extern const char mcor_source_mcor_probe_point_cl[];
 extern const char mcor_source_mcor_derive_cl[];
-extern const char mcor_source_mcor_graded_cell_h[];
-extern const char mcor_source_mcor_graded_seed_cl[];
-extern const char mcor_source_mcor_graded_cl[];
-extern const char mcor_source_mcor_graded_march_cl[];
-extern const char mcor_source_mcor_graded_topology_cl[];
-extern const char mcor_source_mcor_graded_pair_cl[];
+extern const char mcor_source_mcor_adaptive_cell_h[];
+extern const char mcor_source_mcor_adaptive_seed_cl[];
+extern const char mcor_source_mcor_adaptive_cl[];
+extern const char mcor_source_mcor_adaptive_march_cl[];
+extern const char mcor_source_mcor_adaptive_topology_cl[];
+extern const char mcor_source_mcor_adaptive_pair_cl[];
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \

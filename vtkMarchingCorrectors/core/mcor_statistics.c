@@ -60,7 +60,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   const mcor_buffer* known = &context->bricks.now.known;
   int nodes = 0;
   MCOR_TRY(mcor_count_bits(context, known, known, context->bricks.now.count, &nodes));
-  s->nodes_evaluated = nodes + context->graded.dropped;
+  s->nodes_evaluated = nodes + context->adaptive.dropped;
   s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->correction_sum / n : 0;
   s->correction_deviation = n > 0

@@ -10,11 +10,11 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
 {
   memset(comparison, 0, sizeof(*comparison));
   const size_t points = (size_t)surface->point_count + 1;
-  const size_t components = (size_t)(reference->adaptive ? reference->graded.component_count
-                                                         : reference->surface.component_count) +
+  const size_t components = (size_t)(reference->is_adaptive ? reference->adaptive.component_count
+                                                            : reference->surface.component_count) +
     1;
-  const size_t edges =
-    (size_t)(reference->adaptive ? reference->graded.edge_count : reference->surface.edge_count) +
+  const size_t edges = (size_t)(reference->is_adaptive ? reference->adaptive.edge_count
+                                                       : reference->surface.edge_count) +
     1;
   compare_state state = { reference, options, surface, mesh, trimmed, comparison,
     malloc(points * sizeof(int64_t)), malloc(edges * sizeof(int64_t)),
@@ -23,9 +23,9 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
   int64_t* count = calloc(2 * components, sizeof(int64_t));
   int enough = state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient &&
     state.vertex_cube && count;
-  if (enough && reference->adaptive)
+  if (enough && reference->is_adaptive)
   {
-    compare_graded(&state, count, count + components);
+    compare_adaptive(&state, count, count + components);
     compare_vertices(&state);
     enough = compare_orientation(&state);
   }

@@ -8,7 +8,7 @@
 #include "mcor.h"
 #include "mesh_check.h"
 #include "oracle.h"
-#include "oracle_graded.h"
+#include "oracle_adaptive.h"
 
 #ifdef __cplusplus
 extern "C"
@@ -25,8 +25,8 @@ extern "C"
     oracle_field field;
     oracle_lattice lattice;
     oracle_surface surface;
-    int adaptive; /* then these two are empty, but for the smallest cube, and this holds all */
-    oracle_graded graded;
+    int is_adaptive; /* then these two are empty, but for the smallest cube, and this holds all */
+    oracle_adaptive adaptive;
     oracle_limits limits;
     /* Of the scalar over fluid particles; its largest magnitude if all are equal. Of the
      * weight: its largest value, at least 1. */

@@ -58,9 +58,9 @@ void compare_assign(compare_state* state);
 void compare_missing(compare_state* state, int64_t* present, int64_t* absent);
 void compare_extra(compare_state* state);
 
-/* ---- oracle_compare_graded.c: these and those on faces, for cubes of several sizes ---- */
+/* ---- oracle_compare_adaptive.c: these and those on faces, for cubes of several sizes ---- */
 
-void compare_graded(compare_state* state, int64_t* present, int64_t* absent);
+void compare_adaptive(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */
 

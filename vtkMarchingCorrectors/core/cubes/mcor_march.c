@@ -3,8 +3,8 @@
 
 /* Extraction [III-D.1]. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_graded.h"
 
 /* The used cells, among those examined, of the box and its ring. */
 static mcor_status mcor_classify_cells(mcor_context* context)
@@ -113,8 +113,8 @@ mcor_status mcor_emit_vertices(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
-    MCOR_SLOT_ARGS(context), MCOR_INT(mcor_is_graded(context)),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->graded.rungs),
+    MCOR_SLOT_ARGS(context), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->adaptive.rungs),
     MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
     MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->node),
     MCOR_BUFFER(&mesh->ends));

@@ -8,9 +8,9 @@
  * box has right values at its nodes, and ends in a cell of that box or of its ring. Cells of adaptive cubes
  * have a level; uniform ones have level 0. */
 
+#include "mcor_adaptive.h"
+#include "mcor_adaptive_pair.h"
 #include "mcor_box.h"
-#include "mcor_graded.h"
-#include "mcor_graded_pair.h"
 #include "mcor_ranks.h"
 
 #include <math.h>
@@ -33,9 +33,9 @@ typedef struct mcor_known_cells
 static mcor_known_cells mcor_find_known(const mcor_context* context)
 {
   const mcor_brick_data* now = &context->bricks.now;
-  const mcor_graded* graded = &context->graded;
-  return mcor_is_graded(context)
-    ? (mcor_known_cells){ graded->count, &graded->cells, &context->graded_pairs.reached }
+  const mcor_adaptive* adaptive = &context->adaptive;
+  return mcor_is_adaptive(context)
+    ? (mcor_known_cells){ adaptive->count, &adaptive->cells, &context->adaptive_pairs.reached }
     : (mcor_known_cells){ now->count, &now->bricks, &now->cells };
 }
 
@@ -87,7 +87,7 @@ static mcor_status mcor_list_brick(
   mcor_context* context, const cl_int brick[4], cl_ulong cells, mcor_cell_list* list)
 {
   const mcor_lattice* lattice = &context->lattice;
-  const int level = mcor_is_graded(context) ? brick[3] : 0;
+  const int level = mcor_is_adaptive(context) ? brick[3] : 0;
   for (int c = 0; c < MCOR_BRICK_NODES; ++c)
   {
     const int64_t at[3] = { brick[0] * MCOR_BRICK + (c & 3), brick[1] * MCOR_BRICK + (c >> 2 & 3),
@@ -143,7 +143,7 @@ static bool mcor_is_near(const mcor_context* context, int axis, int64_t at, int 
 {
   const mcor_box* box = &context->box;
   const int64_t edge = INT64_C(2) << level; /* see mcor_box_clip */
-  return mcor_is_graded(context)
+  return mcor_is_adaptive(context)
     ? (at + 2) * edge >= box->near[axis] && (at - 1) * edge <= box->near[3 + axis]
     : at >= box->begin[axis] - MCOR_BOX_RING && at < box->end[axis] + MCOR_BOX_RING;
 }
@@ -217,7 +217,7 @@ static mcor_status mcor_hear_cells(
     found += mcor_place_cell(context, told + i, places + 4 * found);
   }
   const mcor_status status = found == 0 ? MCOR_OK
-    : mcor_is_graded(context)           ? mcor_take_reached(context, places, (int)found, fresh)
+    : mcor_is_adaptive(context)         ? mcor_take_reached(context, places, (int)found, fresh)
                                         : mcor_take_cells(context, places, (int)found, fresh);
   free(places);
   return status;
@@ -258,7 +258,7 @@ mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
   {
     status = mcor_tell_cells(context, &list, &all, &count);
   }
-  const bool has_leaves = !mcor_is_graded(context) || context->graded.count > 0;
+  const bool has_leaves = !mcor_is_adaptive(context) || context->adaptive.count > 0;
   if (status == MCOR_OK && context->grid.count > 0 && has_leaves)
   {
     bool some;
@@ -295,7 +295,7 @@ mcor_status mcor_attend_rounds(mcor_context* context, int first)
 {
   const bool all = context->options->ranks && mcor_uses_pairs(context);
   context->bricks.now.count = all ? 0 : context->bricks.now.count;
-  context->graded.count = all ? 0 : context->graded.count;
+  context->adaptive.count = all ? 0 : context->adaptive.count;
   for (int i = first; i < context->options->iso_count && all; ++i)
   {
     MCOR_TRY(mcor_attend_growth(context));

@@ -4,7 +4,7 @@
 /* Topology by the field: what Marching Cubes leaves ambiguous is decided by samples of the
  * field. */
 
-#include "mcor_graded.h"
+#include "mcor_adaptive.h"
 
 #include <stdlib.h>
 
@@ -31,7 +31,7 @@ static mcor_status mcor_upload_topology_table(mcor_context* context)
 /* The first sample of a level of adaptive cubes: slots are in the order of their levels. */
 static mcor_status mcor_first_sample(mcor_context* context, int level, int* first)
 {
-  const size_t slot = (size_t)context->graded.first_slot[level];
+  const size_t slot = (size_t)context->adaptive.first_slot[level];
   return mcor_read(
     context, &context->topology.sample_base, slot * sizeof(cl_int), first, sizeof(cl_int));
 }

@@ -34,10 +34,10 @@ typedef struct mcor_build
 /* Programs are built, and kernels compiled, when they are first needed. */
 typedef enum mcor_program
 {
-  MCOR_PROGRAM_LATTICE, /* the same for all kernels and fields, with solids and without */
-  MCOR_PROGRAM_FIELD,   /* what surfaces of the build need */
-  MCOR_PROGRAM_PROBE,   /* mcor_probe and mcor_derive */
-  MCOR_PROGRAM_GRADED,  /* adaptive cubes */
+  MCOR_PROGRAM_LATTICE,  /* the same for all kernels and fields, with solids and without */
+  MCOR_PROGRAM_FIELD,    /* what surfaces of the build need */
+  MCOR_PROGRAM_PROBE,    /* mcor_probe and mcor_derive */
+  MCOR_PROGRAM_ADAPTIVE, /* adaptive cubes */
   MCOR_PROGRAM_COUNT
 } mcor_program;
 

@@ -29,11 +29,11 @@ bool mcor_program_may_have(mcor_program program, const char* kernel)
 {
   const bool is_probe =
     strncmp(kernel, "mcor_probe_", 11) == 0 || strncmp(kernel, "mcor_derive_", 12) == 0;
-  const bool is_graded = strncmp(kernel, "mcor_graded_", 12) == 0;
+  const bool is_adaptive = strncmp(kernel, "mcor_adaptive_", 12) == 0;
   return program == MCOR_PROGRAM_LATTICE ? !is_probe
     : program == MCOR_PROGRAM_PROBE      ? is_probe
-    : program == MCOR_PROGRAM_GRADED     ? is_graded
-                                         : !is_probe && !is_graded;
+    : program == MCOR_PROGRAM_ADAPTIVE   ? is_adaptive
+                                         : !is_probe && !is_adaptive;
 }
 
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size)

@@ -21,7 +21,7 @@
  * mcor_pair_rounds.c. */
 
 #include "mcor_box.h"
-#include "mcor_graded.h"
+#include "mcor_adaptive.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_stage.h"
@@ -218,18 +218,18 @@ mcor_status mcor_void_bricks(mcor_context* context)
 static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lower, int upper,
   const mcor_buffer* cells, mcor_buffer* clipped)
 {
-  const bool graded = mcor_is_graded(context);
+  const bool adaptive = mcor_is_adaptive(context);
   const int count = mcor_marched_count(context);
   int s[6];
   for (int a = 0; a < 3; ++a)
   {
-    s[a] = sides[a] - (graded ? 0 : 2 * lower);
-    s[3 + a] = sides[3 + a] + (graded ? 0 : 2 * upper);
+    s[a] = sides[a] - (adaptive ? 0 : 2 * lower);
+    s[3 + a] = sides[3 + a] + (adaptive ? 0 : 2 * upper);
   }
   MCOR_TRY(mcor_reserve(context, clipped, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(graded ? &context->graded.cells : &context->bricks.now.bricks), MCOR_SIDES_ARGS(s),
-    MCOR_INT(graded && lower > 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
+    MCOR_BUFFER(adaptive ? &context->adaptive.cells : &context->bricks.now.bricks),
+    MCOR_SIDES_ARGS(s), MCOR_INT(adaptive && lower > 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
 }
 
 /* One more node than cells. */
@@ -317,10 +317,10 @@ double mcor_reach_margin(
 {
   const double h_min = globals->smoothing_length_min, h_max = globals->smoothing_length_max;
   const int limit = options->level_limit;
-  const bool graded = mcor_tree_level_of(h_max, h_min, limit) > 0;
+  const bool adaptive = mcor_tree_level_of(h_max, h_min, limit) > 0;
   return globals->cube_size *
-    (graded ? ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(smoothing_length, h_min, limit))
-            : MCOR_GLOBALS_MARGIN);
+    (adaptive ? ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(smoothing_length, h_min, limit))
+              : MCOR_GLOBALS_MARGIN);
 }
 
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)

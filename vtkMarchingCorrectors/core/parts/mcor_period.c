@@ -45,7 +45,7 @@ static int64_t mcor_count_cubes(
 
 /* Adaptive cubes: a period is a whole number of bricks of the level above the highest one, so that levels
  * repeat with it. Where cubes would become too small for that, there are fewer levels. */
-static int64_t mcor_count_graded_cubes(const double length[3], int axis, int64_t least, int* top)
+static int64_t mcor_count_adaptive_cubes(const double length[3], int axis, int64_t least, int* top)
 {
   int64_t count = 0;
   for (++*top; count == 0 && *top > 0;)
@@ -92,7 +92,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
   const int64_t fewest = (int64_t)least;
   /* Large cubes stick out of the period: no flat side would be left to close. */
   lattice->top = options->capping ? 0 : lattice->top;
-  int64_t count = mcor_count_graded_cubes(length, axis, fewest, &lattice->top);
+  int64_t count = mcor_count_adaptive_cubes(length, axis, fewest, &lattice->top);
   count = count == 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
     "The periods %g, %g and %g (0: not periodic) are not whole multiples of any cube size near %g. "

@@ -3,8 +3,8 @@
 
 /* Correction [III-D.2]. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_graded.h"
 
 #include <stdlib.h>
 

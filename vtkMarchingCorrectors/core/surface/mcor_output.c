@@ -164,7 +164,7 @@ static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int
   return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
 }
 
-/* What node and offset of vertex v are counted in, unit L: see mcor_graded.h. */
+/* What node and offset of vertex v are counted in, unit L: see mcor_adaptive.h. */
 static double mcor_cube_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
   const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;

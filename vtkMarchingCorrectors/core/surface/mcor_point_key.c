@@ -4,8 +4,8 @@
 /* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
  * makes, and ascending in the order of the whole surface's points. */
 
+#include "mcor_adaptive.h"
 #include "mcor_cap.h"
-#include "mcor_graded.h"
 #include "mcor_tree.h"
 
 #include <stdlib.h>
@@ -48,7 +48,7 @@ static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4],
 
 /* The same of adaptive cubes: by the key of the brick of its level, then by node and axis. Fits, see
  * MCOR_TREE_KEY_BITS. */
-static uint64_t mcor_graded_edge_key(const mcor_tree* tree, const cl_int node[4], int copy)
+static uint64_t mcor_adaptive_edge_key(const mcor_tree* tree, const cl_int node[4], int copy)
 {
   const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
   const uint64_t key = mcor_tree_key(&tree->rungs[node[3] >> MCOR_LEVEL_SHIFT], brick);
@@ -63,8 +63,8 @@ static uint64_t mcor_march_key(const mcor_context* context, const cl_int* nodes,
   const cl_int *node = nodes + 4 * v, *before = node - 4;
   const bool copy = v > 0 && node[0] == before[0] && node[1] == before[1] && node[2] == before[2] &&
     node[3] == before[3];
-  return mcor_is_graded(context) ? mcor_graded_edge_key(&context->tree, node, copy)
-                                 : mcor_edge_key(&context->lattice, node, copy);
+  return mcor_is_adaptive(context) ? mcor_adaptive_edge_key(&context->tree, node, copy)
+                                   : mcor_edge_key(&context->lattice, node, copy);
 }
 
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,

@@ -3,8 +3,8 @@
 
 /* Trimming [III-D.3]. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_graded.h"
 
 #include <math.h>
 
@@ -187,7 +187,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
-  if (mcor_is_graded(context))
+  if (mcor_is_adaptive(context))
   {
     MCOR_TRY(mcor_find_cut_levels(context, cut_count));
   }

@@ -107,7 +107,7 @@ ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 /* ---- Adaptive cubes: bricks by their level and place ---- */
 
 /* Key of a brick of a level. */
-ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
+ulong mcor_adaptive_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
   __global const mcor_rung* rung = rungs + level;
   return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
@@ -119,7 +119,7 @@ ulong mcor_graded_key(__global const mcor_rung* rungs, int level, int x, int y, 
 #define MCOR_SLOT_ARGS slot_count, bucket_shift, keys, buckets
 
 /* Slot of a brick with a key, or -1. */
-int mcor_graded_find(MCOR_SLOT_PARAMS, ulong key)
+int mcor_adaptive_find(MCOR_SLOT_PARAMS, ulong key)
 {
   const ulong bucket = key >> bucket_shift;
   const int low = mcor_find_key(keys, buckets[bucket], buckets[bucket + 1], key);

@@ -254,13 +254,13 @@ real mcor_march_end(const int levels, __global const int* neighbours, MCOR_SLOT_
   }
   int4 at = brick * MCOR_BRICK +
     (int4)((n & 3) + (axis == 0), (n >> 2 & 3) + (axis == 1), (n >> 4) + (axis == 2), 0);
-  int other = mcor_graded_find(
-    MCOR_SLOT_ARGS, mcor_graded_key(rungs, brick.w, at.x >> 2, at.y >> 2, at.z >> 2));
+  int other = mcor_adaptive_find(
+    MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, brick.w, at.x >> 2, at.y >> 2, at.z >> 2));
   if (other < 0)
   {
     at *= 2;
-    other = mcor_graded_find(
-      MCOR_SLOT_ARGS, mcor_graded_key(rungs, brick.w - 1, at.x >> 2, at.y >> 2, at.z >> 2));
+    other = mcor_adaptive_find(
+      MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, brick.w - 1, at.x >> 2, at.y >> 2, at.z >> 2));
   }
   return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
 }

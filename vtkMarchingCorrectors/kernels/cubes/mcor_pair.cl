@@ -6,7 +6,7 @@
  * to cell through crossed faces. */
 
 #if MCOR_OF_FIELD
-/* What marking takes, last among a kernel's parameters; mcor_graded_pair.cl has that of adaptive cubes. */
+/* What marking takes, last among a kernel's parameters; mcor_adaptive_pair.cl has that of adaptive cubes. */
 #define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint *cells
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, cells
 
@@ -193,8 +193,8 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
 /* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
  * together first, as most particles are far from the surface. Reads the particles within the
  * smoothing length of each. Marks the cells between pairs that straddle the iso value. */
-#if MCOR_OF_GRADED
-#define MCOR_PAIR_SEED mcor_graded_pair_seed
+#if MCOR_OF_ADAPTIVE
+#define MCOR_PAIR_SEED mcor_adaptive_pair_seed
 #else
 #define MCOR_PAIR_SEED mcor_pair_seed
 #endif

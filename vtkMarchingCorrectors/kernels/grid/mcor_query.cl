@@ -72,7 +72,7 @@ fix mcor_query_reach(float distance)
 
 /* With more rows, one passes over the empty ones at once. Where smoothing lengths differ much, nearly all
  * are: particles of most levels are elsewhere. */
-#define MCOR_MANY_ROWS (MCOR_OF_GRADED ? 3 : 64)
+#define MCOR_MANY_ROWS (MCOR_OF_ADAPTIVE ? 3 : 64)
 
 /* x + reach, or the greatest number: a lattice may be nearly as long. */
 fix mcor_query_beyond(fix x, fix reach)

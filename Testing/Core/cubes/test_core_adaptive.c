@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static mcor_options graded_options(const double* iso, mcor_field field)
+static mcor_options adaptive_options(const double* iso, mcor_field field)
 {
   mcor_options options = core_options(iso);
   options.field = field;
@@ -41,7 +41,7 @@ static void closed_across_levels(void** state)
   {
     core_set set = core_make_graded(ratios[i], 0.3);
     const mcor_input input = core_input(&set);
-    const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+    const mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
     mcor_surface surface = core_extract(*state, &input, &options);
     assert_in_range(levels_used(&surface), i == 0 ? 3 : 6, 9);
     mesh_report report = core_check_mesh(&surface);
@@ -59,7 +59,7 @@ static void trimmed(void** state)
   static const double isos[2] = { 0.1, 0.3 };
   core_set set = core_make_graded(30, 0.3);
   const mcor_input input = core_input(&set);
-  mcor_options options = graded_options(isos, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(isos, MCOR_SHEPARD);
   options.iso_count = 2;
   options.boundary_flag = options.residual = options.weight_sum = 1;
   mcor_surface surface = core_extract(*state, &input, &options);
@@ -86,7 +86,7 @@ static void one_level_is_uniform(void** state)
   static const double iso = 0;
   core_set set = core_make_block(9, 0.3, 3, core_ball);
   const mcor_input input = core_input(&set);
-  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   mcor_surface adaptive = core_extract(*state, &input, &options);
   options.level_limit = 0;
   mcor_surface uniform = core_extract(*state, &input, &options);
@@ -103,7 +103,7 @@ static void roots_of_the_finest_lattice(void** state)
   static const double half = 0.5;
   core_set set = core_make_graded(6, 0.4);
   const mcor_input input = core_input(&set);
-  const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  const mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
   mcor_surface surface = core_extract(*state, &input, &options);
   const double cube = surface.statistics.cube_size;
   for (int64_t i = 0; i < surface.point_count; ++i)
@@ -128,12 +128,12 @@ static void order_form_and_reuse(void** state)
   core_set shuffled = core_permute(&set, order);
   mcor_input input = core_input_to_keep(&set);
   const mcor_input other = core_input(&shuffled);
-  mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
   mcor_surface surface = core_extract(*state, &input, &options);
   const uint64_t hash = core_hash(&surface);
   const int64_t seeds = surface.statistics.seed_cells;
-  assert_in_range(
-    seeds, surface.statistics.cells_used, 64 * (int64_t)((mcor_context*)*state)->graded.count - 1);
+  assert_in_range(seeds, surface.statistics.cells_used,
+    64 * (int64_t)((mcor_context*)*state)->adaptive.count - 1);
   mcor_free_surface(&surface);
   surface = core_extract(*state, &other, &options);
   assert_true(core_hash(&surface) == hash);
@@ -150,7 +150,7 @@ static void order_form_and_reuse(void** state)
     mcor_free_surface(&surface);
     mcor_free_context(context);
   }
-  options = graded_options(isos, MCOR_SHEPARD);
+  options = adaptive_options(isos, MCOR_SHEPARD);
   surface = core_extract(*state, &input, &options); /* keeps what the next one uses */
   mcor_free_surface(&surface);
   options.iso_values = isos + 1;
@@ -179,7 +179,7 @@ static void few_nodes_are_evaluated(void** state)
     set.scalar[i] = set.position[3 * i + 2] > 0.3 ? 1 : -1;
   }
   const mcor_input input = core_input(&set);
-  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   mcor_surface surface = core_extract(context, &input, &options);
   const int64_t nodes = surface.statistics.nodes_evaluated;
   assert_in_range(nodes, 64, 38 * (int64_t)context->tree.leaf_count); /* of 64 */
@@ -206,7 +206,7 @@ static void far_apart(void** state)
     set.volume[i] = size * size * size;
   }
   const mcor_input input = core_input(&set);
-  const mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  const mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
   mcor_surface surface = core_extract(*state, &input, &options);
   mesh_report report = core_check_mesh(&surface);
   assert_int_equal(report.components, 2);
@@ -223,7 +223,7 @@ static void boxes_make_the_whole(void** state)
   static const double iso = 0.2;
   core_set set = core_make_graded(12, 0.4);
   const mcor_input input = core_input(&set);
-  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   mcor_surface whole = core_extract(*state, &input, &options);
   int64_t triangles = 0, cells = 0;
   double area = 0;
@@ -258,7 +258,7 @@ static void too_many_leaves(void** state)
   mcor_context* context = *state;
   core_set set = core_make_graded(12, 0.4);
   const mcor_input input = core_input(&set);
-  mcor_options options = graded_options(&half, MCOR_WEIGHT_SUM);
+  mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
   options.cube_size_factor = 0.002;
   mcor_surface surface = { 0 };
   assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
@@ -273,7 +273,7 @@ static void refusal(void** state)
   core_set set = core_make_block(4, 0, 1, core_ball);
   const mcor_input input = core_input(&set);
   mcor_surface surface = { 0 };
-  mcor_options options = graded_options(&iso, MCOR_SHEPARD);
+  mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   options.level_limit = MCOR_CUBE_LEVELS;
   assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   CORE_CHECK(strstr(mcor_last_error(context), "level limit"), "%s", mcor_last_error(context));

@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef core_graded_h
-#define core_graded_h
+#ifndef core_adaptive_h
+#define core_adaptive_h
 
 /* What a cell with finer cells around it must look like, derived anew from positions in space. */
 
 #include "core_fixture.h"
-#include "mcor_graded_cell.h"
+#include "mcor_adaptive_cell.h"
 
 #define CORE_SPLIT_CLASSES 227 /* of sets of split faces and edges, up to symmetry */
 
@@ -24,8 +24,8 @@ typedef struct core_shape
   core_facet facets[24];
   int facet_count;
   /* 1: both in one facet, or on one edge of the cell. */
-  uint8_t forbidden[MCOR_GRADED_SLOTS][MCOR_GRADED_SLOTS];
-  uint8_t in_whole[MCOR_GRADED_SLOTS]; /* bits: the whole faces that the slot's vertex lies in */
+  uint8_t forbidden[MCOR_ADAPTIVE_SLOTS][MCOR_ADAPTIVE_SLOTS];
+  uint8_t in_whole[MCOR_ADAPTIVE_SLOTS]; /* bits: the whole faces that the slot's vertex lies in */
 } core_shape;
 
 /* One of each class, as a mask of the middles that are nodes; returns how many. */
@@ -35,6 +35,6 @@ uint32_t core_turn_split(uint32_t split, int symmetry);
 void core_make_shape(uint32_t split, core_shape* shape);
 /* next[slot] by the rule: on each facet, each run of nodes above is cut off; -1: no vertex. Returns
  * the number of vertices. */
-int core_link_slots(const core_shape* shape, uint32_t above, int8_t next[MCOR_GRADED_SLOTS]);
+int core_link_slots(const core_shape* shape, uint32_t above, int8_t next[MCOR_ADAPTIVE_SLOTS]);
 
 #endif

@@ -6,7 +6,7 @@
  * Nodes on the border of the domain are below, so nothing may be open. */
 
 #include "core_fixture.h"
-#include "mcor_graded_cell.h"
+#include "mcor_adaptive_cell.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #define NODES (CELLS + 1)
 #define COARSEST 3
 
-typedef struct graded_tree
+typedef struct adaptive_tree
 {
   uint8_t level[CELLS][CELLS][CELLS]; /* z, y, x: of the cell that has this finest cell */
   uint8_t above[NODES][NODES][NODES];
@@ -24,7 +24,7 @@ typedef struct graded_tree
   double* points;                         /* [point_count][3] */
   int32_t* triangles;
   int64_t point_count, triangle_count, transitional, flat;
-} graded_tree;
+} adaptive_tree;
 
 static uint32_t next_random(uint32_t* random)
 {
@@ -39,7 +39,7 @@ static double next_uniform(uint32_t* random)
 
 /* ---- the tree --------------------------------------------------------------------------------- */
 
-static void set_level(graded_tree* tree, const int at[3], int size, int level)
+static void set_level(adaptive_tree* tree, const int at[3], int size, int level)
 {
   for (int z = at[2]; z < at[2] + size; ++z)
   {
@@ -51,7 +51,7 @@ static void set_level(graded_tree* tree, const int at[3], int size, int level)
 }
 
 /* Halves cells at random, more of them near a random point. */
-static void refine(graded_tree* tree, const int at[3], int level, const double* centre,
+static void refine(adaptive_tree* tree, const int at[3], int level, const double* centre,
   double likely, uint32_t* random)
 {
   const int size = 1 << level;
@@ -74,7 +74,7 @@ static void refine(graded_tree* tree, const int at[3], int level, const double* 
 }
 
 /* The least level of the cells that touch a cell. */
-static int least_around(const graded_tree* tree, const int at[3], int size)
+static int least_around(const adaptive_tree* tree, const int at[3], int size)
 {
   int least = COARSEST;
   for (int z = at[2] - 1; z <= at[2] + size; ++z)
@@ -94,9 +94,9 @@ static int least_around(const graded_tree* tree, const int at[3], int size)
   return least;
 }
 
-typedef void visit_cell(graded_tree* tree, const int at[3], int level);
+typedef void visit_cell(adaptive_tree* tree, const int at[3], int level);
 
-static void visit_cells(graded_tree* tree, visit_cell* visit)
+static void visit_cells(adaptive_tree* tree, visit_cell* visit)
 {
   for (int z = 0; z < CELLS; ++z)
   {
@@ -114,7 +114,7 @@ static void visit_cells(graded_tree* tree, visit_cell* visit)
   }
 }
 
-static void halve_beside_fine(graded_tree* tree, const int at[3], int level)
+static void halve_beside_fine(adaptive_tree* tree, const int at[3], int level)
 {
   if (least_around(tree, at, 1 << level) < level - 1)
   {
@@ -122,7 +122,7 @@ static void halve_beside_fine(graded_tree* tree, const int at[3], int level)
   }
 }
 
-static void make_tree(graded_tree* tree, uint32_t* random)
+static void make_tree(adaptive_tree* tree, uint32_t* random)
 {
   const double centre[3] = { CELLS * next_uniform(random), CELLS * next_uniform(random),
     CELLS * next_uniform(random) };
@@ -148,7 +148,7 @@ static void make_tree(graded_tree* tree, uint32_t* random)
 
 /* kind 0: noise; 1: noise, mostly below; 2: noise on a coarse lattice of nodes; 3: waves; 4: waves
  * with a little noise. */
-static void make_signs(graded_tree* tree, int kind, uint32_t* random)
+static void make_signs(adaptive_tree* tree, int kind, uint32_t* random)
 {
   double wave[3][3], phase[3];
   for (int i = 0; i < 9; ++i)
@@ -190,7 +190,7 @@ static void make_signs(graded_tree* tree, int kind, uint32_t* random)
 /* ---- the surface ------------------------------------------------------------------------------ */
 
 /* Whether a finer cell touches a point. */
-static int touches_finer(const graded_tree* tree, const int at[3], int level)
+static int touches_finer(const adaptive_tree* tree, const int at[3], int level)
 {
   for (int part = 0; part < 8; ++part)
   {
@@ -204,7 +204,7 @@ static int touches_finer(const graded_tree* tree, const int at[3], int level)
   return 0;
 }
 
-static int32_t find_vertex(graded_tree* tree, const int at[3], int level, int split, int slot)
+static int32_t find_vertex(adaptive_tree* tree, const int at[3], int level, int split, int slot)
 {
   const int axis = slot >> 5, node = slot & 31, step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
   const int half = 1 << level >> 1, place[3] = { node % 3, node / 3 % 3, node / 9 };
@@ -229,9 +229,9 @@ static int32_t find_vertex(graded_tree* tree, const int at[3], int level, int sp
   return *vertex;
 }
 
-static void march_cell(graded_tree* tree, const int at[3], int level)
+static void march_cell(adaptive_tree* tree, const int at[3], int level)
 {
-  uint8_t slots[3 * MCOR_GRADED_TRIANGLES];
+  uint8_t slots[3 * MCOR_ADAPTIVE_TRIANGLES];
   uint32_t split = 0, above = 0;
   int flat = 0;
   for (int node = 0; node < 27; ++node)
@@ -250,8 +250,8 @@ static void march_cell(graded_tree* tree, const int at[3], int level)
     above |= (uint32_t)tree->above[p[2]][p[1]][p[0]] << node;
   }
   tree->transitional += split != 0;
-  const int count = mcor_graded_triangulate(split, above, slots);
-  assert_int_equal(count, mcor_graded_count(split, above, &flat));
+  const int count = mcor_adaptive_triangulate(split, above, slots);
+  assert_int_equal(count, mcor_adaptive_count(split, above, &flat));
   tree->flat += flat;
   for (int i = 0; i < 3 * count; ++i)
   {
@@ -261,7 +261,7 @@ static void march_cell(graded_tree* tree, const int at[3], int level)
   tree->triangle_count += count;
 }
 
-static void check_surface(const graded_tree* tree, int number, int kind)
+static void check_surface(const adaptive_tree* tree, int number, int kind)
 {
   static const mesh_fault none[] = { MESH_BAD_INDEX, MESH_REPEATED_INDEX, MESH_DUPLICATE_TRIANGLE,
     MESH_NON_MANIFOLD_EDGE, MESH_ORIENTATION_CLASH, MESH_NON_MANIFOLD_VERTEX,
@@ -281,10 +281,10 @@ static void check_surface(const graded_tree* tree, int number, int kind)
 
 static void test_surfaces_are_closed(void** state)
 {
-  const char* wanted = getenv("MCOR_GRADED_ALL");
+  const char* wanted = getenv("MCOR_ADAPTIVE_ALL");
   const int trees = wanted && strcmp(wanted, "1") == 0 ? 1000 : 40;
   const size_t cells = (size_t)CELLS * CELLS * CELLS;
-  graded_tree* tree = calloc(1, sizeof *tree);
+  adaptive_tree* tree = calloc(1, sizeof *tree);
   long long triangles = 0, transitional = 0, flat = 0;
   uint32_t random = 1;
   (void)state;
@@ -316,5 +316,5 @@ static void test_surfaces_are_closed(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_surfaces_are_closed) };
-  return cmocka_run_group_tests_name("graded_trees", tests, NULL, NULL);
+  return cmocka_run_group_tests_name("adaptive_trees", tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-#include "core_graded.h"
+#include "core_adaptive.h"
 
 #include <string.h>
 
@@ -221,10 +221,10 @@ void core_make_shape(uint32_t split, core_shape* cell)
 
 /* next[slot] by the rule: on each facet, each run of nodes above is cut off. Returns the number of
  * vertices. */
-int core_link_slots(const core_shape* cell, uint32_t above, int8_t next[MCOR_GRADED_SLOTS])
+int core_link_slots(const core_shape* cell, uint32_t above, int8_t next[MCOR_ADAPTIVE_SLOTS])
 {
   int vertices = 0, segments = 0;
-  memset(next, -1, MCOR_GRADED_SLOTS);
+  memset(next, -1, MCOR_ADAPTIVE_SLOTS);
   for (int f = 0; f < cell->facet_count; ++f)
   {
     const core_facet* facet = cell->facets + f;
@@ -256,7 +256,7 @@ int core_link_slots(const core_shape* cell, uint32_t above, int8_t next[MCOR_GRA
       ++segments;
     }
   }
-  for (int slot = 0; slot < MCOR_GRADED_SLOTS; ++slot)
+  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
     vertices += next[slot] >= 0;
   }

@@ -24,7 +24,7 @@ int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
   {
     return MCOR_PLACE_NONE;
   }
-  const ulong key = mcor_graded_key(rungs, level, x, y, z);
+  const ulong key = mcor_adaptive_key(rungs, level, x, y, z);
   const int at = mcor_find_key(place_keys, 0, place_count, key);
   return at < place_count && place_keys[at] == key ? place_leaves[at] : MCOR_PLACE_NONE;
 }
@@ -44,8 +44,8 @@ void mcor_leaf_reach(
 #if MCOR_OF_LATTICE
 /* One work-item = one leaf. Writes its key, and those of the bricks that it is part of: of each level one, of the
  * levels up to its own that of itself. */
-__kernel void mcor_graded_pair_keys(const int count, const int top, __global const mcor_rung* rungs,
-  __global const int4* leaves, __global ulong* keys)
+__kernel void mcor_adaptive_pair_keys(const int count, const int top,
+  __global const mcor_rung* rungs, __global const int4* leaves, __global ulong* keys)
 {
   const int i = get_global_id(0);
   for (int l = 0; l <= top && i < count; ++l)
@@ -53,12 +53,12 @@ __kernel void mcor_graded_pair_keys(const int count, const int top, __global con
     const int4 leaf = leaves[i];
     const int up = max(l - leaf.w, 0);
     keys[i * (top + 1L) + l] =
-      mcor_graded_key(rungs, leaf.w + up, leaf.x >> up, leaf.y >> up, leaf.z >> up);
+      mcor_adaptive_key(rungs, leaf.w + up, leaf.x >> up, leaf.y >> up, leaf.z >> up);
   }
 }
 
 /* One work-item = one leaf. Enters it at its key, of which `index` has the place. */
-__kernel void mcor_graded_pair_places(
+__kernel void mcor_adaptive_pair_places(
   const int count, const int top, __global const int* index, __global int* place_leaves)
 {
   const int i = get_global_id(0);
@@ -71,7 +71,7 @@ __kernel void mcor_graded_pair_places(
 
 /* ---- Cells between pairs ---- */
 
-#if MCOR_OF_GRADED
+#if MCOR_OF_ADAPTIVE
 /* What marking takes, last among a kernel's parameters. top: the highest level. */
 #define MCOR_MARK_PARAMS MCOR_PLACE_PARAMS, const int top, __global uint *reached
 #define MCOR_MARK_ARGS MCOR_PLACE_ARGS, top, reached
@@ -159,7 +159,7 @@ uint mcor_leaf_plane(int axis, int at)
 }
 
 /* Whether nodes on both sides are among these. */
-bool mcor_leaf_is_crossed(mcor_graded_nodes_of nodes, uint among)
+bool mcor_leaf_is_crossed(mcor_adaptive_nodes_of nodes, uint among)
 {
   const uint all = among & (nodes.split | mcor_leaf_corner_nodes(0xff));
   return (nodes.above & all) != 0 && (nodes.above & all) != all;
@@ -172,15 +172,15 @@ typedef struct
 } mcor_leaf_faces;
 
 /* Of all cells that have no finer nodes. */
-mcor_leaf_faces mcor_leaf_plain_faces(const mcor_leaf* leaf, ulong graded)
+mcor_leaf_faces mcor_leaf_plain_faces(const mcor_leaf* leaf, ulong hanging)
 {
   const ulong* above = leaf->corners_above;
   mcor_leaf_faces faces;
-  faces.used = mcor_leaf_crossed(leaf, graded);
+  faces.used = mcor_leaf_crossed(leaf, hanging);
   for (int a = 0; a < 3; ++a)
   {
-    faces.lower[a] = mcor_cell_faces(above, a, 0) & ~graded;
-    faces.upper[a] = mcor_cell_faces(above, a, 1) & ~graded;
+    faces.lower[a] = mcor_cell_faces(above, a, 0) & ~hanging;
+    faces.upper[a] = mcor_cell_faces(above, a, 1) & ~hanging;
   }
   return faces;
 }
@@ -188,7 +188,7 @@ mcor_leaf_faces mcor_leaf_plain_faces(const mcor_leaf* leaf, ulong graded)
 /* Adds a cell that has finer nodes. */
 void mcor_leaf_add_faces(const mcor_leaf* leaf, int cell, mcor_leaf_faces* faces)
 {
-  const mcor_graded_nodes_of nodes = mcor_leaf_cell(leaf, cell);
+  const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(leaf, cell);
   faces->used |= (ulong)nodes.used << cell;
   for (int a = 0; a < 3; ++a)
   {
@@ -199,13 +199,13 @@ void mcor_leaf_add_faces(const mcor_leaf* leaf, int cell, mcor_leaf_faces* faces
 
 /* Grows cells within their leaf to the end. */
 ulong mcor_leaf_grow(
-  const mcor_leaf* leaf, ulong graded, ulong cells, ulong domain, mcor_leaf_faces* faces)
+  const mcor_leaf* leaf, ulong hanging, ulong cells, ulong domain, mcor_leaf_faces* faces)
 {
   ulong looked_at = 0;
   for (ulong last = 0; cells != last;)
   {
     last = cells;
-    for (ulong rest = cells & graded & ~looked_at; rest; rest &= rest - 1)
+    for (ulong rest = cells & hanging & ~looked_at; rest; rest &= rest - 1)
     {
       mcor_leaf_add_faces(leaf, mcor_ctz(rest), faces);
     }
@@ -221,7 +221,7 @@ ulong mcor_leaf_grow(
 void mcor_leaf_reach_finer(const mcor_leaf* leaf, int4 brick, int cell, int axis, int side,
   MCOR_PLACE_PARAMS, __global uint* reached, __global int* flags)
 {
-  const mcor_graded_nodes_of nodes = mcor_leaf_cell(leaf, cell);
+  const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(leaf, cell);
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   int at[3] = { 2 * (4 * brick.x + (cell & 3)), 2 * (4 * brick.y + (cell >> 2 & 3)),
     2 * (4 * brick.z + (cell >> 4)) };
@@ -275,7 +275,7 @@ void mcor_leaf_reach_across(const mcor_leaf* leaf, int4 brick, ulong cells, int 
 /* One work-item = one leaf with cells that are new to this round. Reads its nodes' masks where it is mixed. Grows
  * the cells reached by now through crossed faces of used cells, within the leaf to the end, and one step
  * beyond its sides. domain: where nodes have right values. */
-__kernel void mcor_graded_pair_grow(const int count, __global const uint* finer,
+__kernel void mcor_adaptive_pair_grow(const int count, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global const uchar* mixed, __global const int4* bricks, MCOR_PLACE_PARAMS,
   __global const ulong* domain, __global ulong* grown, __global uint* reached, __global int* flags)
@@ -292,9 +292,9 @@ __kernel void mcor_graded_pair_grow(const int count, __global const uint* finer,
     return;
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
-  const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  mcor_leaf_faces faces = mcor_leaf_plain_faces(&leaf, graded);
-  cells = mcor_leaf_grow(&leaf, graded, cells, domain[i], &faces);
+  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
+  mcor_leaf_faces faces = mcor_leaf_plain_faces(&leaf, hanging);
+  cells = mcor_leaf_grow(&leaf, hanging, cells, domain[i], &faces);
   grown[i] = cells;
   mcor_add_cells(reached, i, cells);
   const ulong fresh = cells & ~before & faces.used;
@@ -314,8 +314,8 @@ __kernel void mcor_graded_pair_grow(const int count, __global const uint* finer,
 
 /* One work-item = one cell, with its level, that another box, or the other end of a period, has reached. Adds it
  * to its leaf's. */
-__kernel void mcor_graded_pair_take(const int count, __global const int4* heard, MCOR_PLACE_PARAMS,
-  __global uint* reached, __global int* flags)
+__kernel void mcor_adaptive_pair_take(const int count, __global const int4* heard,
+  MCOR_PLACE_PARAMS, __global uint* reached, __global int* flags)
 {
   const int i = get_global_id(0);
   if (i < count)
@@ -326,7 +326,7 @@ __kernel void mcor_graded_pair_take(const int count, __global const int4* heard,
 }
 
 /* One work-item = one leaf. Leaves those of its cells that are reached. */
-__kernel void mcor_graded_pair_keep(
+__kernel void mcor_adaptive_pair_keep(
   const int count, __global const ulong* reached, __global ulong* cells)
 {
   const int i = get_global_id(0);

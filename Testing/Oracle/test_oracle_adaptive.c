@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cubes as fine as the particles are: the oracle's own levels against their definition, its graded
+/* Cubes as fine as the particles are: the oracle's own levels against their definition, its adaptive
  * lattice against the uniform one where they must agree, then the library against it. */
 
 #include "oracle_case.h"
@@ -23,26 +23,26 @@ static void expect(oracle_suite* suite, int condition, const char* name, const c
 
 /* ---- the oracle itself ------------------------------------------------------------------------- */
 
-static int64_t size_of(const graded_brick* brick)
+static int64_t size_of(const adaptive_brick* brick)
 {
-  return (int64_t)GRADED_BRICK << brick->level;
+  return (int64_t)ADAPTIVE_BRICK << brick->level;
 }
 
 /* Bricks that touch differ by one level at most; one that no such brick and no particle keeps from
  * being larger is not there. */
 static void check_levels(oracle_suite* suite, const char* name, const oracle_reference* reference)
 {
-  const oracle_graded* graded = &reference->graded;
+  const oracle_adaptive* adaptive = &reference->adaptive;
   const oracle_particles* p = &reference->particles;
   const double least = oracle_smallest_h(p);
   int64_t uneven = 0, unfit = 0;
-  for (int64_t a = 0; a < graded->brick_count; ++a)
+  for (int64_t a = 0; a < adaptive->brick_count; ++a)
   {
-    const graded_brick* one = &graded->bricks[a];
+    const adaptive_brick* one = &adaptive->bricks[a];
     int fits = 1;
-    for (int64_t b = 0; b < graded->brick_count; ++b)
+    for (int64_t b = 0; b < adaptive->brick_count; ++b)
     {
-      const graded_brick* other = &graded->bricks[b];
+      const adaptive_brick* other = &adaptive->bricks[b];
       int touch = 1;
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -56,8 +56,8 @@ static void check_levels(oracle_suite* suite, const char* name, const oracle_ref
       double square = 0.0;
       for (int axis = 0; axis < 3; ++axis)
       {
-        const double low = (double)one->at[axis] * graded->cube - p->position[3 * j + axis];
-        const double d = fmax(0.0, fmax(low, -low - (double)size_of(one) * graded->cube));
+        const double low = (double)one->at[axis] * adaptive->cube - p->position[3 * j + axis];
+        const double d = fmax(0.0, fmax(low, -low - (double)size_of(one) * adaptive->cube));
         square += d * d;
       }
       const double support =
@@ -69,7 +69,7 @@ static void check_levels(oracle_suite* suite, const char* name, const oracle_ref
   }
   expect(suite, uneven == 0, name, "bricks that touch differ by more than one level");
   expect(suite, unfit == 0, name, "a brick is too large for a particle");
-  expect(suite, graded->top > 0 && graded->brick_count > 0, name, "it is not graded");
+  expect(suite, adaptive->top > 0 && adaptive->brick_count > 0, name, "it is not adaptive");
 }
 
 static int make_reference(oracle_suite* suite, const char* name, const particle_set* set,
@@ -87,32 +87,33 @@ static void check_uniform(
   oracle_suite* suite, const char* name, const particle_set* set, double iso)
 {
   oracle_reference uniform;
-  oracle_graded graded;
+  oracle_adaptive adaptive;
   mcor_options options = oracle_case_options(&iso);
   options.cube_size_factor = 1.0;
   if (!make_reference(suite, name, set, &options, &uniform))
   {
     return;
   }
-  const int made = oracle_create_graded(&graded, &uniform.field, uniform.lattice.cube, 0, 60000000);
+  const int made =
+    oracle_create_adaptive(&adaptive, &uniform.field, uniform.lattice.cube, 0, 60000000);
   expect(suite, made, name, "no memory");
   if (made)
   {
     int64_t used = 0, valid = 0;
-    oracle_march_graded(&graded, &uniform.field, &uniform.limits);
-    for (int64_t e = 0; e < graded.edge_count; ++e)
+    oracle_march_adaptive(&adaptive, &uniform.field, &uniform.limits);
+    for (int64_t e = 0; e < adaptive.edge_count; ++e)
     {
-      used += graded.edges[e].used;
+      used += adaptive.edges[e].used;
     }
-    for (int64_t c = 0; c < graded.cell_count; ++c)
+    for (int64_t c = 0; c < adaptive.cell_count; ++c)
     {
-      valid += graded.cells[c].valid;
+      valid += adaptive.cells[c].valid;
     }
     expect(suite, used == uniform.surface.edge_count, name, "not the uniform lattice's edges");
     expect(suite, valid == uniform.surface.cell_count, name, "not the uniform lattice's cells");
     expect(suite, used > 100, name, "too few edges for a test");
   }
-  oracle_free_graded(&graded);
+  oracle_free_adaptive(&adaptive);
   oracle_free_reference(&uniform);
 }
 
@@ -152,15 +153,15 @@ static void test_oracle(oracle_suite* suite)
 /* ---- the library ------------------------------------------------------------------------------- */
 
 /* What solids do, as the program's --solids. */
-typedef enum graded_solids
+typedef enum adaptive_solids
 {
   SOLIDS_NONE,
   SOLIDS_WEIGHT,
   SOLIDS_IGNORE,
   SOLIDS_WALL
-} graded_solids;
+} adaptive_solids;
 
-typedef struct graded_entry
+typedef struct adaptive_entry
 {
   const char* name;
   int (*make)(particle_set* set, double ratio);
@@ -168,12 +169,12 @@ typedef struct graded_entry
   mcor_field field;
   mcor_sph_kernel kernel;
   mcor_type precision;
-  graded_solids solids;
-} graded_entry;
+  adaptive_solids solids;
+} adaptive_entry;
 
 static const char* const solids_names[] = { "", "/weight", "/ignore", "/wall" };
 
-static void run_entry(oracle_suite* suite, const graded_entry* entry)
+static void run_entry(oracle_suite* suite, const adaptive_entry* entry)
 {
   particle_set set;
   oracle_case at;
@@ -192,7 +193,7 @@ static void run_entry(oracle_suite* suite, const graded_entry* entry)
   at.input.ignore_solids = entry->solids == SOLIDS_IGNORE;
   at.options.wall_share = entry->solids == SOLIDS_WALL ? 0.5 : 0.0;
   at.skip_pairs = entry->field == MCOR_WEIGHT_SUM || entry->make == particle_set_basin;
-  snprintf(at.name, sizeof(at.name), "graded/%s/%g/%s/%s%s%s", entry->name, entry->ratio,
+  snprintf(at.name, sizeof(at.name), "adaptive/%s/%g/%s/%s%s%s", entry->name, entry->ratio,
     entry->field == MCOR_WEIGHT_SUM ? "weight"
       : entry->field == MCOR_SUM    ? "sum"
                                     : "shepard",
@@ -204,7 +205,7 @@ static void run_entry(oracle_suite* suite, const graded_entry* entry)
 
 int main(int argc, char** argv)
 {
-  static const graded_entry entries[] = {
+  static const adaptive_entry entries[] = {
     { "drops", particle_set_drops, 10, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
       SOLIDS_NONE },
     { "drops", particle_set_drops, 100, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,

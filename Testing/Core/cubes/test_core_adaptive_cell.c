@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Cells with finer cells around them: every set of split faces and edges, up to symmetry, with every
- * pattern of nodes above; 216.6 million. Without MCOR_GRADED_ALL=1 a fixed sample of them. What a
+ * pattern of nodes above; 216.6 million. Without MCOR_ADAPTIVE_ALL=1 a fixed sample of them. What a
  * cell must do is derived anew here, from positions in space.
  *
  * Why this proves that a whole mesh is sound: the segments on a facet (a whole face or a sub-face)
@@ -12,7 +12,7 @@
  * cell too, and there are none, but in loops within a whole face. Of a face with four nodes there are none at
  * all: the cell beyond, where the field decides, may have some. */
 
-#include "core_graded.h"
+#include "core_adaptive.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,19 +27,19 @@ typedef struct cell_totals
 
 typedef struct cell_loops
 {
-  int loop_of[MCOR_GRADED_SLOTS]; /* -1: no vertex, or a loop of two */
-  int length[MCOR_GRADED_SLOTS], in_whole[MCOR_GRADED_SLOTS];
+  int loop_of[MCOR_ADAPTIVE_SLOTS]; /* -1: no vertex, or a loop of two */
+  int length[MCOR_ADAPTIVE_SLOTS], in_whole[MCOR_ADAPTIVE_SLOTS];
   int count, triangles;
 } cell_loops;
 
 /* Follows the segments; all must close. */
 static void trace_loops(const core_shape* cell, uint32_t above,
-  const int8_t next[MCOR_GRADED_SLOTS], cell_loops* loops, cell_totals* totals)
+  const int8_t next[MCOR_ADAPTIVE_SLOTS], cell_loops* loops, cell_totals* totals)
 {
-  int seen[MCOR_GRADED_SLOTS] = { 0 }, all = 0;
+  int seen[MCOR_ADAPTIVE_SLOTS] = { 0 }, all = 0;
   loops->count = loops->triangles = 0;
   memset(loops->loop_of, -1, sizeof loops->loop_of);
-  for (int slot = 0; slot < MCOR_GRADED_SLOTS; ++slot)
+  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
     int length = 0, in_whole = 63, at = slot;
     if (next[slot] < 0 || seen[slot])
@@ -61,7 +61,7 @@ static void trace_loops(const core_shape* cell, uint32_t above,
       ++totals->pairs;
       continue;
     }
-    CORE_CHECK(length > 2 && length <= MCOR_GRADED_VERTICES, "split %x, above %x: a loop of %d",
+    CORE_CHECK(length > 2 && length <= MCOR_ADAPTIVE_VERTICES, "split %x, above %x: a loop of %d",
       cell->split, above, length);
     totals->longest = length > totals->longest ? length : totals->longest;
     loops->length[loops->count] = length;
@@ -75,7 +75,7 @@ static void trace_loops(const core_shape* cell, uint32_t above,
 /* ---- what it does look like ------------------------------------------------------------------- */
 
 /* Triangle whose side goes from slot a to b, from 1 on. */
-typedef uint8_t side_owners[MCOR_GRADED_SLOTS][MCOR_GRADED_SLOTS];
+typedef uint8_t side_owners[MCOR_ADAPTIVE_SLOTS][MCOR_ADAPTIVE_SLOTS];
 
 static int find_root(const int* parent, int i)
 {
@@ -95,7 +95,7 @@ static int is_plain(const core_shape* cell, int faces)
     uint32_t split = 0;
     for (int i = 1; i < 8; i += 2)
     {
-      split |= cell->split >> mcor_graded_face_node(face, i) & 1;
+      split |= cell->split >> mcor_adaptive_face_node(face, i) & 1;
     }
     plain |= (faces >> face & 1) && !split;
   }
@@ -105,17 +105,17 @@ static int is_plain(const core_shape* cell, int faces)
 /* All sides are segments, each of them once, or diagonals that may be; the triangles of each loop
  * hang together by its n - 3 diagonals, so they are a disc. */
 static void check_triangles(const core_shape* cell, uint32_t above,
-  const int8_t next[MCOR_GRADED_SLOTS], const cell_loops* loops, const uint8_t* triangles,
+  const int8_t next[MCOR_ADAPTIVE_SLOTS], const cell_loops* loops, const uint8_t* triangles,
   int count)
 {
   static side_owners side;
-  int parent[MCOR_GRADED_TRIANGLES + 1], diagonals[MCOR_GRADED_SLOTS] = { 0 },
-                                         segments[MCOR_GRADED_SLOTS] = { 0 };
+  int parent[MCOR_ADAPTIVE_TRIANGLES + 1], diagonals[MCOR_ADAPTIVE_SLOTS] = { 0 },
+                                           segments[MCOR_ADAPTIVE_SLOTS] = { 0 };
   for (int i = 0; i < 3 * count; ++i)
   {
     const int a = triangles[i], b = triangles[i % 3 == 2 ? i - 2 : i + 1];
     CORE_CHECK(
-      a < MCOR_GRADED_SLOTS && loops->loop_of[a] >= 0 && loops->loop_of[a] == loops->loop_of[b],
+      a < MCOR_ADAPTIVE_SLOTS && loops->loop_of[a] >= 0 && loops->loop_of[a] == loops->loop_of[b],
       "split %x, above %x: slots %d, %d", cell->split, above, a, b);
     CORE_CHECK(!side[a][b], "split %x, above %x: side %d-%d twice", cell->split, above, a, b);
     side[a][b] = (uint8_t)(1 + i / 3);
@@ -167,8 +167,8 @@ static void check_triangles(const core_shape* cell, uint32_t above,
 /* Pattern number `index`: bit i is the cell's i-th node. */
 static void check_pattern(const core_shape* cell, uint32_t index, cell_totals* totals)
 {
-  uint8_t triangles[3 * MCOR_GRADED_TRIANGLES];
-  int8_t next[MCOR_GRADED_SLOTS];
+  uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
+  int8_t next[MCOR_ADAPTIVE_SLOTS];
   cell_loops loops;
   uint32_t above = 0;
   int flat = 0;
@@ -178,14 +178,14 @@ static void check_pattern(const core_shape* cell, uint32_t index, cell_totals* t
   }
   const int vertices = core_link_slots(cell, above, next);
   trace_loops(cell, above, next, &loops, totals);
-  CORE_CHECK(loops.triangles <= MCOR_GRADED_TRIANGLES, "split %x, above %x: %d triangles",
+  CORE_CHECK(loops.triangles <= MCOR_ADAPTIVE_TRIANGLES, "split %x, above %x: %d triangles",
     cell->split, above, loops.triangles);
-  const int count = mcor_graded_triangulate(cell->split, above, triangles);
+  const int count = mcor_adaptive_triangulate(cell->split, above, triangles);
   CORE_CHECK(count == loops.triangles, "split %x, above %x: %d triangles, not %d", cell->split,
     above, count, loops.triangles);
   if (index % 8 == 0) /* enough: it adds up lengths of the same loops */
   {
-    CORE_CHECK(mcor_graded_count(cell->split, above, &flat) == count,
+    CORE_CHECK(mcor_adaptive_count(cell->split, above, &flat) == count,
       "split %x, above %x: not %d triangles", cell->split, above, count);
   }
   check_triangles(cell, above, next, &loops, triangles, count);
@@ -214,7 +214,7 @@ static void test_all_cells(void** state)
 {
   static core_shape cell;
   static uint32_t splits[CORE_SPLIT_CLASSES];
-  const char* wanted = getenv("MCOR_GRADED_ALL");
+  const char* wanted = getenv("MCOR_ADAPTIVE_ALL");
   const int all = wanted && strcmp(wanted, "1") == 0;
   const uint32_t most = 4096; /* patterns of a class in the sample */
   cell_totals totals = { 0 };
@@ -271,13 +271,13 @@ static void test_no_split_is_the_case_table(void** state)
   mcor_make_case_table(table);
   for (int c = 0; c < 256; ++c)
   {
-    uint8_t triangles[3 * MCOR_GRADED_TRIANGLES];
+    uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
     uint32_t above = 0;
     for (int corner = 0; corner < 8; ++corner)
     {
       above |= (uint32_t)(c >> corner & 1) << (slot_of_edge(corner) & 31);
     }
-    assert_int_equal(mcor_graded_triangulate(0, above, triangles), table[c][15]);
+    assert_int_equal(mcor_adaptive_triangulate(0, above, triangles), table[c][15]);
     for (int i = 0; i < 3 * table[c][15]; ++i)
     {
       CORE_CHECK(triangles[i] == slot_of_edge(table[c][i]), "case %d, vertex %d", c, i);
@@ -288,7 +288,7 @@ static void test_no_split_is_the_case_table(void** state)
 /* Bits that are not nodes do not matter. */
 static void test_other_bits_do_not_matter(void** state)
 {
-  uint8_t some[3 * MCOR_GRADED_TRIANGLES], same[3 * MCOR_GRADED_TRIANGLES];
+  uint8_t some[3 * MCOR_ADAPTIVE_TRIANGLES], same[3 * MCOR_ADAPTIVE_TRIANGLES];
   uint32_t random = 7;
   (void)state;
   for (int i = 0; i < 4096; ++i)
@@ -300,8 +300,8 @@ static void test_other_bits_do_not_matter(void** state)
     }
     random = random * 1664525u + 1013904223u;
     const uint32_t above = random >> 5;
-    const int count = mcor_graded_triangulate(0, above, some);
-    assert_int_equal(count, mcor_graded_triangulate(0, above & nodes, same));
+    const int count = mcor_adaptive_triangulate(0, above, some);
+    assert_int_equal(count, mcor_adaptive_triangulate(0, above & nodes, same));
     assert_memory_equal(some, same, 3 * (size_t)count);
   }
 }
@@ -311,5 +311,5 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_split_is_the_case_table),
     cmocka_unit_test(test_other_bits_do_not_matter), cmocka_unit_test(test_turned_cells),
     cmocka_unit_test(test_all_cells) };
-  return cmocka_run_group_tests_name("graded_cell", tests, NULL, NULL);
+  return cmocka_run_group_tests_name("adaptive_cell", tests, NULL, NULL);
 }

@@ -58,18 +58,18 @@ static int compare_leaves(const void* a, const void* b)
 
 static leaf_cells read_leaves(mcor_context* context)
 {
-  leaf_cells l = { .count = context->graded.count };
+  leaf_cells l = { .count = context->adaptive.count };
   const size_t n = (size_t)l.count;
   l.leaf = malloc((n + 1) * sizeof *l.leaf);
   l.marked = malloc((n + 1) * sizeof *l.marked);
   l.used = malloc((n + 1) * sizeof *l.used);
   assert_true(l.leaf && l.marked && l.used);
-  CORE_OK(context, mcor_read(context, &context->graded.cells, 0, l.leaf, n * sizeof *l.leaf));
+  CORE_OK(context, mcor_read(context, &context->adaptive.cells, 0, l.leaf, n * sizeof *l.leaf));
   CORE_OK(context, mcor_read(context, &context->mesh.used, 0, l.used, n * sizeof *l.used));
-  if (context->graded_pairs.seeds.mem)
+  if (context->adaptive_pairs.seeds.mem)
   {
-    CORE_OK(
-      context, mcor_read(context, &context->graded_pairs.seeds, 0, l.marked, n * sizeof *l.marked));
+    CORE_OK(context,
+      mcor_read(context, &context->adaptive_pairs.seeds, 0, l.marked, n * sizeof *l.marked));
   }
   for (int i = 1; i < l.count; ++i)
   {
@@ -229,7 +229,7 @@ static void lines_are_marked(void** state)
   leaf_cells l = read_leaves(context);
   uint8_t* mixed = malloc((size_t)l.count + 1);
   assert_non_null(mixed);
-  CORE_OK(context, mcor_read(context, &context->graded.mixed, 0, mixed, (size_t)l.count));
+  CORE_OK(context, mcor_read(context, &context->adaptive.mixed, 0, mixed, (size_t)l.count));
   int seeds = 0;
   for (int i = 0; i < l.count; ++i)
   {

@@ -140,10 +140,10 @@ static void one_level_alone(void** state)
   }
   both.position[3 * set.count] += 100;
   both.smoothing_length[set.count] *= 4;
-  const mcor_input input = core_input(&set), graded = core_input(&both);
+  const mcor_input input = core_input(&set), adaptive = core_input(&both);
   const mcor_options options = noise_options(&iso, 1);
   mcor_surface one = core_extract(*state, &input, &options);
-  mcor_surface two = core_extract(*state, &graded, &options);
+  mcor_surface two = core_extract(*state, &adaptive, &options);
   const mcor_statistics *s = &one.statistics, *t = &two.statistics;
   core_check_decisions(t);
   assert_int_equal(s->highest_level, 0);
@@ -168,5 +168,5 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(noise_on_levels),
     cmocka_unit_test(order_form_and_boxes), cmocka_unit_test(one_level_alone) };
-  return cmocka_run_group_tests_name("graded_topology", tests, core_set_up, core_tear_down);
+  return cmocka_run_group_tests_name("adaptive_topology", tests, core_set_up, core_tear_down);
 }

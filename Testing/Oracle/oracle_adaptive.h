@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef oracle_graded_h
-#define oracle_graded_h
+#ifndef oracle_adaptive_h
+#define oracle_adaptive_h
 
 /* Marching Cubes on cubes as fine as the particles are, by brute force: levels from the particles
  * one by one, all nodes of all bricks that a particle reaches, all cells. Finds which edges are
@@ -18,42 +18,42 @@ extern "C"
 
   enum
   {
-    GRADED_LEVELS = 32,
-    GRADED_BRICK = 4 /* cells of a brick along an axis */
+    ADAPTIVE_LEVELS = 32,
+    ADAPTIVE_BRICK = 4 /* cells of a brick along an axis */
   };
 
   /* From three whole numbers and a tag to one that is not negative. */
-  typedef struct graded_map
+  typedef struct adaptive_map
   {
     int64_t* slots; /* [capacity][5]: key, value; value -1: free */
     int64_t capacity, count;
-  } graded_map;
+  } adaptive_map;
 
   /* The value's place; new ones hold -1 until the caller sets them, which it must before the next
    * call. NULL: no such key and not `add`. Ends the program if memory runs out. */
-  int64_t* graded_map_find(graded_map* map, const int64_t at[3], int64_t tag, int add);
-  void graded_map_free(graded_map* map);
+  int64_t* adaptive_map_find(adaptive_map* map, const int64_t at[3], int64_t tag, int add);
+  void adaptive_map_free(adaptive_map* map);
 
   /* Grown as needed; ends the program if memory runs out. */
-  void* graded_grow(void* array, int64_t count, int64_t* capacity, size_t size);
+  void* adaptive_grow(void* array, int64_t count, int64_t* capacity, size_t size);
 
-  typedef struct graded_brick
+  typedef struct adaptive_brick
   {
     int64_t at[3]; /* lowest corner, in the smallest cubes */
     int level;
-  } graded_brick;
+  } adaptive_brick;
 
   /* A cell with nodes on both sides, of which none is certainly invalid. */
-  typedef struct graded_cell
+  typedef struct adaptive_cell
   {
     int64_t at[3];
     int level;
     int64_t node[27]; /* x + 3 y + 9 z, half a cell apart; -1: none there */
     int valid, certain, loops, triangles;
-  } graded_cell;
+  } adaptive_cell;
 
   /* Between two neighbouring nodes on different sides. */
-  typedef struct graded_edge
+  typedef struct adaptive_edge
   {
     int64_t at[3], length; /* lower end; in the smallest cubes */
     int axis;
@@ -62,45 +62,45 @@ extern "C"
     int used;      /* by a loop of three or more */
     int certain;   /* all cells around it are */
     int64_t component;
-  } graded_edge;
+  } adaptive_edge;
 
   /* From edge to edge on a face, in the direction of a cell's triangles. */
-  typedef struct graded_segment
+  typedef struct adaptive_segment
   {
     int64_t from, to;
     int certain; /* of its cell */
-  } graded_segment;
+  } adaptive_segment;
 
-  typedef struct oracle_graded
+  typedef struct oracle_adaptive
   {
     double cube; /* the smallest */
     int top;     /* highest level */
-    graded_map split;
-    graded_map node_map, edge_map;
-    oracle_lattice nodes; /* a list of nodes, as a lattice of one row, for oracle_classify */
-    int64_t* node_at;     /* [node_count][3] */
-    graded_brick* bricks; /* all leaves that a particle reaches */
-    graded_cell* cells;
-    graded_edge* edges;
-    graded_segment* segments; /* of valid cells, but of loops of two */
+    adaptive_map split;
+    adaptive_map node_map, edge_map;
+    oracle_lattice nodes;   /* a list of nodes, as a lattice of one row, for oracle_classify */
+    int64_t* node_at;       /* [node_count][3] */
+    adaptive_brick* bricks; /* all leaves that a particle reaches */
+    adaptive_cell* cells;
+    adaptive_edge* edges;
+    adaptive_segment* segments; /* of valid cells, but of loops of two */
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;
     int64_t component_count, triangle_count;
-  } oracle_graded;
+  } oracle_adaptive;
 
   /* level_limit: the highest level at most. Evaluates all nodes; 0 if there are more than
    * node_limit. */
-  int oracle_create_graded(oracle_graded* graded, const oracle_field* field, double cube,
+  int oracle_create_adaptive(oracle_adaptive* adaptive, const oracle_field* field, double cube,
     int level_limit, int64_t node_limit);
   /* Classifies the nodes, finds cells, edges and segments for an iso value. */
-  void oracle_march_graded(
-    oracle_graded* graded, const oracle_field* field, const oracle_limits* limits);
-  void oracle_free_graded(oracle_graded* graded);
+  void oracle_march_adaptive(
+    oracle_adaptive* adaptive, const oracle_field* field, const oracle_limits* limits);
+  void oracle_free_adaptive(oracle_adaptive* adaptive);
 
   /* The nodes of the cell, made if `add`, else -1 where there are none; which middles are nodes
    * follows from finer bricks around the cell's. */
-  void oracle_graded_nodes(oracle_graded* graded, const graded_brick* brick, const int64_t at[3],
-    int add, int64_t node[27]);
+  void oracle_adaptive_nodes(oracle_adaptive* adaptive, const adaptive_brick* brick,
+    const int64_t at[3], int add, int64_t node[27]);
 
 #ifdef __cplusplus
 }

@@ -4,7 +4,7 @@
 /* Adaptive cubes: level by level. What evaluates the field at vertices of a level sees the search grid in
  * cells of that level; work that may take long goes span by span. */
 
-#include "mcor_graded.h"
+#include "mcor_adaptive.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,7 +31,7 @@ mcor_status mcor_view_level(mcor_context* context, int level)
   MCOR_TRY(
     mcor_write(context, &grid->view_levels, levels, (size_t)grid->level_count * sizeof levels[0]));
   MCOR_TRY(mcor_reserve(context, &grid->view_inv_h, (size_t)count * context->cl.real_size));
-  return MCOR_LAUNCH(context, "mcor_graded_scale", MCOR_LIGHT, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_adaptive_scale", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
 }
 

@@ -3,17 +3,17 @@
 
 /* Adaptive cubes: marching the leaves of the tree.
  *
- * The cells of leaves where there may be surface (mcor_graded_seed.c) are all examined, and no more than
+ * The cells of leaves where there may be surface (mcor_adaptive_seed.c) are all examined, and no more than
  * these. Nodes that are certain have a side without a value; it is evaluated where a cell is crossed that
  * has them. The rest is as on the uniform lattice: values of nodes in slots, masks, edges, vertices,
  * triangles. Slots are sorted by level, and so are vertices; what evaluates the field goes level by level,
  * and sees the search grid in cells of that level (mcor_view_level). */
 
-#include "mcor_graded.h"
+#include "mcor_adaptive.h"
+#include "mcor_adaptive_pair.h"
+#include "mcor_adaptive_seed.h"
+#include "mcor_adaptive_topology.h"
 #include "mcor_box.h"
-#include "mcor_graded_pair.h"
-#include "mcor_graded_seed.h"
-#include "mcor_graded_topology.h"
 #include "mcor_tree.h"
 
 #include <string.h>
@@ -21,40 +21,40 @@
 /* ---- Nodes ---- */
 
 #define MCOR_LEAF_ARGS(c)                                                                          \
-  MCOR_INT((c)->graded.count), MCOR_BUFFER(&(c)->graded.finer), MCOR_BUFFER(&(c)->graded.tables),  \
-    MCOR_BUFFER(&(c)->bricks.now.above), MCOR_BUFFER(&(c)->bricks.now.valid),                      \
-    MCOR_BUFFER(&(c)->case_table)
+  MCOR_INT((c)->adaptive.count), MCOR_BUFFER(&(c)->adaptive.finer),                                \
+    MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
+    MCOR_BUFFER(&(c)->bricks.now.valid), MCOR_BUFFER(&(c)->case_table)
 
 /* Keys of all bricks whose nodes the leaves need. */
 static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   const mcor_tree* tree = &context->tree;
-  const int count = graded->count;
+  const int count = adaptive->count;
   int wanted;
-  MCOR_TRY(mcor_reserve(context, &graded->wanted, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_count_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->wanted)));
-  MCOR_TRY(mcor_scan(context, &graded->wanted, count, &wanted));
-  MCOR_TRY(mcor_reserve(context, &graded->requests, (size_t)wanted * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_fill_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells), MCOR_BUFFER(&graded->finer),
-    MCOR_BUFFER(&graded->wanted), MCOR_BUFFER(&graded->requests)));
-  MCOR_TRY(mcor_unique(
-    context, &graded->requests, wanted, tree->key_limit, &graded->keys, &graded->index, slots));
-  MCOR_RELEASE(context, &graded->requests, &graded->index);
+  MCOR_TRY(mcor_reserve(context, &adaptive->wanted, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_count_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->wanted)));
+  MCOR_TRY(mcor_scan(context, &adaptive->wanted, count, &wanted));
+  MCOR_TRY(mcor_reserve(context, &adaptive->requests, (size_t)wanted * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_fill_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer),
+    MCOR_BUFFER(&adaptive->wanted), MCOR_BUFFER(&adaptive->requests)));
+  MCOR_TRY(mcor_unique(context, &adaptive->requests, wanted, tree->key_limit, &adaptive->keys,
+    &adaptive->index, slots));
+  MCOR_RELEASE(context, &adaptive->requests, &adaptive->index);
   mcor_release_sort(context);
   return mcor_index_keys(
-    context, &graded->keys, *slots, tree->key_limit, &graded->buckets, &graded->bucket_shift);
+    context, &adaptive->keys, *slots, tree->key_limit, &adaptive->buckets, &adaptive->bucket_shift);
 }
 
 /* The first slot of each level, from their keys. */
 static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   void* view;
-  MCOR_TRY(mcor_map(context, &graded->keys, (size_t)slots * sizeof(cl_ulong), false, &view));
+  MCOR_TRY(mcor_map(context, &adaptive->keys, (size_t)slots * sizeof(cl_ulong), false, &view));
   const cl_ulong* keys = view;
   for (int l = 0; l <= tree->top + 1; ++l)
   {
@@ -66,15 +66,15 @@ static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
       low = before ? middle + 1 : low;
       high = before ? high : middle;
     }
-    graded->first_slot[l] = low;
+    adaptive->first_slot[l] = low;
   }
-  return mcor_unmap(context, &graded->keys, &view);
+  return mcor_unmap(context, &adaptive->keys, &view);
 }
 
 /* Slots for the bricks, of which nothing is known. */
 static mcor_status mcor_fill_slots(mcor_context* context, int count)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   mcor_brick_data* now = &context->bricks.now;
   const size_t n = (size_t)count, real = context->cl.real_size;
   now->count = count;
@@ -84,9 +84,9 @@ static mcor_status mcor_fill_slots(mcor_context* context, int count)
   MCOR_TRY(mcor_reserve(context, &now->valid, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &now->value, n * 64 * real));
   MCOR_TRY(mcor_reserve(context, &now->weight, n * 64 * real));
-  MCOR_TRY(mcor_reserve(context, &graded->proofs, n));
-  return MCOR_LAUNCH(context, "mcor_graded_bricks", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_INT(context->tree.top), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->keys),
+  MCOR_TRY(mcor_reserve(context, &adaptive->proofs, n));
+  return MCOR_LAUNCH(context, "mcor_adaptive_bricks", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(context->tree.top), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->keys),
     MCOR_BUFFER(&now->bricks));
 }
 
@@ -94,37 +94,38 @@ static mcor_status mcor_fill_slots(mcor_context* context, int count)
 static mcor_status mcor_move_nodes(mcor_context* context, const mcor_brick_data* last)
 {
   const mcor_brick_data* now = &context->bricks.now;
-  return MCOR_LAUNCH(context, "mcor_graded_move", MCOR_MEDIUM, last->count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(last->count), MCOR_BUFFER(&context->graded.rungs), MCOR_BUFFER(&last->bricks),
-    MCOR_BUFFER(&last->known), MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))),
-    MCOR_BUFFER(&last->value), MCOR_BUFFER(&last->weight), MCOR_BUFFER(&now->known),
-    MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
+  return MCOR_LAUNCH(context, "mcor_adaptive_move", MCOR_MEDIUM, last->count,
+    MCOR_SLOT_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&context->adaptive.rungs),
+    MCOR_BUFFER(&last->bricks), MCOR_BUFFER(&last->known),
+    MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))), MCOR_BUFFER(&last->value),
+    MCOR_BUFFER(&last->weight), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value),
+    MCOR_BUFFER(&now->weight));
 }
 
 /* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. iso:
  * relative to A0. */
 static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 {
-  const mcor_graded* graded = &context->graded;
+  const mcor_adaptive* adaptive = &context->adaptive;
   const mcor_brick_data* now = &context->bricks.now;
   for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
   {
     const size_t nodes = context->cl.lanes == 1 ? 64 : 1; /* of a slot */
-    mcor_span span = { .first = graded->first_slot[l], .end = graded->first_slot[l + 1] };
+    mcor_span span = { .first = adaptive->first_slot[l], .end = adaptive->first_slot[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_next_span(context, &span));
     while (span.count > 0)
     {
-      MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_nodes", MCOR_HEAVY, (size_t)span.count * nodes,
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_nodes", MCOR_HEAVY, (size_t)span.count * nodes,
         MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
         MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
-        MCOR_BUFFER(&graded->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight)));
+        MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight)));
       MCOR_TRY(mcor_next_span(context, &span));
     }
   }
   MCOR_TRY(mcor_view_level(context, 0));
-  return MCOR_LAUNCH(context, "mcor_graded_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-    MCOR_BUFFER(&graded->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
+  return MCOR_LAUNCH(context, "mcor_adaptive_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
     MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&now->known),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
@@ -132,21 +133,21 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 /* Finds the leaves in which there is surface, and evaluates what they need. */
 static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
 {
-  mcor_graded* graded = &context->graded;
-  const int count = graded->count;
+  mcor_adaptive* adaptive = &context->adaptive;
+  const int count = adaptive->count;
   MCOR_TRY(
-    mcor_reserve(context, &graded->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &graded->mixed, (size_t)count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells),
-    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_need", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables),
+    mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_need", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->bricks.now.valid),
-    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(&graded->proofs)));
+    MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->proofs)));
   MCOR_TRY(mcor_evaluate_slots(context, iso));
-  return MCOR_LAUNCH(context, "mcor_graded_mixed", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&graded->mixed));
+  return MCOR_LAUNCH(context, "mcor_adaptive_mixed", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&adaptive->mixed));
 }
 
 /* Leaves whose nodes are evaluated along with their states: more take much memory. */
@@ -156,9 +157,9 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
  * of mcor_choose_leaves. */
 static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_nodes* found)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   int slots = 0;
-  if (graded->count > 0)
+  if (adaptive->count > 0)
   {
     MCOR_TRY(mcor_want_bricks(context, &slots));
     MCOR_TRY(mcor_find_slot_levels(context, slots));
@@ -175,7 +176,7 @@ static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_node
     int taken;
     const mcor_buffer* known = &context->bricks.now.known;
     status = mcor_count_bits(context, known, known, slots, &taken);
-    graded->dropped = graded->evaluated - taken;
+    adaptive->dropped = adaptive->evaluated - taken;
   }
   if (status == MCOR_OK && slots > 0)
   {
@@ -193,7 +194,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
     MCOR_TRY(mcor_make_tree(context, input));
     MCOR_TRY(context->tree.leaf_count > 0 ? mcor_write_tree(context) : MCOR_OK);
   }
-  context->graded.count = 0;
+  context->adaptive.count = 0;
   if (context->tree.leaf_count == 0) /* none is in the box */
   {
     return MCOR_OK;
@@ -201,7 +202,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
     context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE;
-  context->graded.dropped = context->bricks.now.count == 0 ? 0 : context->graded.dropped;
+  context->adaptive.dropped = context->bricks.now.count == 0 ? 0 : context->adaptive.dropped;
   mcor_leaf_nodes found = { 0 };
   mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
   if (status == MCOR_OK)
@@ -220,27 +221,27 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
  * of earlier calls, they are the same ones. */
 static mcor_status mcor_count_seeds(mcor_context* context, int* count)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   const mcor_buffer* cells =
-    mcor_uses_pairs(context) ? &context->graded_pairs.seeds : &context->mesh.used;
-  MCOR_TRY(mcor_reserve(context, &graded->seeds, (size_t)graded->count * sizeof(cl_ulong)));
-  MCOR_TRY(
-    MCOR_LAUNCH(context, "mcor_graded_seeds", MCOR_MEDIUM, graded->count, MCOR_INT(graded->count),
-      MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(cells), MCOR_BUFFER(&graded->seeds)));
-  return mcor_count_cells(context, &graded->seeds, &graded->seeds, count);
+    mcor_uses_pairs(context) ? &context->adaptive_pairs.seeds : &context->mesh.used;
+  MCOR_TRY(mcor_reserve(context, &adaptive->seeds, (size_t)adaptive->count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_seeds", MCOR_MEDIUM, adaptive->count,
+    MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(cells),
+    MCOR_BUFFER(&adaptive->seeds)));
+  return mcor_count_cells(context, &adaptive->seeds, &adaptive->seeds, count);
 }
 
 /* Finds the used cells; counts vertices and triangles. */
 static mcor_status mcor_count_leaves(mcor_context* context, double iso)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   mcor_mesh* mesh = &context->mesh;
-  const int count = graded->count, slots = context->bricks.now.count;
+  const int count = adaptive->count, slots = context->bricks.now.count;
   const size_t n = (size_t)count, s = (size_t)slots;
   const mcor_buffer* owned;
   int seeds;
-  MCOR_TRY(mcor_fill(context, &graded->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
-  MCOR_TRY(mcor_reserve(context, &graded->flat, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &adaptive->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
+  MCOR_TRY(mcor_reserve(context, &adaptive->flat, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &mesh->used, 0xff, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_clip_used(context));
   MCOR_TRY(mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK);
@@ -251,11 +252,12 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&graded->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&graded->quadrants),
-    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&graded->flat)));
-  return MCOR_LAUNCH(context, "mcor_graded_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
-    MCOR_BUFFER(&graded->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_adaptive_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+      MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&adaptive->quadrants),
+      MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat)));
+  return MCOR_LAUNCH(context, "mcor_adaptive_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
+    MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
 }
 
 /* Element `at` of an array of ints. */
@@ -268,11 +270,11 @@ static mcor_status mcor_read_int(
 /* Where the vertices of each level begin, and how many cells and triangles it has. */
 static mcor_status mcor_count_by_level(mcor_context* context)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->statistics;
   int caps, used, hits;
-  MCOR_TRY(mcor_scan(context, &graded->flat, graded->count, &caps));
+  MCOR_TRY(mcor_scan(context, &adaptive->flat, adaptive->count, &caps));
   MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
   s->flat_loops += caps;
   s->cells_used += used;
@@ -280,16 +282,16 @@ static mcor_status mcor_count_by_level(mcor_context* context)
   for (int l = 0; l <= context->tree.top; ++l)
   {
     MCOR_TRY(mcor_read_int(
-      context, &mesh->vertex_base, graded->first_slot[l + 1], &mesh->level_first[0][l + 1]));
+      context, &mesh->vertex_base, adaptive->first_slot[l + 1], &mesh->level_first[0][l + 1]));
     MCOR_TRY(
-      mcor_read_int(context, &context->bricks.bit_counts, graded->first_leaf[l + 1], &cells[1]));
+      mcor_read_int(context, &context->bricks.bit_counts, adaptive->first_leaf[l + 1], &cells[1]));
     s->cells_of_level[l] += cells[1] - cells[0];
     cells[0] = cells[1];
   }
   mesh->level_first[0][0] = 0;
   hits = used;
   MCOR_TRY(mcor_uses_pairs(context)
-      ? mcor_count_cells(context, &mesh->used, &context->graded_pairs.seeds, &hits)
+      ? mcor_count_cells(context, &mesh->used, &context->adaptive_pairs.seeds, &hits)
       : MCOR_OK);
   s->seed_cells_not_intersected -= hits;
   return MCOR_OK;
@@ -299,29 +301,31 @@ static mcor_status mcor_count_by_level(mcor_context* context)
 static mcor_status mcor_emit_leaf_triangles(
   mcor_context* context, const int sides[6], mcor_buffer* cells)
 {
-  const mcor_graded* graded = &context->graded;
+  const mcor_adaptive* adaptive = &context->adaptive;
   mcor_mesh* mesh = &context->mesh;
   const bool follows = mcor_follows_cells(context);
   const size_t count = follows ? (size_t)mesh->triangle_count : 1;
   MCOR_TRY(mcor_reserve(context, cells, count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_graded_triangles", MCOR_MEDIUM, graded->count,
-    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&graded->cells), MCOR_SIDES_ARGS(sides),
-    MCOR_DECISION_ARGS(context), MCOR_INT(follows), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(cells),
-    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&mesh->triangles));
+  return MCOR_LAUNCH(context, "mcor_adaptive_triangles", MCOR_MEDIUM, adaptive->count,
+    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&adaptive->cells), MCOR_SIDES_ARGS(sides),
+    MCOR_DECISION_ARGS(context), MCOR_INT(follows), MCOR_BUFFER(&adaptive->rungs),
+    MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&mesh->triangles));
 }
 
 /* Counts the triangles of each level, in the box where there is one. */
 static mcor_status mcor_count_triangles(mcor_context* context)
 {
-  const mcor_graded* graded = &context->graded;
+  const mcor_adaptive* adaptive = &context->adaptive;
   mcor_statistics* s = context->statistics;
   cl_int end = 0;
   for (int l = 0; l <= context->tree.top; ++l)
   {
     const cl_int begin = end;
     int count;
-    MCOR_TRY(mcor_read_int(context, &context->mesh.triangle_base, graded->first_leaf[l + 1], &end));
+    MCOR_TRY(
+      mcor_read_int(context, &context->mesh.triangle_base, adaptive->first_leaf[l + 1], &end));
     MCOR_TRY(mcor_count_owned_triangles(context, begin, end, &count));
     s->triangles_of_level[l] += count;
     s->triangles_before_trimming += count;
@@ -336,14 +340,15 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
   mesh->march_count = mesh->vertex_count = mesh->triangle_count = 0;
   memset(mesh->level_first, 0, sizeof mesh->level_first);
   ++context->statistics->march_rounds;
-  if (context->graded.count == 0)
+  if (context->adaptive.count == 0)
   {
     return mcor_uses_pairs(context) ? mcor_attend_growth(context) : MCOR_OK;
   }
   MCOR_TRY(mcor_count_leaves(context, iso));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_leaves(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, context->bricks.now.count, &mesh->march_count));
-  MCOR_TRY(mcor_scan(context, &mesh->triangle_base, context->graded.count, &mesh->triangle_count));
+  MCOR_TRY(
+    mcor_scan(context, &mesh->triangle_base, context->adaptive.count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
   MCOR_TRY(mcor_count_by_level(context));
   if (mesh->triangle_count == 0)
@@ -355,13 +360,13 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
   return mcor_count_triangles(context);
 }
 
-void mcor_release_graded(mcor_context* context)
+void mcor_release_adaptive(mcor_context* context)
 {
-  mcor_graded* g = &context->graded;
+  mcor_adaptive* g = &context->adaptive;
   MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys,
     &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
     &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
     &g->seeds, &context->grid.view_levels, &context->grid.view_inv_h);
-  mcor_release_graded_pairs(context);
+  mcor_release_adaptive_pairs(context);
   mcor_release_tree(&context->tree);
 }

@@ -6,8 +6,8 @@
  * their values do. A leaf is left out where it and the leaves up from it agree. Particles are gathered for
  * all parts of a brick at once. */
 
-#include "mcor_graded_seed.h"
-#include "mcor_graded.h"
+#include "mcor_adaptive_seed.h"
+#include "mcor_adaptive.h"
 #include "mcor_parallel.h"
 #include "mcor_tree.h"
 
@@ -110,43 +110,43 @@ static mcor_status mcor_find_finer(mcor_context* context)
 mcor_status mcor_write_tree(mcor_context* context)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   const size_t leaves = (size_t)tree->leaf_count, regions = (size_t)tree->region_count;
   MCOR_TRY(mcor_find_finer(context));
-  MCOR_TRY(mcor_write(context, &graded->leaves, tree->leaves, leaves * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_write(context, &graded->leaf_finer, tree->finer, leaves * sizeof(cl_uint)));
-  MCOR_TRY(mcor_write(context, &graded->regions, tree->regions, (regions + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &adaptive->leaves, tree->leaves, leaves * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &adaptive->leaf_finer, tree->finer, leaves * sizeof(cl_uint)));
+  MCOR_TRY(mcor_write(context, &adaptive->regions, tree->regions, (regions + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_write(
-    context, &graded->rungs, tree->rungs, (size_t)(tree->top + 2) * sizeof tree->rungs[0]));
-  MCOR_TRY(mcor_reserve(context, &graded->region_keys, regions * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_region_keys", MCOR_LIGHT, regions,
-    MCOR_INT((int)regions), MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->regions),
-    MCOR_BUFFER(&graded->leaves), MCOR_BUFFER(&graded->region_keys)));
+    context, &adaptive->rungs, tree->rungs, (size_t)(tree->top + 2) * sizeof tree->rungs[0]));
+  MCOR_TRY(mcor_reserve(context, &adaptive->region_keys, regions * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_region_keys", MCOR_LIGHT, regions,
+    MCOR_INT((int)regions), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->regions),
+    MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->region_keys)));
   MCOR_TRY(mcor_sort(
-    context, &graded->region_keys, &graded->region_order, tree->region_count, tree->key_limit));
+    context, &adaptive->region_keys, &adaptive->region_order, tree->region_count, tree->key_limit));
   mcor_release_sort(context);
   return MCOR_OK;
 }
 
 #define MCOR_REGION_ARGS(c)                                                                        \
-  MCOR_INT((c)->tree.region_count), MCOR_BUFFER(&(c)->graded.rungs),                               \
-    MCOR_BUFFER(&(c)->graded.regions), MCOR_BUFFER(&(c)->graded.leaves),                           \
-    MCOR_BUFFER(&(c)->graded.region_keys), MCOR_BUFFER(&(c)->graded.region_order)
+  MCOR_INT((c)->tree.region_count), MCOR_BUFFER(&(c)->adaptive.rungs),                             \
+    MCOR_BUFFER(&(c)->adaptive.regions), MCOR_BUFFER(&(c)->adaptive.leaves),                       \
+    MCOR_BUFFER(&(c)->adaptive.region_keys), MCOR_BUFFER(&(c)->adaptive.region_order)
 
 /* ---- States ---- */
 
 static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   for (int l = 0; l <= tree->top; ++l)
   {
     const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
     MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&graded->leaves),
-      MCOR_BUFFER(&graded->leaf_finer), MCOR_SEED_ARGS(context, iso),
-      MCOR_BUFFER(&graded->states)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_states", MCOR_HEAVY, count,
+      MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&adaptive->leaves),
+      MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso),
+      MCOR_BUFFER(&adaptive->states)));
   }
   return mcor_view_level(context, 0);
 }
@@ -157,7 +157,7 @@ static mcor_status mcor_find_region_states(
   mcor_context* context, double iso, const mcor_leaf_nodes* found)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   const mcor_leaf_nodes none = { 0 };
   for (int l = 0; l <= tree->top; ++l)
   {
@@ -166,11 +166,11 @@ static mcor_status mcor_find_region_states(
     MCOR_TRY(mcor_next_span(context, &span));
     while (span.count > 0)
     {
-      MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_regions", MCOR_HEAVY, span.count,
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_regions", MCOR_HEAVY, span.count,
         MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
-        MCOR_BUFFER(&graded->regions), MCOR_BUFFER(&graded->leaves),
-        MCOR_BUFFER(&graded->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
-        MCOR_BUFFER(&graded->states), MCOR_BUFFER(found ? &found->value : &none.value),
+        MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
+        MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
+        MCOR_BUFFER(&adaptive->states), MCOR_BUFFER(found ? &found->value : &none.value),
         MCOR_BUFFER(found ? &found->weight : &none.weight)));
       MCOR_TRY(mcor_next_span(context, &span));
     }
@@ -199,11 +199,11 @@ static mcor_status mcor_write_examined(
   mcor_context* context, mcor_keyed_leaf* examined, cl_int (*cells)[4], cl_uint* finer)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
-  const size_t n = (size_t)graded->count;
+  mcor_adaptive* adaptive = &context->adaptive;
+  const size_t n = (size_t)adaptive->count;
   for (int l = 0; l <= tree->top; ++l)
   {
-    const int first = graded->first_leaf[l], count = graded->first_leaf[l + 1] - first;
+    const int first = adaptive->first_leaf[l], count = adaptive->first_leaf[l + 1] - first;
     qsort(examined + first, (size_t)count, sizeof *examined, mcor_compare_leaves);
     MCOR_TRY(mcor_report_launch(context));
   }
@@ -212,18 +212,18 @@ static mcor_status mcor_write_examined(
     memcpy(cells[i], tree->leaves + 4 * examined[i].leaf, sizeof cells[i]);
     finer[i] = tree->finer[examined[i].leaf] & (MCOR_COARSER_UP - 1);
   }
-  MCOR_TRY(mcor_write(context, &graded->cells, cells, n * sizeof *cells));
-  return mcor_write(context, &graded->finer, finer, n * sizeof *finer);
+  MCOR_TRY(mcor_write(context, &adaptive->cells, cells, n * sizeof *cells));
+  return mcor_write(context, &adaptive->finer, finer, n * sizeof *finer);
 }
 
 static mcor_status mcor_list_examined(mcor_context* context)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   const size_t n = (size_t)tree->leaf_count;
   uint8_t* chosen = malloc(n + 1);
   MCOR_RETURN_IF(!chosen, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  mcor_status status = mcor_read(context, &graded->chosen, 0, chosen, n);
+  mcor_status status = mcor_read(context, &adaptive->chosen, 0, chosen, n);
   size_t count = 0, evaluated = 0;
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
   {
@@ -233,26 +233,26 @@ static mcor_status mcor_list_examined(mcor_context* context)
   mcor_keyed_leaf* examined = malloc((count + 1) * sizeof *examined);
   cl_int(*cells)[4] = malloc((count + 1) * sizeof *cells);
   cl_uint* finer = malloc((count + 1) * sizeof *finer);
-  graded->count = (int)count;
-  graded->evaluated = MCOR_BRICK_NODES * (int)evaluated;
+  adaptive->count = (int)count;
+  adaptive->evaluated = MCOR_BRICK_NODES * (int)evaluated;
   if (status == MCOR_OK && examined && cells && finer)
   {
     size_t to = 0;
-    memset(graded->first_leaf, 0, sizeof graded->first_leaf);
+    memset(adaptive->first_leaf, 0, sizeof adaptive->first_leaf);
     for (size_t i = 0; i < n; ++i)
     {
       if (chosen[i] & MCOR_CHOSEN)
       {
         const cl_int* leaf = tree->leaves + 4 * i;
         examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), i };
-        graded->first_leaf[leaf[3] + 1] = (int)to;
+        adaptive->first_leaf[leaf[3] + 1] = (int)to;
       }
     }
     for (int l = 0; l <= tree->top; ++l) /* levels without any */
     {
-      const int first = graded->first_leaf[l];
-      graded->first_leaf[l + 1] =
-        graded->first_leaf[l + 1] > first ? graded->first_leaf[l + 1] : first;
+      const int first = adaptive->first_leaf[l];
+      adaptive->first_leaf[l + 1] =
+        adaptive->first_leaf[l + 1] > first ? adaptive->first_leaf[l + 1] : first;
     }
     status = mcor_write_examined(context, examined, cells, finer);
   }
@@ -269,11 +269,11 @@ static mcor_status mcor_list_examined(mcor_context* context)
 
 mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_nodes* found)
 {
-  mcor_graded* graded = &context->graded;
+  mcor_adaptive* adaptive = &context->adaptive;
   const mcor_tree* tree = &context->tree;
   const size_t n = (size_t)tree->leaf_count, values = n * 64 * context->cl.real_size;
-  MCOR_TRY(mcor_reserve(context, &graded->states, n * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &graded->chosen, n));
+  MCOR_TRY(mcor_reserve(context, &adaptive->states, n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &adaptive->chosen, n));
   if (found)
   {
     MCOR_TRY(mcor_reserve(context, &found->value, values));
@@ -281,22 +281,22 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
   }
   MCOR_TRY(context->cl.lanes > 1 ? mcor_find_region_states(context, iso, found)
                                  : mcor_find_leaf_states(context, iso));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_choose", MCOR_MEDIUM, tree->region_count,
-    MCOR_REGION_ARGS(context), MCOR_BUFFER(&graded->leaf_finer), MCOR_BUFFER(&graded->states),
-    MCOR_BUFFER(&graded->chosen)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_choose", MCOR_MEDIUM, tree->region_count,
+    MCOR_REGION_ARGS(context), MCOR_BUFFER(&adaptive->leaf_finer), MCOR_BUFFER(&adaptive->states),
+    MCOR_BUFFER(&adaptive->chosen)));
   return mcor_list_examined(context);
 }
 
 mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found)
 {
-  const mcor_graded* graded = &context->graded;
+  const mcor_adaptive* adaptive = &context->adaptive;
   const mcor_brick_data* now = &context->bricks.now;
   const mcor_leaf_nodes none = { 0 };
   const mcor_leaf_nodes* from = found ? found : &none;
-  return MCOR_LAUNCH(context, "mcor_graded_take", MCOR_MEDIUM, now->count,
+  return MCOR_LAUNCH(context, "mcor_adaptive_take", MCOR_MEDIUM, now->count,
     MCOR_REGION_ARGS(context), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks),
-    MCOR_BUFFER(&graded->states),
+    MCOR_BUFFER(&adaptive->states),
     MCOR_INT(found ? (int)(64 * context->cl.real_size / sizeof(cl_uint)) : 0),
-    MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight), MCOR_BUFFER(&graded->proofs),
+    MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight), MCOR_BUFFER(&adaptive->proofs),
     MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
 }

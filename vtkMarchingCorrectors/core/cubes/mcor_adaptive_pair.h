@@ -1,18 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef mcor_graded_pair_h
-#define mcor_graded_pair_h
+#ifndef mcor_adaptive_pair_h
+#define mcor_adaptive_pair_h
 
-/* Adaptive cubes: the cells of pairs [III-C]; see mcor_graded_pair.c. */
+/* Adaptive cubes: the cells of pairs [III-C]; see mcor_adaptive_pair.c. */
 
 #include "mcor_internal.h"
 
-/* Leaves the cells that pairs reach, of those in mesh.used; graded_pairs.seeds: those that pairs mark. iso: relative
+/* Leaves the cells that pairs reach, of those in mesh.used; adaptive_pairs.seeds: those that pairs mark. iso: relative
  * to A0. */
 mcor_status mcor_keep_reached(mcor_context* context, double iso);
 /* Adds `count` cells of this box, int4 with their level last, that others have reached; *fresh: whether one is
  * new. */
 mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh);
-void mcor_release_graded_pairs(mcor_context* context);
+void mcor_release_adaptive_pairs(mcor_context* context);
 
 #endif

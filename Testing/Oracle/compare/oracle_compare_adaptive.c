@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which edge of the graded lattice each vertex lies on, and whether the mesh joins them on faces as
- * it must. Here an edge is its number in oracle_graded. */
+/* Which edge of the adaptive lattice each vertex lies on, and whether the mesh joins them on faces as
+ * it must. Here an edge is its number in oracle_adaptive. */
 
 #include "oracle_compare_internal.h"
 
@@ -13,19 +13,19 @@
 
 enum
 {
-  GRADED_CANDIDATES = 16
+  ADAPTIVE_CANDIDATES = 16
 };
 
 /* Two valid cells that touch only in the edge. */
-static int graded_pinched(const graded_edge* edge)
+static int adaptive_pinched(const adaptive_edge* edge)
 {
   return edge->quadrants == 6 || edge->quadrants == 9;
 }
 
-static void graded_note(compare_state* state, const char* what, const graded_edge* edge)
+static void adaptive_note(compare_state* state, const char* what, const adaptive_edge* edge)
 {
-  const oracle_lattice* nodes = &state->reference->graded.nodes;
-  const double cube = state->reference->graded.cube;
+  const oracle_lattice* nodes = &state->reference->adaptive.nodes;
+  const double cube = state->reference->adaptive.cube;
   compare_note(state,
     "%s edge at (%.9g, %.9g, %.9g) axis %d of %lld cubes, f - iso = %.3g and %.3g, weight %.3g and "
     "%.3g, valid cells %x",
@@ -37,31 +37,31 @@ static void graded_note(compare_state* state, const char* what, const graded_edg
 
 /* ---- vertices ---------------------------------------------------------------------------------- */
 
-static int graded_open(const compare_state* state, int64_t e)
+static int adaptive_open(const compare_state* state, int64_t e)
 {
   return state->edge_vertex[e] < 0 ||
-    (state->second_vertex[e] < 0 && graded_pinched(&state->reference->graded.edges[e]));
+    (state->second_vertex[e] < 0 && adaptive_pinched(&state->reference->adaptive.edges[e]));
 }
 
 /* Crossed edges without a vertex that a point may lie on, its ends included. Returns how many;
  * *axis: the one along which it is no node, or -1; -2: it is on no line of the lattice. */
-static int graded_candidates(
-  compare_state* state, const double point[3], int64_t candidates[GRADED_CANDIDATES], int* axis)
+static int adaptive_candidates(
+  compare_state* state, const double point[3], int64_t candidates[ADAPTIVE_CANDIDATES], int* axis)
 {
-  oracle_graded* graded = (oracle_graded*)&state->reference->graded;
+  oracle_adaptive* adaptive = (oracle_adaptive*)&state->reference->adaptive;
   double u[3];
   int off[3];
   int count = 0;
   *axis = -1;
   for (int a = 0; a < 3; ++a)
   {
-    u[a] = point[a] / graded->cube;
+    u[a] = point[a] / adaptive->cube;
     off[a] = fabs(u[a] - round(u[a])) > fmax(1e-12, 8.0 * DBL_EPSILON * fabs(u[a]));
     *axis = !off[a] ? *axis : *axis == -1 ? a : -2;
   }
   for (int a = 0; a < 3 && *axis != -2; ++a)
   {
-    for (int level = 0; level <= graded->top && (*axis < 0 || *axis == a); ++level)
+    for (int level = 0; level <= adaptive->top && (*axis < 0 || *axis == a); ++level)
     {
       const double length = ldexp(1.0, level);
       const double last = floor((off[a] ? u[a] : round(u[a])) / length) * length;
@@ -69,10 +69,10 @@ static int graded_candidates(
       {
         int64_t at[3] = { llround(u[0]), llround(u[1]), llround(u[2]) };
         at[a] = (int64_t)(before ? last - length : last);
-        const int64_t* e = graded_map_find(&graded->edge_map, at, a, 0);
-        if (e && (double)graded->edges[*e].length == length &&
-          u[a] <= (double)at[a] + length + 1e-9 && graded->edges[*e].used &&
-          graded_open(state, *e) && count < GRADED_CANDIDATES)
+        const int64_t* e = adaptive_map_find(&adaptive->edge_map, at, a, 0);
+        if (e && (double)adaptive->edges[*e].length == length &&
+          u[a] <= (double)at[a] + length + 1e-9 && adaptive->edges[*e].used &&
+          adaptive_open(state, *e) && count < ADAPTIVE_CANDIDATES)
         {
           candidates[count++] = *e;
         }
@@ -82,11 +82,11 @@ static int graded_candidates(
   return count;
 }
 
-static void graded_claim(compare_state* state, int64_t v, int64_t e)
+static void adaptive_claim(compare_state* state, int64_t v, int64_t e)
 {
-  const graded_edge* edge = &state->reference->graded.edges[e];
+  const adaptive_edge* edge = &state->reference->adaptive.edges[e];
   state->vertex_edge[v] = 3 * e + edge->axis;
-  state->vertex_cube[v] = (double)edge->length * state->reference->graded.cube;
+  state->vertex_cube[v] = (double)edge->length * state->reference->adaptive.cube;
   if (state->edge_vertex[e] < 0)
   {
     state->edge_vertex[e] = v;
@@ -101,11 +101,11 @@ static void graded_claim(compare_state* state, int64_t v, int64_t e)
 
 /* Whether rounding may have put a vertex there: an end of its edge, the nearest nodes on its line, is
  * as good as on the other side. */
-static int graded_doubtful(const compare_state* state, const double point[3], int axis)
+static int adaptive_doubtful(const compare_state* state, const double point[3], int axis)
 {
   const oracle_reference* reference = state->reference;
-  oracle_graded* graded = (oracle_graded*)&reference->graded;
-  for (int level = 0; level <= graded->top; ++level)
+  oracle_adaptive* adaptive = (oracle_adaptive*)&reference->adaptive;
+  for (int level = 0; level <= adaptive->top; ++level)
   {
     const double length = ldexp(1.0, level);
     for (int end = 0; end < (axis < 0 ? 1 : 2); ++end)
@@ -114,14 +114,14 @@ static int graded_doubtful(const compare_state* state, const double point[3], in
       int64_t at[3];
       for (int a = 0; a < 3; ++a)
       {
-        const double u = point[a] / graded->cube;
+        const double u = point[a] / adaptive->cube;
         at[a] = a == axis ? (int64_t)((floor(u / length) + end) * length) : llround(u);
-        p[a] = (double)at[a] * graded->cube;
+        p[a] = (double)at[a] * adaptive->cube;
       }
-      const int64_t* node = graded_map_find(&graded->node_map, at, 0, 0);
+      const int64_t* node = adaptive_map_find(&adaptive->node_map, at, 0, 0);
       if (node &&
-        (graded->nodes.flags[*node] & (ORACLE_NODE_CLOSE | ORACLE_NODE_MARGIN) ||
-          fabs(graded->nodes.value[*node] - reference->limits.iso) <=
+        (adaptive->nodes.flags[*node] & (ORACLE_NODE_CLOSE | ORACLE_NODE_MARGIN) ||
+          fabs(adaptive->nodes.value[*node] - reference->limits.iso) <=
             oracle_rounding(&reference->field, p, reference->unit)))
       {
         return 1;
@@ -132,7 +132,7 @@ static int graded_doubtful(const compare_state* state, const double point[3], in
 }
 
 /* A vertex that no open edge is left for: a cut; a second one on its edge; one too many. */
-static void graded_leave(compare_state* state, int64_t v, int axis)
+static void adaptive_leave(compare_state* state, int64_t v, int axis)
 {
   const mcor_surface* surface = state->surface;
   const oracle_reference* reference = state->reference;
@@ -150,8 +150,8 @@ static void graded_leave(compare_state* state, int64_t v, int axis)
   else
   {
     /* Numbers from edge_count on: on edges that are not crossed. */
-    state->vertex_edge[v] = 3 * reference->graded.edge_count + (axis < 0 ? 0 : axis);
-    if (graded_doubtful(state, point, axis))
+    state->vertex_edge[v] = 3 * reference->adaptive.edge_count + (axis < 0 ? 0 : axis);
+    if (adaptive_doubtful(state, point, axis))
     {
       ++state->result->excused;
       return;
@@ -163,21 +163,21 @@ static void graded_leave(compare_state* state, int64_t v, int axis)
 }
 
 /* First vertices with one place to be, as long as there are any, then those with two, and so on. */
-static void graded_assign(compare_state* state)
+static void adaptive_assign(compare_state* state)
 {
   const int64_t count = state->surface->point_count;
-  int64_t candidates[GRADED_CANDIDATES];
+  int64_t candidates[ADAPTIVE_CANDIDATES];
   int axis;
-  for (int64_t e = 0; e < state->reference->graded.edge_count; ++e)
+  for (int64_t e = 0; e < state->reference->adaptive.edge_count; ++e)
   {
     state->edge_vertex[e] = state->second_vertex[e] = -1;
   }
   for (int64_t v = 0; v < count; ++v)
   {
     state->vertex_edge[v] = COMPARE_OFF_LATTICE;
-    state->vertex_cube[v] = state->reference->graded.cube;
+    state->vertex_cube[v] = state->reference->adaptive.cube;
   }
-  for (int most = 1; most <= GRADED_CANDIDATES;)
+  for (int most = 1; most <= ADAPTIVE_CANDIDATES;)
   {
     int64_t assigned = 0;
     for (int64_t v = 0; v < count; ++v)
@@ -185,10 +185,10 @@ static void graded_assign(compare_state* state)
       if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
       {
         const int found =
-          graded_candidates(state, &state->surface->points[3 * v], candidates, &axis);
+          adaptive_candidates(state, &state->surface->points[3 * v], candidates, &axis);
         if (found > 0 && found <= most)
         {
-          graded_claim(state, v, candidates[0]);
+          adaptive_claim(state, v, candidates[0]);
           ++assigned;
         }
       }
@@ -199,26 +199,26 @@ static void graded_assign(compare_state* state)
   {
     if (state->vertex_edge[v] == COMPARE_OFF_LATTICE)
     {
-      graded_candidates(state, &state->surface->points[3 * v], candidates, &axis);
-      graded_leave(state, v, axis);
+      adaptive_candidates(state, &state->surface->points[3 * v], candidates, &axis);
+      adaptive_leave(state, v, axis);
     }
   }
 }
 
 /* ---- missing edges ----------------------------------------------------------------------------- */
 
-static void graded_point(
-  const compare_state* state, const graded_edge* edge, double t, double point[3])
+static void adaptive_point(
+  const compare_state* state, const adaptive_edge* edge, double t, double point[3])
 {
   for (int axis = 0; axis < 3; ++axis)
   {
     const double along = axis == edge->axis ? t * (double)edge->length : 0.0;
-    point[axis] = ((double)edge->at[axis] + along) * state->reference->graded.cube;
+    point[axis] = ((double)edge->at[axis] + along) * state->reference->adaptive.cube;
   }
 }
 
 /* Whether any of the places where the field passes iso on an edge is trimmed away. */
-static int graded_rightly_trimmed(const compare_state* state, const graded_edge* edge)
+static int adaptive_rightly_trimmed(const compare_state* state, const adaptive_edge* edge)
 {
   const oracle_reference* reference = state->reference;
   const int pieces = 32;
@@ -227,7 +227,7 @@ static int graded_rightly_trimmed(const compare_state* state, const graded_edge*
   {
     oracle_sample sample;
     double p[3];
-    graded_point(state, edge, (double)piece / pieces, p);
+    adaptive_point(state, edge, (double)piece / pieces, p);
     oracle_evaluate(&reference->field, NULL, p, &sample);
     const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
     if (piece > 0 && (difference >= 0.0) != (previous >= 0.0))
@@ -236,7 +236,7 @@ static int graded_rightly_trimmed(const compare_state* state, const graded_edge*
       double high = (double)piece / pieces;
       for (int step = 0; step < 50; ++step)
       {
-        graded_point(state, edge, 0.5 * (low + high), p);
+        adaptive_point(state, edge, 0.5 * (low + high), p);
         oracle_evaluate(&reference->field, NULL, p, &sample);
         const int as_high = (oracle_side(&reference->field, &sample, reference->limits.iso) >=
                               0.0) == (difference >= 0.0);
@@ -252,14 +252,14 @@ static int graded_rightly_trimmed(const compare_state* state, const graded_edge*
   return 0;
 }
 
-static int graded_within_rounding(const compare_state* state, const graded_edge* edge)
+static int adaptive_within_rounding(const compare_state* state, const adaptive_edge* edge)
 {
   const oracle_reference* reference = state->reference;
   for (int end = 0; end < 2; ++end)
   {
     double p[3];
-    graded_point(state, edge, end, p);
-    if (fabs(reference->graded.nodes.value[edge->node[end]] - reference->limits.iso) <=
+    adaptive_point(state, edge, end, p);
+    if (fabs(reference->adaptive.nodes.value[edge->node[end]] - reference->limits.iso) <=
       oracle_rounding(&reference->field, p, reference->unit))
     {
       return 1;
@@ -268,13 +268,13 @@ static int graded_within_rounding(const compare_state* state, const graded_edge*
   return 0;
 }
 
-static void graded_missing(compare_state* state, int64_t* present, int64_t* absent)
+static void adaptive_missing(compare_state* state, int64_t* present, int64_t* absent)
 {
-  const oracle_graded* graded = &state->reference->graded;
+  const oracle_adaptive* adaptive = &state->reference->adaptive;
   oracle_comparison* result = state->result;
-  for (int64_t e = 0; e < graded->edge_count; ++e)
+  for (int64_t e = 0; e < adaptive->edge_count; ++e)
   {
-    const graded_edge* edge = &graded->edges[e];
+    const adaptive_edge* edge = &adaptive->edges[e];
     if (!edge->used)
     {
       continue;
@@ -282,9 +282,9 @@ static void graded_missing(compare_state* state, int64_t* present, int64_t* abse
     ++result->edges;
     if (state->edge_vertex[e] >= 0)
     {
-      present[edge->component] += !graded_pinched(edge);
+      present[edge->component] += !adaptive_pinched(edge);
     }
-    else if (state->trimmed && graded_rightly_trimmed(state, edge))
+    else if (state->trimmed && adaptive_rightly_trimmed(state, edge))
     {
       ++result->trimmed;
     }
@@ -292,18 +292,18 @@ static void graded_missing(compare_state* state, int64_t* present, int64_t* abse
     {
       ++result->excused;
     }
-    else if (graded_within_rounding(state, edge))
+    else if (adaptive_within_rounding(state, edge))
     {
       ++result->rounding;
     }
     else
     {
       ++result->missing;
-      absent[edge->component] += !graded_pinched(edge);
-      graded_note(state, "missing", edge);
+      absent[edge->component] += !adaptive_pinched(edge);
+      adaptive_note(state, "missing", edge);
     }
   }
-  for (int64_t c = 0; c < graded->component_count; ++c)
+  for (int64_t c = 0; c < adaptive->component_count; ++c)
   {
     result->components_missing += absent[c] > 0 && present[c] == 0;
     result->components_partial += absent[c] > 0 && present[c] > 0;
@@ -313,10 +313,10 @@ static void graded_missing(compare_state* state, int64_t* present, int64_t* abse
 /* ---- faces ------------------------------------------------------------------------------------- */
 
 /* Segments or sides of triangles, counted by the edges that they lead from and to. */
-static int64_t graded_count(graded_map* map, int64_t from, int64_t to, int more)
+static int64_t adaptive_count(adaptive_map* map, int64_t from, int64_t to, int more)
 {
   const int64_t at[3] = { from, to, 0 };
-  int64_t* count = graded_map_find(map, at, 0, more);
+  int64_t* count = adaptive_map_find(map, at, 0, more);
   if (count && more)
   {
     *count = *count < 0 ? 1 : *count + 1;
@@ -324,58 +324,59 @@ static int64_t graded_count(graded_map* map, int64_t from, int64_t to, int more)
   return count ? *count : 0;
 }
 
-static int64_t graded_edge_of(const compare_state* state, int32_t vertex)
+static int64_t adaptive_edge_of(const compare_state* state, int32_t vertex)
 {
   const int64_t edge = state->vertex_edge[vertex];
-  return edge >= 0 && edge / 3 < state->reference->graded.edge_count ? edge / 3 : -1;
+  return edge >= 0 && edge / 3 < state->reference->adaptive.edge_count ? edge / 3 : -1;
 }
 
-static int graded_certain_pair(const compare_state* state, int64_t a, int64_t b)
+static int adaptive_certain_pair(const compare_state* state, int64_t a, int64_t b)
 {
-  const graded_edge* edges = state->reference->graded.edges;
+  const adaptive_edge* edges = state->reference->adaptive.edges;
   return edges[a].certain && edges[b].certain;
 }
 
 /* Every segment is a side of one triangle for each cell that has it, in its direction. */
-static void graded_compare_segments(compare_state* state, graded_map* wanted, graded_map* sides)
+static void adaptive_compare_segments(
+  compare_state* state, adaptive_map* wanted, adaptive_map* sides)
 {
-  const oracle_graded* graded = &state->reference->graded;
-  for (int64_t s = 0; s < graded->segment_count; ++s)
+  const oracle_adaptive* adaptive = &state->reference->adaptive;
+  for (int64_t s = 0; s < adaptive->segment_count; ++s)
   {
-    graded_count(wanted, graded->segments[s].from, graded->segments[s].to, 1);
+    adaptive_count(wanted, adaptive->segments[s].from, adaptive->segments[s].to, 1);
   }
   for (int64_t n = 0; n < state->mesh->side_count; ++n)
   {
     const mesh_edge* side = &state->mesh->side[n];
-    const int64_t a = graded_edge_of(state, side->forward ? side->a : side->b);
-    const int64_t b = graded_edge_of(state, side->forward ? side->b : side->a);
+    const int64_t a = adaptive_edge_of(state, side->forward ? side->a : side->b);
+    const int64_t b = adaptive_edge_of(state, side->forward ? side->b : side->a);
     if (a >= 0 && b >= 0)
     {
-      graded_count(sides, a, b, 1);
+      adaptive_count(sides, a, b, 1);
     }
   }
-  for (int64_t s = 0; s < graded->segment_count; ++s)
+  for (int64_t s = 0; s < adaptive->segment_count; ++s)
   {
-    const int64_t from = graded->segments[s].from;
-    const int64_t to = graded->segments[s].to;
+    const int64_t from = adaptive->segments[s].from;
+    const int64_t to = adaptive->segments[s].to;
     const int left_out = state->options->seeds == MCOR_PAIRS &&
-      graded_pinched(&graded->edges[from]) && graded_pinched(&graded->edges[to]);
+      adaptive_pinched(&adaptive->edges[from]) && adaptive_pinched(&adaptive->edges[to]);
     if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 || left_out ||
-      !graded_certain_pair(state, from, to))
+      !adaptive_certain_pair(state, from, to))
     {
       continue;
     }
-    if (graded_count(sides, from, to, 0) != graded_count(wanted, from, to, 0) ||
-      graded_count(sides, to, from, 0) != graded_count(wanted, to, from, 0))
+    if (adaptive_count(sides, from, to, 0) != adaptive_count(wanted, from, to, 0) ||
+      adaptive_count(sides, to, from, 0) != adaptive_count(wanted, to, from, 0))
     {
       ++state->result->segments_missing;
-      graded_note(state, "not joined as it must be:", &graded->edges[from]);
+      adaptive_note(state, "not joined as it must be:", &adaptive->edges[from]);
     }
   }
 }
 
 /* A side of one triangle must be a cut, or a segment with a cell on one side only. */
-static void graded_boundary(compare_state* state, graded_map* wanted)
+static void adaptive_boundary(compare_state* state, adaptive_map* wanted)
 {
   const mesh_report* mesh = state->mesh;
   for (int64_t s = 0; s < mesh->side_count; ++s)
@@ -388,17 +389,17 @@ static void graded_boundary(compare_state* state, graded_map* wanted)
     {
       continue;
     }
-    const int64_t a = graded_edge_of(state, side->a);
-    const int64_t b = graded_edge_of(state, side->b);
+    const int64_t a = adaptive_edge_of(state, side->a);
+    const int64_t b = adaptive_edge_of(state, side->b);
     int explained = a < 0 && b < 0;
     if (a >= 0 && b >= 0)
     {
-      explained = !graded_certain_pair(state, a, b) ||
-        graded_count(wanted, a, b, 0) + graded_count(wanted, b, a, 0) == 1;
+      explained = !adaptive_certain_pair(state, a, b) ||
+        adaptive_count(wanted, a, b, 0) + adaptive_count(wanted, b, a, 0) == 1;
     }
     else if (a >= 0 || b >= 0)
     {
-      const graded_edge* edge = &state->reference->graded.edges[a >= 0 ? a : b];
+      const adaptive_edge* edge = &state->reference->adaptive.edges[a >= 0 ? a : b];
       explained = !edge->certain || edge->quadrants != 15;
     }
     if (!explained)
@@ -409,43 +410,43 @@ static void graded_boundary(compare_state* state, graded_map* wanted)
   }
 }
 
-static void graded_totals(compare_state* state)
+static void adaptive_totals(compare_state* state)
 {
-  const oracle_graded* graded = &state->reference->graded;
+  const oracle_adaptive* adaptive = &state->reference->adaptive;
   oracle_comparison* result = state->result;
-  for (int64_t e = 0; e < graded->edge_count; ++e)
+  for (int64_t e = 0; e < adaptive->edge_count; ++e)
   {
-    result->pinched_edges += graded->edges[e].used && graded_pinched(&graded->edges[e]);
+    result->pinched_edges += adaptive->edges[e].used && adaptive_pinched(&adaptive->edges[e]);
   }
-  for (int64_t n = 0; n < graded->node_count; ++n)
+  for (int64_t n = 0; n < adaptive->node_count; ++n)
   {
-    const int flags = graded->nodes.flags[n];
+    const int flags = adaptive->nodes.flags[n];
     result->unsettled +=
       (flags & ORACLE_NODE_CLOSE) && (flags & (ORACLE_NODE_VALID | ORACLE_NODE_MARGIN));
   }
-  for (int64_t c = 0; c < graded->cell_count; ++c)
+  for (int64_t c = 0; c < adaptive->cell_count; ++c)
   {
-    result->unsettled += !graded->cells[c].certain;
+    result->unsettled += !adaptive->cells[c].certain;
   }
   if (!state->trimmed && state->options->seeds != MCOR_PAIRS && result->unsettled == 0 &&
-    result->rounding == 0 && state->surface->triangle_count != graded->triangle_count)
+    result->rounding == 0 && state->surface->triangle_count != adaptive->triangle_count)
   {
     ++result->segments_missing;
     compare_note(state, "%lld triangles, not %lld", (long long)state->surface->triangle_count,
-      (long long)graded->triangle_count);
+      (long long)adaptive->triangle_count);
   }
 }
 
-void compare_graded(compare_state* state, int64_t* present, int64_t* absent)
+void compare_adaptive(compare_state* state, int64_t* present, int64_t* absent)
 {
-  graded_map wanted = { NULL, 0, 0 };
-  graded_map sides = { NULL, 0, 0 };
-  state->result->components = state->reference->graded.component_count;
-  graded_assign(state);
-  graded_missing(state, present, absent);
-  graded_compare_segments(state, &wanted, &sides);
-  graded_boundary(state, &wanted);
-  graded_totals(state);
-  graded_map_free(&wanted);
-  graded_map_free(&sides);
+  adaptive_map wanted = { NULL, 0, 0 };
+  adaptive_map sides = { NULL, 0, 0 };
+  state->result->components = state->reference->adaptive.component_count;
+  adaptive_assign(state);
+  adaptive_missing(state, present, absent);
+  adaptive_compare_segments(state, &wanted, &sides);
+  adaptive_boundary(state, &wanted);
+  adaptive_totals(state);
+  adaptive_map_free(&wanted);
+  adaptive_map_free(&sides);
 }

@@ -10,7 +10,7 @@
  * All leaves where there may be surface have their nodes evaluated, as for complete seeds; others have no
  * cell that could be used. */
 
-#include "mcor_graded_pair.h"
+#include "mcor_adaptive_pair.h"
 #include "mcor_box.h"
 
 /* ---- Leaves by their place ---- */
@@ -18,46 +18,46 @@
 /* Leaves where there may be surface, and the bricks that they are parts of, by their keys. */
 static mcor_status mcor_find_places(mcor_context* context)
 {
-  mcor_graded* graded = &context->graded;
-  mcor_graded_pairs* pairs = &context->graded_pairs;
-  const int count = graded->count, top = context->tree.top;
+  mcor_adaptive* adaptive = &context->adaptive;
+  mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
+  const int count = adaptive->count, top = context->tree.top;
   const int64_t keys = (int64_t)count * (top + 1);
   MCOR_RETURN_IF(keys > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "Pairs as seeds are limited to %d bricks times levels of adaptive cubes; here are %d bricks on "
     "%d "
     "levels. Use complete seeds, or a larger cube size.",
     MCOR_COUNT_LIMIT, count, top + 1);
-  MCOR_TRY(mcor_reserve(context, &graded->requests, (size_t)keys * sizeof(cl_ulong)));
-  MCOR_TRY(
-    MCOR_LAUNCH(context, "mcor_graded_pair_keys", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(top),
-      MCOR_BUFFER(&graded->rungs), MCOR_BUFFER(&graded->cells), MCOR_BUFFER(&graded->requests)));
-  MCOR_TRY(mcor_unique(context, &graded->requests, (int)keys, context->tree.key_limit,
-    &pairs->place_keys, &graded->index, &pairs->place_count));
+  MCOR_TRY(mcor_reserve(context, &adaptive->requests, (size_t)keys * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_pair_keys", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(top), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->requests)));
+  MCOR_TRY(mcor_unique(context, &adaptive->requests, (int)keys, context->tree.key_limit,
+    &pairs->place_keys, &adaptive->index, &pairs->place_count));
   MCOR_TRY(
     mcor_fill(context, &pairs->place_leaves, 0xff, (size_t)pairs->place_count * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_pair_places", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_INT(top), MCOR_BUFFER(&graded->index), MCOR_BUFFER(&pairs->place_leaves)));
-  MCOR_RELEASE(context, &graded->requests, &graded->index);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_pair_places", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_INT(top), MCOR_BUFFER(&adaptive->index), MCOR_BUFFER(&pairs->place_leaves)));
+  MCOR_RELEASE(context, &adaptive->requests, &adaptive->index);
   mcor_release_sort(context);
   return MCOR_OK;
 }
 
 #define MCOR_PLACE_ARGS(c)                                                                         \
-  MCOR_INT((c)->graded_pairs.place_count), MCOR_BUFFER(&(c)->graded.rungs),                        \
-    MCOR_BUFFER(&(c)->graded_pairs.place_keys), MCOR_BUFFER(&(c)->graded_pairs.place_leaves)
+  MCOR_INT((c)->adaptive_pairs.place_count), MCOR_BUFFER(&(c)->adaptive.rungs),                    \
+    MCOR_BUFFER(&(c)->adaptive_pairs.place_keys), MCOR_BUFFER(&(c)->adaptive_pairs.place_leaves)
 
 /* ---- Cells ---- */
 
 /* Marks the cells between pairs. */
 static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 {
-  mcor_graded_pairs* pairs = &context->graded_pairs;
+  mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
   const int particles =
     context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes); /* of an item */
   const int items = (context->grid.count + particles - 1) / particles;
   MCOR_TRY(
-    mcor_fill(context, &pairs->reached, 0, (size_t)context->graded.count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_graded_pair_seed", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
+    mcor_fill(context, &pairs->reached, 0, (size_t)context->adaptive.count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_adaptive_pair_seed", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
     MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso), MCOR_REAL(context->options->h_scale),
     MCOR_PLACE_ARGS(context), MCOR_INT(context->tree.top), MCOR_BUFFER(&pairs->reached));
 }
@@ -65,15 +65,15 @@ static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 /* One round of growth; *grown is false when no cell was added. */
 static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
 {
-  const mcor_graded* graded = &context->graded;
-  mcor_graded_pairs* pairs = &context->graded_pairs;
+  const mcor_adaptive* adaptive = &context->adaptive;
+  mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
   const mcor_brick_data* now = &context->bricks.now;
   cl_int flag;
   MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_pair_grow", MCOR_MEDIUM, graded->count,
-    MCOR_INT(graded->count), MCOR_BUFFER(&graded->finer), MCOR_BUFFER(&graded->tables),
-    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&graded->mixed),
-    MCOR_BUFFER(&graded->cells), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_pair_grow", MCOR_MEDIUM, adaptive->count,
+    MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&adaptive->mixed),
+    MCOR_BUFFER(&adaptive->cells), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain),
     MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
   *grown = flag != 0;
@@ -85,8 +85,8 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
  * around it. */
 static mcor_status mcor_limit_growth(mcor_context* context)
 {
-  mcor_graded_pairs* pairs = &context->graded_pairs;
-  const int count = context->graded.count;
+  mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
+  const int count = context->adaptive.count;
   const size_t bytes = (size_t)count * sizeof(cl_ulong);
   MCOR_TRY(mcor_reserve(context, &pairs->grown, bytes));
   MCOR_TRY(mcor_fill(context, &pairs->domain, 0xff, bytes));
@@ -96,11 +96,11 @@ static mcor_status mcor_limit_growth(mcor_context* context)
 
 mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh)
 {
-  mcor_graded_pairs* pairs = &context->graded_pairs;
+  mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
   cl_int flag;
   MCOR_TRY(mcor_write(context, &pairs->heard, cells, (size_t)count * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_graded_pair_take", MCOR_LIGHT, count, MCOR_INT(count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_pair_take", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&pairs->heard), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->reached),
     MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
@@ -110,8 +110,8 @@ mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int co
 
 mcor_status mcor_keep_reached(mcor_context* context, double iso)
 {
-  mcor_graded_pairs* pairs = &context->graded_pairs;
-  const int count = context->graded.count;
+  mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
+  const int count = context->adaptive.count;
   const size_t bytes = (size_t)count * sizeof(cl_ulong);
   MCOR_TRY(mcor_find_places(context));
   MCOR_TRY(mcor_mark_pairs(context, iso));
@@ -124,13 +124,13 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso)
     MCOR_TRY(mcor_grow_reached(context, &grown));
     MCOR_TRY(grown ? MCOR_OK : mcor_exchange_cells(context, &grown));
   }
-  return MCOR_LAUNCH(context, "mcor_graded_pair_keep", MCOR_MEDIUM, count, MCOR_INT(count),
+  return MCOR_LAUNCH(context, "mcor_adaptive_pair_keep", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&context->mesh.used));
 }
 
-void mcor_release_graded_pairs(mcor_context* context)
+void mcor_release_adaptive_pairs(mcor_context* context)
 {
-  mcor_graded_pairs* p = &context->graded_pairs;
+  mcor_adaptive_pairs* p = &context->adaptive_pairs;
   MCOR_RELEASE(context, &p->place_keys, &p->place_leaves, &p->reached, &p->seeds, &p->domain,
     &p->grown, &p->heard, &p->found);
 }

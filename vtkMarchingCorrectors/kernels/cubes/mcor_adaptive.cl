@@ -9,7 +9,7 @@
 /* Bricks whose nodes a leaf needs: of its level bits 0 to 7 (x, y, z up), of the finer one from bit 8
  * on, (x, y, z) 0 to 2 from its first one. Where a leaf beyond a far side is finer, that one has the
  * leaf's nodes there, too. */
-ulong mcor_graded_wanted(uint finer)
+ulong mcor_adaptive_wanted(uint finer)
 {
   ulong wanted = 0;
   for (int d = 0; d < 8; ++d)
@@ -34,28 +34,28 @@ ulong mcor_graded_wanted(uint finer)
 }
 
 /* Key of the brick of bit `b` of these. */
-ulong mcor_graded_wanted_key(__global const mcor_rung* rungs, int4 leaf, int b)
+ulong mcor_adaptive_wanted_key(__global const mcor_rung* rungs, int4 leaf, int b)
 {
   const int f = b - 8;
   return b < 8
-    ? mcor_graded_key(rungs, leaf.w, leaf.x + (b & 1), leaf.y + (b >> 1 & 1), leaf.z + (b >> 2))
-    : mcor_graded_key(
+    ? mcor_adaptive_key(rungs, leaf.w, leaf.x + (b & 1), leaf.y + (b >> 1 & 1), leaf.z + (b >> 2))
+    : mcor_adaptive_key(
         rungs, leaf.w - 1, 2 * leaf.x + f % 3, 2 * leaf.y + f / 3 % 3, 2 * leaf.z + f / 9);
 }
 
 /* One work-item = one leaf. Counts the bricks that it needs. */
-__kernel void mcor_graded_count_wanted(
+__kernel void mcor_adaptive_count_wanted(
   const int count, __global const uint* finer, __global int* counts)
 {
   const int i = get_global_id(0);
   if (i < count)
   {
-    counts[i] = (int)popcount(mcor_graded_wanted(finer[i]));
+    counts[i] = (int)popcount(mcor_adaptive_wanted(finer[i]));
   }
 }
 
 /* One work-item = one leaf. Reads the scanned counts. Writes the keys of the bricks that it needs. */
-__kernel void mcor_graded_fill_wanted(const int count, __global const mcor_rung* rungs,
+__kernel void mcor_adaptive_fill_wanted(const int count, __global const mcor_rung* rungs,
   __global const int4* cells, __global const uint* finer, __global const int* scanned,
   __global ulong* keys)
 {
@@ -65,14 +65,14 @@ __kernel void mcor_graded_fill_wanted(const int count, __global const mcor_rung*
     return;
   }
   int to = scanned[i];
-  for (ulong rest = mcor_graded_wanted(finer[i]); rest; rest &= rest - 1)
+  for (ulong rest = mcor_adaptive_wanted(finer[i]); rest; rest &= rest - 1)
   {
-    keys[to++] = mcor_graded_wanted_key(rungs, cells[i], mcor_ctz(rest));
+    keys[to++] = mcor_adaptive_wanted_key(rungs, cells[i], mcor_ctz(rest));
   }
 }
 
 /* One work-item = one slot. Writes its brick and level, given by its key. */
-__kernel void mcor_graded_bricks(const int count, const int top, __global const mcor_rung* rungs,
+__kernel void mcor_adaptive_bricks(const int count, const int top, __global const mcor_rung* rungs,
   __global const ulong* keys, __global int4* bricks)
 {
   const int i = get_global_id(0);
@@ -91,30 +91,31 @@ __kernel void mcor_graded_bricks(const int count, const int top, __global const 
 }
 
 /* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
-__kernel void mcor_graded_tables(MCOR_SLOT_PARAMS, const int count, __global const mcor_rung* rungs,
-  __global const int4* cells, __global const uint* finer, __global int* tables)
+__kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count,
+  __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
+  __global int* tables)
 {
   const int i = get_global_id(0);
   if (i >= count)
   {
     return;
   }
-  const ulong wanted = mcor_graded_wanted(finer[i]);
+  const ulong wanted = mcor_adaptive_wanted(finer[i]);
   for (int b = 0; b < MCOR_LEAF_SLOTS; ++b)
   {
     tables[i * (long)MCOR_LEAF_SLOTS + b] = wanted >> b & 1
-      ? mcor_graded_find(MCOR_SLOT_ARGS, mcor_graded_wanted_key(rungs, cells[i], b))
+      ? mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_wanted_key(rungs, cells[i], b))
       : -1;
   }
 }
 
 #endif
 
-#if MCOR_OF_GRADED
+#if MCOR_OF_ADAPTIVE
 /* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, or
  * certain, reads the particles that reach them; tries the proof first where it was not tried.
  * Writes their values and weights, or the proof. */
-__kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int count,
+__kernel void mcor_adaptive_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
   __global real* node_value, __global real* node_weight)
 {
@@ -148,7 +149,7 @@ __kernel void mcor_graded_nodes(MCOR_GRID_PARAMS, const int first, const int cou
 
 /* One work-item = one slot. Writes which of its nodes are above the iso value and which are valid; of those
  * that are certain all may be. Others are known from now on. */
-__kernel void mcor_graded_sign(const int slot_count, __global const uchar* proofs,
+__kernel void mcor_adaptive_sign(const int slot_count, __global const uchar* proofs,
   __global const real* node_value, __global const real* node_weight, const real iso,
   const real node_threshold, __global ulong* known, __global ulong* above, __global ulong* valid)
 {
@@ -208,7 +209,7 @@ bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
 
 /* One work-item = one leaf. Writes whether its cells have nodes on both sides: if not, there is no surface.
  * Then values are needed, of slots that were certain, too. */
-__kernel void mcor_graded_need(const int count, __global const uint* finer,
+__kernel void mcor_adaptive_need(const int count, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global uchar* proofs)
 {
@@ -238,7 +239,7 @@ __kernel void mcor_graded_need(const int count, __global const uint* finer,
 
 /* One work-item = one slot of the old set. Moves what is known of it to its slot in the new set, if it
  * has one. words: of 4 bytes, that the values of a brick's nodes take. */
-__kernel void mcor_graded_move(MCOR_SLOT_PARAMS, const int old_count,
+__kernel void mcor_adaptive_move(MCOR_SLOT_PARAMS, const int old_count,
   __global const mcor_rung* rungs, __global const int4* old_bricks, __global const ulong* old_known,
   const int words, __global const uint* old_value, __global const uint* old_weight,
   __global ulong* known, __global uint* node_value, __global uint* node_weight)
@@ -249,7 +250,7 @@ __kernel void mcor_graded_move(MCOR_SLOT_PARAMS, const int old_count,
     return;
   }
   const int4 b = old_bricks[old];
-  const int slot = mcor_graded_find(MCOR_SLOT_ARGS, mcor_graded_key(rungs, b.w, b.x, b.y, b.z));
+  const int slot = mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, b.w, b.x, b.y, b.z));
   if (slot < 0)
   {
     return;

@@ -9,7 +9,7 @@
 
 /* One work-item = one leaf. Writes of its slot which cells are plain, and which of these are used; enters
  * it and the slots up from it into each other's lists, see mcor_brick_neighbours. */
-__kernel void mcor_graded_plain(const int count, __global const uint* finer,
+__kernel void mcor_adaptive_plain(const int count, __global const uint* finer,
   __global const int* tables, __global const ulong* used, __global int* neighbours,
   __global ulong* plain, __global ulong* plain_used)
 {
@@ -20,7 +20,7 @@ __kernel void mcor_graded_plain(const int count, __global const uint* finer,
   }
   __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
   const int slot = slots[0];
-  const ulong cells = ~mcor_leaf_graded_cells(mcor_leaf_hanging(finer[i]));
+  const ulong cells = ~mcor_leaf_hanging_cells(mcor_leaf_hanging(finer[i]));
   plain[slot] = cells;
   plain_used[slot] = cells & used[i];
   for (int d = 1; d < 8; ++d)
@@ -35,9 +35,9 @@ __kernel void mcor_graded_plain(const int count, __global const uint* finer,
 
 /* One work-item = one leaf. Reads all decisions. Adds to its number of triangles what its plain cells have
  * more or fewer than by the case table; writes the number of their tunnels. */
-__kernel void mcor_graded_recount(const int count, __global const int* tables, MCOR_DECISION_PARAMS,
-  __global const ulong* above, __global const ulong* used, __global const uchar* case_table,
-  __global int* triangle_count, __global int* tunnel_count)
+__kernel void mcor_adaptive_recount(const int count, __global const int* tables,
+  MCOR_DECISION_PARAMS, __global const ulong* above, __global const ulong* used,
+  __global const uchar* case_table, __global int* triangle_count, __global int* tunnel_count)
 {
   const int i = get_global_id(0);
   if (i >= count)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef mcor_graded_cell_h
-#define mcor_graded_cell_h
+#ifndef mcor_adaptive_cell_h
+#define mcor_adaptive_cell_h
 
 /* Marching Cubes in a cell with finer cells around it. This file is both included by the C core and
  * compiled as OpenCL C, after mcor_shared.h.
@@ -19,45 +19,45 @@
  * such that no diagonal has both ends in one sub-face, in one whole face or on one edge of the cell:
  * there another cell could use the same side. That such a way always exists, but for loops that lie
  * in one whole face altogether, whose diagonals no other cell can have, is shown by trying all cases
- * (Testing/Core/test_core_graded_cell.c). Of the ways that there are, that with the shortest
+ * (Testing/Core/test_core_adaptive_cell.c). Of the ways that there are, that with the shortest
  * diagonals is taken, vertices being in the middle of their edges; what lies flat in a face counts
  * as long.
  *
  * A loop of two vertices has no triangles: its segments are one line, where two faces that other
  * cells see meet without this one. */
 
-#define MCOR_GRADED_SLOTS 96     /* codes of slots, of which 48 occur */
-#define MCOR_GRADED_VERTICES 32  /* of a loop, at most */
-#define MCOR_GRADED_TRIANGLES 30 /* of a cell, at most */
+#define MCOR_ADAPTIVE_SLOTS 96     /* codes of slots, of which 48 occur */
+#define MCOR_ADAPTIVE_VERTICES 32  /* of a loop, at most */
+#define MCOR_ADAPTIVE_TRIANGLES 30 /* of a cell, at most */
 
 #ifdef __OPENCL_VERSION__
-#define MCOR_GRADED_FUNCTION
+#define MCOR_ADAPTIVE_FUNCTION
 #else
-#define MCOR_GRADED_FUNCTION static inline
+#define MCOR_ADAPTIVE_FUNCTION static inline
 #endif
 
 /* Costs of a way to cut a loop. Forbidden outweighs all the rest. */
-#define MCOR_GRADED_FLAT 64 /* beside lengths of up to 48 */
-#define MCOR_GRADED_FORBIDDEN 8192
+#define MCOR_ADAPTIVE_FLAT 64 /* beside lengths of up to 48 */
+#define MCOR_ADAPTIVE_FORBIDDEN 8192
 
 /* Which slot follows each on its loop; 0xff: no vertex. */
-typedef struct mcor_graded_links
+typedef struct mcor_adaptive_links
 {
-  MCOR_TYPE(uchar) next[MCOR_GRADED_SLOTS];
-} mcor_graded_links;
+  MCOR_TYPE(uchar) next[MCOR_ADAPTIVE_SLOTS];
+} mcor_adaptive_links;
 
 /* One loop. facets: which parts of the cell's surface each vertex lies in: bits 4 f .. 4 f + 3 the
  * sub-faces of face f, all four where it is whole; bit 24 + f the face. */
-typedef struct mcor_graded_loop
+typedef struct mcor_adaptive_loop
 {
   int length;
-  MCOR_TYPE(uchar) slot[MCOR_GRADED_VERTICES];
-  MCOR_TYPE(uchar) place[MCOR_GRADED_VERTICES][3]; /* 0..4, in quarters of the cell's edge */
-  MCOR_TYPE(uint) facets[MCOR_GRADED_VERTICES];
-} mcor_graded_loop;
+  MCOR_TYPE(uchar) slot[MCOR_ADAPTIVE_VERTICES];
+  MCOR_TYPE(uchar) place[MCOR_ADAPTIVE_VERTICES][3]; /* 0..4, in quarters of the cell's edge */
+  MCOR_TYPE(uint) facets[MCOR_ADAPTIVE_VERTICES];
+} mcor_adaptive_loop;
 
 /* The slot between two neighbouring nodes, half an edge or an edge apart. */
-MCOR_GRADED_FUNCTION int mcor_graded_slot(int a, int b)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
 {
   const int lower = a < b ? a : b, step = a + b - 2 * lower;
   return (step < 3 ? 0 : step < 9 ? 1 : 2) << 5 | lower;
@@ -65,8 +65,8 @@ MCOR_GRADED_FUNCTION int mcor_graded_slot(int a, int b)
 
 /* Cuts off each run of nodes above on a ring, counter-clockwise seen from outside. The direction
  * makes triangles face the nodes below. */
-MCOR_GRADED_FUNCTION void mcor_graded_link_ring(
-  const int* ring, int count, MCOR_TYPE(uint) above, mcor_graded_links* links)
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
+  const int* ring, int count, MCOR_TYPE(uint) above, mcor_adaptive_links* links)
 {
   for (int i = 0; i < count; ++i)
   {
@@ -75,19 +75,19 @@ MCOR_GRADED_FUNCTION void mcor_graded_link_ring(
     {
       continue;
     }
-    const int from = mcor_graded_slot(ring[i], ring[last]);
+    const int from = mcor_adaptive_slot(ring[i], ring[last]);
     int next = (last + 1) % count;
     while (above >> ring[next] & 1)
     {
       last = next;
       next = (last + 1) % count;
     }
-    links->next[from] = (MCOR_TYPE(uchar))mcor_graded_slot(ring[last], ring[next]);
+    links->next[from] = (MCOR_TYPE(uchar))mcor_adaptive_slot(ring[last], ring[next]);
   }
 }
 
 /* Node i of the eight around a face, axis * 2 + side, counter-clockwise from its lowest corner. */
-MCOR_GRADED_FUNCTION int mcor_graded_face_node(int face, int i)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_face_node(int face, int i)
 {
   const int axis = face >> 1, side = face & 1;
   const int step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
@@ -96,48 +96,48 @@ MCOR_GRADED_FUNCTION int mcor_graded_face_node(int face, int i)
   return 2 * side * step + (side ? u : v) * step_u + (side ? v : u) * step_v;
 }
 
-MCOR_GRADED_FUNCTION int mcor_graded_face_middle(int face)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_face_middle(int face)
 {
   const int axis = face >> 1, step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
   return face & 1 ? 13 + step : 13 - step;
 }
 
-MCOR_GRADED_FUNCTION void mcor_graded_link(
-  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, mcor_graded_links* links)
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link(
+  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, mcor_adaptive_links* links)
 {
   int ring[8];
-  for (int i = 0; i < MCOR_GRADED_SLOTS; ++i)
+  for (int i = 0; i < MCOR_ADAPTIVE_SLOTS; ++i)
   {
     links->next[i] = 0xff;
   }
   for (int face = 0; face < 6; ++face)
   {
-    const int middle = mcor_graded_face_middle(face);
+    const int middle = mcor_adaptive_face_middle(face);
     int count = 0;
     for (int i = 0; i < 8; ++i)
     {
-      ring[count] = mcor_graded_face_node(face, i);
+      ring[count] = mcor_adaptive_face_node(face, i);
       count += !(i & 1) || (split >> ring[count] & 1);
     }
     if (!(split >> middle & 1))
     {
-      mcor_graded_link_ring(ring, count, above, links);
+      mcor_adaptive_link_ring(ring, count, above, links);
       continue;
     }
     for (int corner = 0; corner < 8; corner += 2)
     {
-      ring[0] = mcor_graded_face_node(face, corner);
-      ring[1] = mcor_graded_face_node(face, corner + 1);
+      ring[0] = mcor_adaptive_face_node(face, corner);
+      ring[1] = mcor_adaptive_face_node(face, corner + 1);
       ring[2] = middle;
-      ring[3] = mcor_graded_face_node(face, corner + 7);
-      mcor_graded_link_ring(ring, 4, above, links);
+      ring[3] = mcor_adaptive_face_node(face, corner + 7);
+      mcor_adaptive_link_ring(ring, 4, above, links);
     }
   }
 }
 
 /* Takes the loop through a slot out of the links. */
-MCOR_GRADED_FUNCTION void mcor_graded_take_loop(
-  int slot, mcor_graded_links* links, mcor_graded_loop* loop)
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_take_loop(
+  int slot, mcor_adaptive_links* links, mcor_adaptive_loop* loop)
 {
   loop->length = 0;
   while (links->next[slot] != 0xff)
@@ -150,7 +150,7 @@ MCOR_GRADED_FUNCTION void mcor_graded_take_loop(
 }
 
 /* Where a vertex is: in the middle of its half-edge or edge. */
-MCOR_GRADED_FUNCTION void mcor_graded_place(
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_place(
   MCOR_TYPE(uint) split, int slot, MCOR_TYPE(uchar) place[3])
 {
   const int axis = slot >> 5, node = slot & 31, step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
@@ -162,8 +162,8 @@ MCOR_GRADED_FUNCTION void mcor_graded_place(
     (MCOR_TYPE(uchar))(place[axis] + (place[axis] > 0 || (split >> (node + step) & 1) ? 1 : 2));
 }
 
-MCOR_GRADED_FUNCTION MCOR_TYPE(uint)
-  mcor_graded_facets(MCOR_TYPE(uint) split, const MCOR_TYPE(uchar) place[3])
+MCOR_ADAPTIVE_FUNCTION MCOR_TYPE(uint)
+  mcor_adaptive_facets(MCOR_TYPE(uint) split, const MCOR_TYPE(uchar) place[3])
 {
   MCOR_TYPE(uint) facets = 0;
   for (int axis = 0; axis < 3; ++axis)
@@ -175,7 +175,7 @@ MCOR_GRADED_FUNCTION MCOR_TYPE(uint)
     const int face = 2 * axis + (place[axis] >> 2);
     const int u = place[(axis + 1) % 3], v = place[(axis + 2) % 3];
     MCOR_TYPE(uint) part = 15;
-    if (split >> mcor_graded_face_middle(face) & 1)
+    if (split >> mcor_adaptive_face_middle(face) & 1)
     {
       part = (u <= 2 ? 5 : 0) | (u >= 2 ? 10 : 0);
       part &= (v <= 2 ? 3 : 0) | (v >= 2 ? 12 : 0);
@@ -185,16 +185,16 @@ MCOR_GRADED_FUNCTION MCOR_TYPE(uint)
   return facets;
 }
 
-MCOR_GRADED_FUNCTION void mcor_graded_locate(MCOR_TYPE(uint) split, mcor_graded_loop* loop)
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_locate(MCOR_TYPE(uint) split, mcor_adaptive_loop* loop)
 {
   for (int i = 0; i < loop->length; ++i)
   {
-    mcor_graded_place(split, loop->slot[i], loop->place[i]);
-    loop->facets[i] = mcor_graded_facets(split, loop->place[i]);
+    mcor_adaptive_place(split, loop->slot[i], loop->place[i]);
+    loop->facets[i] = mcor_adaptive_facets(split, loop->place[i]);
   }
 }
 
-MCOR_GRADED_FUNCTION int mcor_graded_is_flat(const mcor_graded_loop* loop)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_is_flat(const mcor_adaptive_loop* loop)
 {
   MCOR_TYPE(uint) common = loop->facets[0] >> 24;
   for (int i = 1; i < loop->length; ++i)
@@ -205,7 +205,7 @@ MCOR_GRADED_FUNCTION int mcor_graded_is_flat(const mcor_graded_loop* loop)
 }
 
 /* Whether two vertices lie in one sub-face or whole face, or on one edge: in two faces. */
-MCOR_GRADED_FUNCTION int mcor_graded_forbids(MCOR_TYPE(uint) facets_a, MCOR_TYPE(uint) facets_b)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_forbids(MCOR_TYPE(uint) facets_a, MCOR_TYPE(uint) facets_b)
 {
   const MCOR_TYPE(uint) common = facets_a & facets_b, faces = common >> 24;
   return (common & 0xffffff) != 0 || (faces & (faces - 1)) != 0;
@@ -213,14 +213,14 @@ MCOR_GRADED_FUNCTION int mcor_graded_forbids(MCOR_TYPE(uint) facets_a, MCOR_TYPE
 
 /* Cost of a diagonal. In a cell that is like all around it any that may be is as good as another:
  * then the first way that is found is taken, as in the case table. */
-MCOR_GRADED_FUNCTION int mcor_graded_cost(
-  MCOR_TYPE(uint) split, const mcor_graded_loop* loop, int a, int b)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
+  MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, int a, int b)
 {
   const MCOR_TYPE(uint) facets_a = loop->facets[a], facets_b = loop->facets[b];
-  int cost = mcor_graded_forbids(facets_a, facets_b) ? MCOR_GRADED_FORBIDDEN : 0;
+  int cost = mcor_adaptive_forbids(facets_a, facets_b) ? MCOR_ADAPTIVE_FORBIDDEN : 0;
   if (split)
   {
-    cost += (facets_a & facets_b) >> 24 ? MCOR_GRADED_FLAT : 0;
+    cost += (facets_a & facets_b) >> 24 ? MCOR_ADAPTIVE_FLAT : 0;
     for (int axis = 0; axis < 3; ++axis)
     {
       const int d = loop->place[a][axis] - loop->place[b][axis];
@@ -231,20 +231,21 @@ MCOR_GRADED_FUNCTION int mcor_graded_cost(
 }
 
 /* Where in costs that of the part from vertex a to b > a stands. */
-MCOR_GRADED_FUNCTION int mcor_graded_part(int a, int b)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_part(int a, int b)
 {
   return b * (b - 1) / 2 + a;
 }
 
 /* The third vertex of the triangle at side a-b of the part from a to b, and the part's cost without
  * that side. */
-MCOR_GRADED_FUNCTION int mcor_graded_apex(const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
+  const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
 {
   int best = a + 1;
   *least = 1 << 30;
   for (int apex = a + 1; apex < b; ++apex)
   {
-    const int cost = costs[mcor_graded_part(a, apex)] + costs[mcor_graded_part(apex, b)];
+    const int cost = costs[mcor_adaptive_part(a, apex)] + costs[mcor_adaptive_part(apex, b)];
     if (cost < *least)
     {
       *least = cost;
@@ -254,30 +255,30 @@ MCOR_GRADED_FUNCTION int mcor_graded_apex(const MCOR_TYPE(ushort) * costs, int a
   return best;
 }
 
-MCOR_GRADED_FUNCTION void mcor_graded_fill_costs(
-  MCOR_TYPE(uint) split, const mcor_graded_loop* loop, MCOR_TYPE(ushort) * costs)
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_fill_costs(
+  MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(ushort) * costs)
 {
   for (int b = 1; b < loop->length; ++b)
   {
-    costs[mcor_graded_part(b - 1, b)] = 0;
+    costs[mcor_adaptive_part(b - 1, b)] = 0;
     for (int a = b - 2; a >= 0; --a)
     {
       int cost;
-      mcor_graded_apex(costs, a, b, &cost);
-      cost += mcor_graded_cost(split, loop, a, b);
-      costs[mcor_graded_part(a, b)] = (MCOR_TYPE(ushort))(cost < 0xffff ? cost : 0xffff);
+      mcor_adaptive_apex(costs, a, b, &cost);
+      cost += mcor_adaptive_cost(split, loop, a, b);
+      costs[mcor_adaptive_part(a, b)] = (MCOR_TYPE(ushort))(cost < 0xffff ? cost : 0xffff);
     }
   }
 }
 
 /* Writes a loop's triangles: each before those of the parts beside it. Returns their number. */
-MCOR_GRADED_FUNCTION int mcor_graded_cut_loop(
-  MCOR_TYPE(uint) split, const mcor_graded_loop* loop, MCOR_TYPE(uchar) * triangles)
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
+  MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
-  MCOR_TYPE(ushort) costs[MCOR_GRADED_VERTICES * (MCOR_GRADED_VERTICES - 1) / 2];
-  MCOR_TYPE(uchar) from[MCOR_GRADED_VERTICES], to[MCOR_GRADED_VERTICES];
+  MCOR_TYPE(ushort) costs[MCOR_ADAPTIVE_VERTICES * (MCOR_ADAPTIVE_VERTICES - 1) / 2];
+  MCOR_TYPE(uchar) from[MCOR_ADAPTIVE_VERTICES], to[MCOR_ADAPTIVE_VERTICES];
   int waiting = 1, count = 0;
-  mcor_graded_fill_costs(split, loop, costs);
+  mcor_adaptive_fill_costs(split, loop, costs);
   from[0] = 0;
   to[0] = (MCOR_TYPE(uchar))(loop->length - 1);
   while (waiting)
@@ -288,7 +289,7 @@ MCOR_GRADED_FUNCTION int mcor_graded_cut_loop(
       continue;
     }
     int least;
-    const int apex = mcor_graded_apex(costs, a, b, &least);
+    const int apex = mcor_adaptive_apex(costs, a, b, &least);
     triangles[3 * count] = loop->slot[a];
     triangles[3 * count + 1] = loop->slot[apex];
     triangles[3 * count + 2] = loop->slot[b];
@@ -302,21 +303,21 @@ MCOR_GRADED_FUNCTION int mcor_graded_cut_loop(
 }
 
 /* The number of a cell's triangles; adds to flat_loops its loops that lie in one face. */
-MCOR_GRADED_FUNCTION int mcor_graded_count(
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_count(
   MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, int* flat_loops)
 {
-  mcor_graded_links links;
-  mcor_graded_loop loop;
+  mcor_adaptive_links links;
+  mcor_adaptive_loop loop;
   int count = 0;
-  mcor_graded_link(split, above, &links);
-  for (int slot = 0; slot < MCOR_GRADED_SLOTS; ++slot)
+  mcor_adaptive_link(split, above, &links);
+  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
-    mcor_graded_take_loop(slot, &links, &loop);
+    mcor_adaptive_take_loop(slot, &links, &loop);
     if (loop.length > 2)
     {
-      mcor_graded_locate(split, &loop);
+      mcor_adaptive_locate(split, &loop);
       count += loop.length - 2;
-      *flat_loops += mcor_graded_is_flat(&loop);
+      *flat_loops += mcor_adaptive_is_flat(&loop);
     }
   }
   return count;
@@ -324,20 +325,20 @@ MCOR_GRADED_FUNCTION int mcor_graded_count(
 
 /* Writes a cell's triangles, three slots each, and returns their number. Without split edges these
  * are the case table's. */
-MCOR_GRADED_FUNCTION int mcor_graded_triangulate(
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
   MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, MCOR_TYPE(uchar) * triangles)
 {
-  mcor_graded_links links;
-  mcor_graded_loop loop;
+  mcor_adaptive_links links;
+  mcor_adaptive_loop loop;
   int count = 0;
-  mcor_graded_link(split, above, &links);
-  for (int slot = 0; slot < MCOR_GRADED_SLOTS; ++slot)
+  mcor_adaptive_link(split, above, &links);
+  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
   {
-    mcor_graded_take_loop(slot, &links, &loop);
+    mcor_adaptive_take_loop(slot, &links, &loop);
     if (loop.length > 2)
     {
-      mcor_graded_locate(split, &loop);
-      count += mcor_graded_cut_loop(split, &loop, triangles + 3 * count);
+      mcor_adaptive_locate(split, &loop);
+      count += mcor_adaptive_cut_loop(split, &loop, triangles + 3 * count);
     }
   }
   return count;

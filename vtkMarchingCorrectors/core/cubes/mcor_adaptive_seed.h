@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef mcor_graded_seed_h
-#define mcor_graded_seed_h
+#ifndef mcor_adaptive_seed_h
+#define mcor_adaptive_seed_h
 
 /* Adaptive cubes: the leaves where there may be surface. */
 
@@ -16,7 +16,7 @@ typedef struct mcor_leaf_nodes
 /* Takes the tree to the device. */
 mcor_status mcor_write_tree(mcor_context* context);
 
-/* Finds the leaves that may have surface: graded.count, cells, finer. iso: relative to A0. found: their
+/* Finds the leaves that may have surface: adaptive.count, cells, finer. iso: relative to A0. found: their
  * nodes' values are kept there; NULL: they are not evaluated. */
 mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_nodes* found);
 

@@ -16,7 +16,7 @@
 
 #if MCOR_OF_LATTICE
 /* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
-__kernel void mcor_graded_scale(
+__kernel void mcor_adaptive_scale(
   const int count, __global const real* inv_h, const real factor, __global real* scaled)
 {
   const int i = get_global_id(0);
@@ -33,7 +33,7 @@ __kernel void mcor_graded_scale(
 
 /* ---- Bounds and proofs ---- */
 
-#if MCOR_OF_GRADED
+#if MCOR_OF_ADAPTIVE
 /* Whether that proof is tried: where a work-item evaluates whole bricks. */
 #define MCOR_LEAF_PROOFS (MCOR_FIELD == 2 && !MCOR_TENSOR && MCOR_LANES > 1)
 
@@ -49,7 +49,7 @@ int mcor_leaf_state(int state, uint finer)
 #if MCOR_LANES == 1
 /* One work-item = one leaf, of `count` from `first` on. Reads the particles that reach it. Writes its
  * state. */
-__kernel void mcor_graded_states(MCOR_GRID_PARAMS, const int first, const int count,
+__kernel void mcor_adaptive_states(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* leaves, __global const uint* finer, MCOR_SEED_PARAMS, __global int* states)
 {
   const int i = first + get_global_id(0);
@@ -230,7 +230,7 @@ int mcor_leaf_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile
 /* One work-item = one region, of `count` from `first` on: the leaves that are parts of one brick, the
  * particles of which are gathered once. Reads the particles that reach it. Writes the leaves' states
  * and, of those to be examined, if `evaluates`, their nodes' values and weights. */
-__kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int count,
+__kernel void mcor_adaptive_regions(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int* regions, __global const int4* leaves, __global const uint* finer,
   MCOR_SEED_PARAMS, const int evaluates, __global int* states, __global real* node_value,
   __global real* node_weight)
@@ -286,14 +286,14 @@ __kernel void mcor_graded_regions(MCOR_GRID_PARAMS, const int first, const int c
 
 #if MCOR_OF_LATTICE
 /* One work-item = one region. Writes the key of the brick whose parts its leaves are. */
-__kernel void mcor_graded_region_keys(const int region_count, __global const mcor_rung* rungs,
+__kernel void mcor_adaptive_region_keys(const int region_count, __global const mcor_rung* rungs,
   __global const int* regions, __global const int4* leaves, __global ulong* keys)
 {
   const int r = get_global_id(0);
   if (r < region_count)
   {
     const int4 leaf = leaves[regions[r]];
-    keys[r] = mcor_graded_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
+    keys[r] = mcor_adaptive_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
   }
 }
 
@@ -309,7 +309,7 @@ __kernel void mcor_graded_region_keys(const int region_count, __global const mco
 /* The region of parts of a brick, or -1. */
 int mcor_find_region(MCOR_REGION_PARAMS, int level, int x, int y, int z)
 {
-  const ulong key = mcor_graded_key(rungs, level, x, y, z);
+  const ulong key = mcor_adaptive_key(rungs, level, x, y, z);
   const int at = mcor_find_key(region_keys, 0, region_count, key);
   return at < region_count && region_keys[at] == key ? region_order[at] : -1;
 }
@@ -332,7 +332,7 @@ int mcor_leaf_of_region(
 #if MCOR_OF_LATTICE
 /* One work-item = one region. Writes of its leaves whether they are to be examined: nodes that cells of
  * theirs may have are on both sides. */
-__kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
+__kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, __global const uint* finer,
   __global const int* states, __global uchar* chosen)
 {
   const int r = get_global_id(0);
@@ -370,10 +370,10 @@ __kernel void mcor_graded_choose(MCOR_REGION_PARAMS, __global const uint* finer,
 
 #endif
 
-#if MCOR_OF_GRADED
+#if MCOR_OF_ADAPTIVE
 /* One work-item = one slot. Takes over what was found of the leaf whose brick it is, if it is one's:
  * words: of 4 bytes, that the values of a brick's nodes take; 0: there are none. */
-__kernel void mcor_graded_take(MCOR_REGION_PARAMS, const int slot_count,
+__kernel void mcor_adaptive_take(MCOR_REGION_PARAMS, const int slot_count,
   __global const int4* bricks, __global const int* states, const int words,
   __global const uint* leaf_value, __global const uint* leaf_weight, __global uchar* proofs,
   __global ulong* known, __global uint* node_value, __global uint* node_weight)

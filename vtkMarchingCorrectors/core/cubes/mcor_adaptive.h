@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef mcor_graded_h
-#define mcor_graded_h
+#ifndef mcor_adaptive_h
+#define mcor_adaptive_h
 
 /* Adaptive cubes, as the phases see them. Vertices are on edges of their level's lattice: node, offset,
  * gradient and correction are in its cells, 2^level cubes. */
@@ -9,7 +9,7 @@
 #include "mcor_internal.h"
 
 /* Whether this call's cubes are of several levels. */
-static inline bool mcor_is_graded(const mcor_context* context)
+static inline bool mcor_is_adaptive(const mcor_context* context)
 {
   return context->lattice.top > 0;
 }
@@ -17,19 +17,19 @@ static inline bool mcor_is_graded(const mcor_context* context)
 /* Bricks that are marched, or leaves where there may be surface. */
 static inline int mcor_marched_count(const mcor_context* context)
 {
-  return mcor_is_graded(context) ? context->graded.count : context->bricks.now.count;
+  return mcor_is_adaptive(context) ? context->adaptive.count : context->bricks.now.count;
 }
 
 /* Slots by keys. */
 #define MCOR_SLOT_ARGS(c)                                                                          \
-  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->graded.bucket_shift),                             \
-    MCOR_BUFFER(&(c)->graded.keys), MCOR_BUFFER(&(c)->graded.buckets)
+  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->adaptive.bucket_shift),                           \
+    MCOR_BUFFER(&(c)->adaptive.keys), MCOR_BUFFER(&(c)->adaptive.buckets)
 
 /* The leaves where there may be surface, with their nodes' values; then their vertices and
  * triangles. iso: relative to A0. */
 mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);
 mcor_status mcor_march_leaves(mcor_context* context, double iso);
-void mcor_release_graded(mcor_context* context);
+void mcor_release_adaptive(mcor_context* context);
 
 /* What evaluates the field at vertices does so level by level:
  *

@@ -2,14 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: marching the cells of leaves. A cell beside a finer leaf has nodes in the middle of
- * edges, or of faces, too; mcor_graded_cell.h makes its triangles. Such nodes and the edges between them
+ * edges, or of faces, too; mcor_adaptive_cell.h makes its triangles. Such nodes and the edges between them
  * are at whole numbers 0 to 8 of the finer cells from the leaf's first node, and are in the slots of
  * the level below; other edges in those of the leaf's level. */
 
 /* What is known of a leaf's nodes. */
 typedef struct
 {
-  __global const int* slots; /* of mcor_graded_tables */
+  __global const int* slots; /* of mcor_adaptive_tables */
   __global const ulong *above, *valid;
   uint hanging; /* where finer nodes are, by where they lie in the leaf: bits as of directions */
   ulong corners_above[8], corners_valid[8]; /* of cells, see mcor_cell_corners */
@@ -85,7 +85,7 @@ mcor_leaf mcor_leaf_load(int i, __global const uint* finer, __global const int* 
 }
 
 /* Cells that may have finer nodes. */
-ulong mcor_leaf_graded_cells(uint hanging)
+ulong mcor_leaf_hanging_cells(uint hanging)
 {
   ulong cells = 0;
   for (int at = 0; at < 27 && hanging; ++at)
@@ -105,16 +105,16 @@ int mcor_leaf_zone(int u)
   return u == 0 ? 0 : u == 8 ? 2 : 1;
 }
 
-/* A cell's nodes, bits x + 3 y + 9 z of mcor_graded_cell.h. */
+/* A cell's nodes, bits x + 3 y + 9 z of mcor_adaptive_cell.h. */
 typedef struct
 {
   uint split, above;
   bool used;
-} mcor_graded_nodes_of;
+} mcor_adaptive_nodes_of;
 
-mcor_graded_nodes_of mcor_leaf_cell(const mcor_leaf* leaf, int cell)
+mcor_adaptive_nodes_of mcor_leaf_cell(const mcor_leaf* leaf, int cell)
 {
-  mcor_graded_nodes_of nodes = { 0, 0, false };
+  mcor_adaptive_nodes_of nodes = { 0, 0, false };
   const int cx = 2 * (cell & 3), cy = 2 * (cell >> 2 & 3), cz = 2 * (cell >> 4);
   bool valid = true, below = false;
   for (int n = 0; n < 27; ++n)
@@ -250,15 +250,15 @@ void mcor_leaf_mark(
     __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
 
 /* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
-ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong graded)
+ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
 {
   return mcor_cell_some(leaf->corners_above) & ~mcor_cell_all(leaf->corners_above) &
-    mcor_cell_all(leaf->corners_valid) & ~graded;
+    mcor_cell_all(leaf->corners_valid) & ~hanging;
 }
 
 /* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes whether it is: whether any of
  * its cells is valid at all nodes and has nodes on both sides. */
-__kernel void mcor_graded_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
+__kernel void mcor_adaptive_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
 {
   const int i = get_global_id(0);
   if (i >= count || !mixed[i])
@@ -266,9 +266,9 @@ __kernel void mcor_graded_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
     return;
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
-  const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  bool some = mcor_leaf_crossed(&leaf, graded) != 0;
-  for (ulong rest = graded; rest && !some; rest &= rest - 1)
+  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
+  bool some = mcor_leaf_crossed(&leaf, hanging) != 0;
+  for (ulong rest = hanging; rest && !some; rest &= rest - 1)
   {
     some = mcor_leaf_cell(&leaf, mcor_ctz(rest)).used;
   }
@@ -276,7 +276,7 @@ __kernel void mcor_graded_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
 }
 
 /* One work-item = one leaf. Writes which of these cells are of mixed leaves. */
-__kernel void mcor_graded_seeds(
+__kernel void mcor_adaptive_seeds(
   const int count, __global const uchar* mixed, __global const ulong* cells, __global ulong* seeds)
 {
   const int i = get_global_id(0);
@@ -289,7 +289,7 @@ __kernel void mcor_graded_seeds(
 /* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
  * `used`, and writes which edges they use; counts triangles, and of owned cells loops that lie in one
  * face between leaves. */
-__kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+__kernel void mcor_adaptive_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat)
 {
@@ -305,28 +305,28 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
     return;
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
-  const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  ulong cells = (mcor_leaf_crossed(&leaf, graded) | graded) & used[i];
+  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
+  ulong cells = (mcor_leaf_crossed(&leaf, hanging) | hanging) & used[i];
   const ulong within = owned[i]; /* which may be `used` */
   int triangles = 0, flat_loops = 0;
-  for (ulong rest = cells & graded; rest; rest &= rest - 1)
+  for (ulong rest = cells & hanging; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
+    const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
     int caps = 0;
     if (!nodes.used)
     {
       cells &= ~(1UL << cell);
       continue;
     }
-    triangles += mcor_graded_count(nodes.split, nodes.above, &caps);
+    triangles += mcor_adaptive_count(nodes.split, nodes.above, &caps);
     flat_loops += within >> cell & 1 ? caps : 0;
     mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
   }
   int tunnels = 0; /* which the field decides on later */
   triangles += mcor_cells_count(
-    leaf.corners_above, case_table, 0, 0, 0, 0, 0, leaf.slots[0], cells & ~graded, &tunnels);
-  mcor_leaf_mark_plain(&leaf, cells & ~graded, quadrants);
+    leaf.corners_above, case_table, 0, 0, 0, 0, 0, leaf.slots[0], cells & ~hanging, &tunnels);
+  mcor_leaf_mark_plain(&leaf, cells & ~hanging, quadrants);
   used[i] = cells;
   triangle_count[i] = triangles;
   flat[i] = flat_loops;
@@ -334,7 +334,7 @@ __kernel void mcor_graded_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed
 
 /* One work-item = one slot. Reads which quadrants around its edges are used. Writes its edge masks, see
  * MCOR_EDGE_MASKS; counts vertices. */
-__kernel void mcor_graded_edges(const int slot_count, __global const uint* quadrants,
+__kernel void mcor_adaptive_edges(const int slot_count, __global const uint* quadrants,
   __global ulong* edges, __global int* vertex_count)
 {
   const int slot = get_global_id(0);
@@ -357,7 +357,7 @@ __kernel void mcor_graded_edges(const int slot_count, __global const uint* quadr
   vertex_count[slot] = vertices;
 }
 
-/* Vertex of a cell's edge, given as in mcor_graded_cell.h. */
+/* Vertex of a cell's edge, given as in mcor_adaptive_cell.h. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {
@@ -375,8 +375,8 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
 
 /* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, if
  * wanted, the keys of their cells. */
-__kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const int4* cells, MCOR_SIDES_PARAMS,
-  MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
+__kernel void mcor_adaptive_triangles(MCOR_LEAF_PARAMS, __global const int4* cells,
+  MCOR_SIDES_PARAMS, MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
   __global ulong* triangle_cells, __global const ulong* used, __global const ulong* edges,
   __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
 {
@@ -386,11 +386,11 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const int4* cells
     return;
   }
   const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
-  const ulong graded = mcor_leaf_graded_cells(leaf.hanging);
-  const ulong key = mcor_graded_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
+  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
+  const ulong key = mcor_adaptive_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, cells[i]);
   int numbers[3][MCOR_CELL_NODES];
-  if (used[i] & ~graded)
+  if (used[i] & ~hanging)
   {
     mcor_march_numbers(leaf.slots + 1, edges, vertex_base, leaf.slots[0], numbers);
   }
@@ -399,11 +399,11 @@ __kernel void mcor_graded_triangles(MCOR_LEAF_PARAMS, __global const int4* cells
   {
     const int cell = mcor_ctz(rest);
     const long begin = (to - triangles) / 3;
-    if (graded >> cell & 1)
+    if (hanging >> cell & 1)
     {
-      const mcor_graded_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
-      uchar slots[3 * MCOR_GRADED_TRIANGLES];
-      const int made = mcor_graded_triangulate(nodes.split, nodes.above, slots);
+      const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
+      uchar slots[3 * MCOR_ADAPTIVE_TRIANGLES];
+      const int made = mcor_adaptive_triangulate(nodes.split, nodes.above, slots);
       for (int k = 0; k < 3 * made; ++k)
       {
         *to++ = mcor_leaf_vertex(

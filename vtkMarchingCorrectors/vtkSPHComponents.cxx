@@ -42,7 +42,7 @@ vtkDataArray* FindArray(
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    const int rank = array && array->GetName() ? mcor_name_rank(quantity, array->GetName()) : -1;
+    const int rank = array && array->GetName() ? mcor_name_priority(quantity, array->GetName()) : -1;
     if (rank >= 0 && rank < least && array->GetNumberOfComponents() == components)
     {
       best = array;

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define MCOR_GAUGE_LEVEL 0.5
 #define MCOR_GAUGE_STEP 0.25 /* of the smallest scaled smoothing length */
@@ -322,7 +323,7 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   own.field = MCOR_WEIGHT_SUM;
   const bool uses_solids = mcor_uses_solids(input, &own);
   mcor_evaluate_without_scalar(input, &own);
-  own.has_box = 0;
+  memset(own.box, 0, sizeof own.box);
   own.globals = NULL;
   own.gradients = 0;
   own.node_threshold = 0;

@@ -306,9 +306,9 @@ class BadData(CommandLineTest):
     def test_unwritable_files(self):
         nowhere = self.directory / "nowhere"
         self.refuse(self.run_program(self.input, nowhere / "surface.vtp", *ISO), 1,
-                  r"surface.vtp could not be written: no file can be made in .*nowhere \(No such file or dir")
+                  r"surface.vtp could not be written: no file can be created in .*nowhere \(No such file or dir")
         for option, name in (("--stats", "s.json"), ("--screenshot", "s.png")):
-            self.refuse_with(f"{name} could not be written: no file can be made", *ISO, option, nowhere / name)
+            self.refuse_with(f"{name} could not be written: no file can be created", *ISO, option, nowhere / name)
         directory = self.directory / "directory.vtp"
         directory.mkdir()
         self.refuse(self.run_program(self.input, directory, *ISO), 1, "it is a directory")

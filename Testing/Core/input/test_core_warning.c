@@ -94,7 +94,7 @@ static void test_neighbours(void** state)
          call.input.smoothing_length = far_off;
          call.options.cube_size = 1; call.options.node_threshold = 0;
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_NEIGHBOURS, "All 1000 fluid particles are at one point",
+  WARNED(MCOR_WARN_NEIGHBOURS, "All 1000 fluid particles are at the same point",
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
          call.options.vertex_threshold = 0); /* nothing is usual */

@@ -154,7 +154,7 @@ class Usage(CommandLineTest):
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
             ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "has points already; leave out --line"),
-            ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "a line is to be plotted"),
+            ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "makes data for a plot"),
             ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
         ]:
             with self.subTest(sentence):

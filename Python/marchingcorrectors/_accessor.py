@@ -186,7 +186,7 @@ class SphAccessor:
         found = describe_unused_types(self._particles.GetPointData())
         if found:
             sentence, name = found
-            warn(sentence.replace("name it and the fluid's value", f"say fluid=('{name}', VALUE)"))
+            warn(sentence.replace("select it together with the value of the fluid", f"say fluid=('{name}', VALUE)"))
 
     def _period(self, word):
         found = find_period(self._particles) if word == "auto" else None

@@ -55,6 +55,13 @@ public:
   vtkTypeMacro(vtkSPHGauge, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
+  /** Leave solid particles out of the weight sum. Default: off. */
+  vtkSetMacro(IgnoreSolids, vtkTypeBool);
+  vtkGetMacro(IgnoreSolids, vtkTypeBool);
+  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
+  ///@}
+
   /**
    * The table.
    */

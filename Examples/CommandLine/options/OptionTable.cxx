@@ -49,6 +49,7 @@ void SetSolids(Job& job, Text option, Text text)
       { "ignore", Filter::SOLIDS_IGNORE }, { "wall", Filter::SOLIDS_WALL } });
   job.Derivatives->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Probe->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
+  job.Gauge->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Surface->SetSolids(solids);
 }
 

@@ -157,7 +157,7 @@ static void test_other_globals(void** state)
     CORE_CHECK(status == (within ? MCOR_OK : MCOR_INVALID_DATA), "change %d: %s", kind,
       mcor_last_error(context));
     const char* sentence =
-      kind == NO_NUMBER ? "is not a number" : "options.globals were measured of";
+      kind == NO_NUMBER ? "is not a number" : "options.globals was measured over";
     CORE_CHECK(within || strstr(mcor_last_error(context), sentence), "change %d: %s", kind,
       mcor_last_error(context));
     mcor_free_surface(&surface);

@@ -56,7 +56,9 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Leave solid particles out of the weight sum. Default: off. */
+  /**
+   * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
+   */
   vtkSetMacro(IgnoreSolids, vtkTypeBool);
   vtkGetMacro(IgnoreSolids, vtkTypeBool);
   vtkBooleanMacro(IgnoreSolids, vtkTypeBool);

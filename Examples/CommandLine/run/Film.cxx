@@ -15,6 +15,7 @@
 #include "Picture.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
+#include "Sentences.h"
 #include "StepName.h"
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
@@ -29,7 +30,6 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -137,33 +137,6 @@ void CheckFiles(const Job& job, const Steps& steps, const std::vector<std::strin
     }
   }
 }
-
-/// Says each sentence of many steps once, with the first step's name, and at the end how often it came.
-class Sentences
-{
-public:
-  void Tell(const std::string& kind, const std::string& step, const std::string& sentence)
-  {
-    if (++this->Counts[kind + sentence] == 1)
-    {
-      Say(kind + step + ": " + sentence);
-    }
-  }
-
-  void TellCounts() const
-  {
-    for (const auto& [sentence, count] : this->Counts)
-    {
-      if (count > 1)
-      {
-        Say(std::to_string(count - 1) + (count == 2 ? " more step: " : " more steps: ") + sentence);
-      }
-    }
-  }
-
-private:
-  std::map<std::string, int> Counts;
-};
 
 class Film
 {

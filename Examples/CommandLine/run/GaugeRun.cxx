@@ -9,6 +9,7 @@
 #include "ParticleFile.h"
 #include "ParticleSteps.h"
 #include "SafeText.h"
+#include "Sentences.h"
 #include "SurfaceRun.h"
 #include "TableText.h"
 
@@ -21,7 +22,6 @@
 #include "vtkTable.h"
 
 #include <iostream>
-#include <map>
 #include <new>
 #include <stdexcept>
 
@@ -59,32 +59,6 @@ void CheckFiles(const Job& job, const Steps& steps, MessageCapture* messages)
   }
   CheckOutputs(ListFiles(inputs, messages), { job.Output });
 }
-
-/// Each once, with the first step that it is of: a gauge may be dry for long.
-class Sentences
-{
-public:
-  void Tell(const std::string& kind, const std::string& step, const std::string& sentence)
-  {
-    if (++this->Counts[sentence] == 1)
-    {
-      Say(kind + step + ": " + sentence);
-    }
-  }
-  void TellCounts() const
-  {
-    for (const auto& [sentence, count] : this->Counts)
-    {
-      if (count > 1)
-      {
-        Say(std::to_string(count - 1) + (count == 2 ? " more step: " : " more steps: ") + sentence);
-      }
-    }
-  }
-
-private:
-  std::map<std::string, int> Counts;
-};
 
 /// The table of one step. Throws std::runtime_error.
 vtkTable* MeasureStep(const Job& job, const ParticleSteps::Step& step, MessageCapture* messages,

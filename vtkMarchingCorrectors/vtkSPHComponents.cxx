@@ -16,6 +16,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHPieces.h"
 #include "vtkTable.h"
 
@@ -32,24 +33,8 @@ const char* const IdName = "ComponentId";
 vtkDataArray* FindArray(
   vtkPointSet* particles, const std::string& name, mcor_quantity quantity, int components)
 {
-  vtkPointData* data = particles->GetPointData();
-  if (!name.empty())
-  {
-    return data->GetArray(name.c_str());
-  }
-  vtkDataArray* best = nullptr;
-  int least = std::numeric_limits<int>::max();
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    const int rank = array && array->GetName() ? mcor_name_priority(quantity, array->GetName()) : -1;
-    if (rank >= 0 && rank < least && array->GetNumberOfComponents() == components)
-    {
-      best = array;
-      least = rank;
-    }
-  }
-  return best;
+  return name.empty() ? vtkSPHDetect(particles, quantity, components)
+                      : particles->GetPointData()->GetArray(name.c_str());
 }
 
 /** The tuples with these numbers, in their order. */

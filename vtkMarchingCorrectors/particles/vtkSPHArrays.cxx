@@ -4,6 +4,8 @@
 
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkVariant.h"
@@ -133,6 +135,26 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
     run, "DeviceBytesPeak", { std::max(count("DeviceBytesPeak"), s.device_bytes_peak) });
   vtkSPHAddReal(run, "MedianNeighbors", { s.neighbours_median });
   vtkSPHAddReal(run, "MedianSpacing", { s.spacing_median });
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components)
+{
+  vtkPointData* data = points->GetPointData();
+  vtkDataArray* found = nullptr;
+  int best = -1;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
+    if (rank >= 0 && (!found || rank < best) && array->GetNumberOfComponents() == components &&
+      array->GetNumberOfTuples() == points->GetNumberOfPoints())
+    {
+      found = array;
+      best = rank;
+    }
+  }
+  return found;
 }
 
 //------------------------------------------------------------------------------

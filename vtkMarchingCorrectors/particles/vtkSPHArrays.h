@@ -15,6 +15,8 @@
 #include <initializer_list>
 #include <string>
 
+class vtkPointSet;
+
 /** Hands a malloc'ed buffer over to a VTK array. */
 template <typename ArrayT, typename ValueT>
 vtkSmartPointer<ArrayT> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
@@ -42,6 +44,9 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 
 /** Adds what a call of the core cost to what calls before it did: not the same for each run. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
+
+/** The point array with the most usual name for this quantity and so many components; nullptr: there is none. */
+vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
 /** Finds among arrays the one to be looked at where nobody has chosen one, see mcor_view_priority(). */
 struct vtkSPHArrayChoice

@@ -8,6 +8,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 
 #include <algorithm>
@@ -180,7 +181,7 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
   }
   else if (this->Description.DetectArrays)
   {
-    array = this->Detect(quantity);
+    array = vtkSPHDetect(this->Points, quantity, 1);
   }
   if (array)
   {
@@ -454,26 +455,6 @@ bool vtkSPHParticles::HasOneComponent(const std::string& role, vtkDataArray* arr
       std::to_string(components) + " components; it must have one.";
   }
   return components == 1;
-}
-
-//------------------------------------------------------------------------------
-vtkDataArray* vtkSPHParticles::Detect(mcor_quantity quantity)
-{
-  vtkPointData* pointData = this->Points->GetPointData();
-  vtkDataArray* found = nullptr;
-  int best = -1;
-  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = pointData->GetArray(i);
-    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
-    if (rank >= 0 && (!found || rank < best) && array->GetNumberOfComponents() == 1 &&
-      array->GetNumberOfTuples() == this->Core.count)
-    {
-      found = array;
-      best = rank;
-    }
-  }
-  return found;
 }
 
 //------------------------------------------------------------------------------

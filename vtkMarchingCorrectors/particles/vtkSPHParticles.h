@@ -165,7 +165,6 @@ private:
   void Sign();
 
   vtkDataArray* Find(const std::string& role, const std::string& name);
-  vtkDataArray* Detect(mcor_quantity quantity);
   bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
     mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core);
   bool HasOneComponent(const std::string& role, vtkDataArray* array);

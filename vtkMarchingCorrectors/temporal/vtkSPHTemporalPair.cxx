@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHNumbers.h"
 #include "vtkSPHReals.h"
 
@@ -49,24 +50,6 @@ std::string ListArrays(vtkPointSet* particles)
     list += (i ? ", " : "") + NameOf(particles->GetPointData()->GetAbstractArray(i));
   }
   return list.empty() ? "There are no point arrays." : "Point arrays: " + list + ".";
-}
-
-/** The array with the most usual name for this quantity. */
-vtkDataArray* Detect(vtkPointSet* particles, mcor_quantity quantity, int components)
-{
-  vtkPointData* data = particles->GetPointData();
-  vtkDataArray* found = nullptr;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    const int rank = array ? mcor_name_priority(quantity, array->GetName()) : -1;
-    if (rank >= 0 && array->GetNumberOfComponents() == components &&
-      (!found || rank < mcor_name_priority(quantity, found->GetName())))
-    {
-      found = array;
-    }
-  }
-  return found;
 }
 
 void Sign(std::vector<std::uint64_t>& signature, vtkObject* object)
@@ -181,7 +164,7 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
   if (this->IdName.empty())
   {
     vtkPointSet* first = this->Steps[0].Particles;
-    vtkDataArray* found = Detect(first, MCOR_PARTICLE_ID, 1);
+    vtkDataArray* found = vtkSPHDetect(first, MCOR_PARTICLE_ID, 1);
     found = found ? found : first->GetPointData()->GetGlobalIds();
     this->IdName = NameOf(found);
   }
@@ -215,7 +198,7 @@ bool vtkSPHTemporalPair::FindVelocities(const vtkSPHTemporalChoice& choice)
   }
   if (this->VelocityName.empty())
   {
-    this->VelocityName = NameOf(Detect(this->Steps[0].Particles, MCOR_VELOCITY, 3));
+    this->VelocityName = NameOf(vtkSPHDetect(this->Steps[0].Particles, MCOR_VELOCITY, 3));
     vtkDataArray* other =
       this->Steps[1].Particles->GetPointData()->GetArray(this->VelocityName.c_str());
     if (this->VelocityName.empty() || !other || other->GetNumberOfComponents() != 3)

@@ -129,36 +129,43 @@ void vtkSPHPieces::JoinSides()
       const auto twin = static_cast<size_t>(found->second);
       this->Twin[i] = this->Twin[twin];
       // The lower point's part, a period higher, joins that of the upper one.
-      const auto from = static_cast<size_t>(this->Root[twin]),
-                 to = static_cast<size_t>(this->Root[i]);
-      Shift shift = this->GroupShift[to];
-      shift[a] += 1;
-      for (int c = 0; c < 3; ++c)
-      {
-        shift[c] -= this->GroupShift[from][c];
-      }
-      const auto old = static_cast<size_t>(this->Group[from]),
-                 kept = static_cast<size_t>(this->Group[to]);
-      if (old == kept)
-      {
-        this->GroupEndless[kept] |= shift != Shift{ { 0, 0, 0 } };
-        continue;
-      }
-      members[old].push_back(static_cast<vtkIdType>(old));
-      for (const vtkIdType part : members[old])
-      {
-        const auto p = static_cast<size_t>(part);
-        this->Group[p] = static_cast<vtkIdType>(kept);
-        for (int c = 0; c < 3; ++c)
-        {
-          this->GroupShift[p][c] += shift[c];
-        }
-      }
-      members[kept].insert(members[kept].end(), members[old].begin(), members[old].end());
-      members[old].clear();
-      this->GroupEndless[kept] |= this->GroupEndless[old];
+      this->JoinParts(this->Root[twin], this->Root[i], a, members);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+// The group of one part goes into that of the other, where it is a period of this axis higher.
+void vtkSPHPieces::JoinParts(
+  vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members)
+{
+  const auto from = static_cast<size_t>(lower), to = static_cast<size_t>(upper);
+  Shift shift = this->GroupShift[to];
+  shift[axis] += 1;
+  for (int c = 0; c < 3; ++c)
+  {
+    shift[c] -= this->GroupShift[from][c];
+  }
+  const auto old = static_cast<size_t>(this->Group[from]),
+             kept = static_cast<size_t>(this->Group[to]);
+  if (old == kept)
+  {
+    this->GroupEndless[kept] |= shift != Shift{ { 0, 0, 0 } };
+    return;
+  }
+  members[old].push_back(static_cast<vtkIdType>(old));
+  for (const vtkIdType part : members[old])
+  {
+    const auto p = static_cast<size_t>(part);
+    this->Group[p] = static_cast<vtkIdType>(kept);
+    for (int c = 0; c < 3; ++c)
+    {
+      this->GroupShift[p][c] += shift[c];
+    }
+  }
+  members[kept].insert(members[kept].end(), members[old].begin(), members[old].end());
+  members[old].clear();
+  this->GroupEndless[kept] |= this->GroupEndless[old];
 }
 
 //------------------------------------------------------------------------------

@@ -54,6 +54,8 @@ private:
   void ReadTriangles(vtkPolyData* mesh);
   void JoinPoints();
   void JoinSides();
+  void JoinParts(
+    vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members);
   void NumberPieces();
   void Measure();
   void FindClosed();

@@ -191,8 +191,7 @@ const Options TheParticles = {
     SetFluid },
   { "--solids", "auto|weight|ignore|wall",
     "solids count in the weight used for trimming, are ignored, or end the surface; auto "
-    "(default): "
-    "wall for a scalar, weight for the free surface",
+    "(default): wall for a scalar, weight for the free surface",
     SetSolids },
   { "--wall-share", "S|measured",
     "solids' share of the weight at which walls end the surface (default: measured)",

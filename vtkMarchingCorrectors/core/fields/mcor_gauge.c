@@ -133,8 +133,7 @@ static mcor_status mcor_plan_line(
   }
   MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !(steps < 4e15), context, MCOR_OUT_OF_CAPACITY,
     "Gauge number %lld is to be sampled at %.3g points, a quarter of the smallest smoothing "
-    "length, %g, "
-    "apart; at most %d are possible. Shorten it.",
+    "length, %g, apart; at most %d are possible. Shorten it.",
     (long long)number, last - first + 1, context->measure.h_min, MCOR_GAUGE_MOST);
   *samples = (mcor_gauge_samples){ (int64_t)steps, (int64_t)first, (int64_t)last };
   if (samples->last - samples->first < 2) /* a row of three, for parabolas */

@@ -240,7 +240,7 @@ static void test_pocl_folder(void** state)
   snprintf(saved, sizeof saved, "%s", own ? own : "");
   setenv("POCL_CACHE_DIR", "/dev/null/folder", 1);
   assert_true(mcor_pocl_folder_fault(text, sizeof text));
-  assert_non_null(strstr(text, "/dev/null/folder, which cannot be written"));
+  assert_non_null(strstr(text, "/dev/null/folder, which is not writable"));
   setenv("POCL_CACHE_DIR", folder, 1);
   assert_false(mcor_pocl_folder_fault(text, sizeof text));
   own ? setenv("POCL_CACHE_DIR", saved, 1) : unsetenv("POCL_CACHE_DIR");

@@ -14,7 +14,6 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
-#include "vtkSPHMeasures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -245,7 +244,7 @@ void vtkMarchingCorrectors::Extract(
   this->WarnOf(input, surface, input.Core, options);
   builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
-  vtkSPHAddMeasures(this->RunStatistics, surface);
+  builder.AddMeasures(this->RunStatistics);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
 }

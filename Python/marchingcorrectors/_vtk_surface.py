@@ -190,6 +190,9 @@ def add_statistics(data, s, surface, options):
     add_real(data, "ResidualMax", s["residual_max"])
     add_count(data, "TrimVertices", s["trim_vertices"])
     add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
+    add_real(data, "Area", s["area"])
+    if s["is_closed"]:
+        add_real(data, "Volume", s["volume"])
 
 
 def add_quantity(data, name, array):

@@ -47,8 +47,9 @@ def keywords(given, options):
     if not given.estimate_smoothing_length:
         words["smoothing_length"] = array_of(given.smoothing_length, count)
     for name in ("volume", "mass", "density"):
-        if getattr(given, "has_" + name):
-            words[name] = array_of(getattr(given, name), count)
+        view = getattr(given, name)
+        if view.data or view.constant:
+            words[name] = array_of(view, count)
     if given.solid:
         words["solid"] = np.ctypeslib.as_array(given.solid, (count,))
     words["scalar"] = None

@@ -323,6 +323,10 @@ extern "C"
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
+    /* Of the surface as it is returned: each edge has triangles on both sides; area, unit L^2; volume that
+     * a closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. */
+    int is_closed;
+    double area, volume;
     int64_t march_rounds;
     /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];

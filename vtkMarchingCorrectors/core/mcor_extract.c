@@ -77,6 +77,7 @@ static mcor_status mcor_extract_all(
     surface->statistics.cells_of_level[0] = surface->statistics.cells_used;
     surface->statistics.triangles_of_level[0] = surface->statistics.triangles_before_trimming;
   }
+  mcor_measure_surface(surface);
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }

@@ -348,6 +348,17 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 }
 
 //------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::AddMeasures(vtkFieldData* fieldData) const
+{
+  const mcor_statistics& s = this->Surface.statistics;
+  vtkSPHAddReal(fieldData, "Area", { s.area });
+  if (s.is_closed)
+  {
+    vtkSPHAddReal(fieldData, "Volume", { s.volume });
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
 {
   const mcor_options& o = this->Options;

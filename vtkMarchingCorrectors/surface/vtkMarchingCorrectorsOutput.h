@@ -36,6 +36,8 @@ public:
   void AddIsoValues(vtkFieldData* fieldData) const;
   /** Statistics and parameters: but for what it cost a function of the input and the options alone. */
   void AddRun(vtkFieldData* run) const;
+  /** Area, and of a closed surface its volume. */
+  void AddMeasures(vtkFieldData* run) const;
 
 private:
   void BuildTriangles(vtkPolyData* output);

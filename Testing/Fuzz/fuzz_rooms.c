@@ -75,7 +75,7 @@ static void fuzz_globals(const fuzz_call* call)
   if (measured != MCOR_OK)
   {
     fuzz_check_failure(context, measured);
-    FUZZ_CHECK(!globals.components && !globals.splits && globals.fluid_particles == 0);
+    FUZZ_CHECK(!globals.components && !globals.splits && globals.measured.fluid_count == 0);
     return;
   }
   fuzz_check_alike(call, &alone, &given);

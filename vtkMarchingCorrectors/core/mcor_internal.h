@@ -34,22 +34,6 @@
     }                                                                                              \
   } while (0)
 
-/* The particles as the input gives them, checked and measured. Lengths in L. */
-typedef struct mcor_measure
-{
-  int64_t fluid_count, solid_count;
-  double low[3], high[3];          /* of positions +- support radius */
-  double h_min, h_max;             /* smoothing length of fluid particles */
-  double support_min, support_max; /* scaled support radius of all particles */
-  double scalar_min, scalar_max;
-  int64_t not_finite; /* first fluid particle of which the scalar is not, INT64_MAX: none */
-  double h_estimate;  /* where it was asked for */
-  double neighbours, spacing, filled, h_median; /* see mcor_end_watch */
-  double x_low[3], x_high[3];                   /* of the positions of fluid particles */
-  double cube;
-  double wall_share; /* where it was asked for; 0: not yet */
-} mcor_measure;
-
 /* The virtual grid: world position = (origin + fixed / 2^fix_bits) * cube. */
 typedef struct mcor_lattice
 {
@@ -451,8 +435,6 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
-/* What the measure does not hold is left. */
-void mcor_give_globals(const mcor_measure* m, mcor_globals* globals);
 
 /* mcor_measure_wall.c. The wall share, where the options ask for it and it is not yet measured. */
 mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input);

@@ -22,22 +22,28 @@ extern "C"
     int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
   } mcor_global_component;
 
+  /* What is measured over all particles. Lengths in L; h: the unscaled smoothing length. */
+  typedef struct mcor_measure
+  {
+    int64_t fluid_count, solid_count;
+    double low[3], high[3];                       /* of positions -+ scaled support radii */
+    double x_low[3], x_high[3];                   /* of the positions of fluid particles */
+    double h_min, h_max;                          /* of fluid particles */
+    double support_min, support_max;              /* scaled support radius of all that take part */
+    double h_estimate;                            /* 0: not asked for */
+    double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
+    double scalar_min, scalar_max;                /* over fluid particles */
+    int64_t not_finite; /* first fluid particle of which the scalar is not; INT64_MAX: none */
+    double cube;        /* cube size; not read where it is given */
+    double wall_share;  /* if the options ask for it; 0: not yet measured */
+  } mcor_measure;
+
   /* What must be known about all particles to extract the surface of a box from some of them. */
   struct mcor_globals
   {
-    int64_t fluid_particles, solid_particles;
-    double low[3], high[3];                            /* of positions -+ scaled support radii, L */
-    double smoothing_length_min, smoothing_length_max; /* of fluid particles, unscaled, L */
-    double support_min, support_max; /* scaled support radius of all that take part, L */
-    double smoothing_length;         /* estimated; 0: not asked for */
-    double cube_size;                /* as in mcor_statistics; not read */
-    double mass_max;                 /* 0: there are no masses */
-    double scalar_min, scalar_max;   /* over fluid particles */
-    double scalar_shift;             /* about the median; values on the device are relative to it */
-    /* As in mcor_statistics; and the extent of the fluid particles, L. */
-    double smoothing_length_median, neighbours_median, spacing_median, filled_median;
-    double fluid_low[3], fluid_high[3];
-    double wall_share; /* if the options ask for it */
+    mcor_measure measured;
+    double mass_max;     /* 0: there are no masses */
+    double scalar_shift; /* about the median; values on the device are relative to it */
     int component_count;
     mcor_global_component* components; /* [component_count], of all attributes in their order */
     /* Adaptive cubes: the numbers of the bricks that are divided, ascending; NULL: one level only. */

@@ -41,17 +41,19 @@ static bool mcor_same_globals(const mcor_context* context, const mcor_globals* g
 {
   const mcor_globals none = { 0 };
   const mcor_globals *a = &context->last_globals, *b = globals ? globals : &none;
-  bool same = a->fluid_particles == b->fluid_particles &&
-    a->solid_particles == b->solid_particles &&
-    a->smoothing_length_min == b->smoothing_length_min && a->support_min == b->support_min &&
-    a->support_max == b->support_max && a->smoothing_length == b->smoothing_length &&
-    a->mass_max == b->mass_max && a->wall_share == b->wall_share &&
-    a->scalar_min == b->scalar_min && a->scalar_max == b->scalar_max &&
-    a->scalar_shift == b->scalar_shift;
+  bool same = a->measured.fluid_count == b->measured.fluid_count &&
+    a->measured.solid_count == b->measured.solid_count && a->measured.h_min == b->measured.h_min &&
+    a->measured.support_min == b->measured.support_min &&
+    a->measured.support_max == b->measured.support_max &&
+    a->measured.h_estimate == b->measured.h_estimate && a->mass_max == b->mass_max &&
+    a->measured.wall_share == b->measured.wall_share &&
+    a->measured.scalar_min == b->measured.scalar_min &&
+    a->measured.scalar_max == b->measured.scalar_max && a->scalar_shift == b->scalar_shift;
   same = same && context->last_splits == (globals ? mcor_hash_splits(globals) : 0);
   for (int i = 0; i < 3; ++i)
   {
-    same = same && a->low[i] == b->low[i] && a->high[i] == b->high[i];
+    same = same && a->measured.low[i] == b->measured.low[i] &&
+      a->measured.high[i] == b->measured.high[i];
   }
   return same;
 }

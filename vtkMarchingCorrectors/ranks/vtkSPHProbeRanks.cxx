@@ -193,7 +193,7 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   std::vector<vtkIdType> numbers;
   const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
   const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, globals });
-  FindBox(ranks, within, MarginCubes * globals.cube_size, options.box);
+  FindBox(ranks, within, MarginCubes * globals.measured.cube, options.box);
   const vtkSPHRanksRoute route =
     vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, within });
   const auto count = static_cast<std::size_t>(ranks.GetCount());

@@ -85,7 +85,7 @@ public:
     this->Support = options.h_scale * (input.smoothing_length_is_support_radius ? 1.0 : factor);
     this->LeastMargin = mcor_reach_margin(&options, &globals, 0.0);
     this->HasLevels =
-      mcor_reach_margin(&options, &globals, globals.smoothing_length_max) > this->LeastMargin;
+      mcor_reach_margin(&options, &globals, globals.measured.h_max) > this->LeastMargin;
     this->ComputesVolumes = !mcor_is_given(&input.volume) &&
       !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
     for (int a = 0; a < 3; ++a)
@@ -142,14 +142,14 @@ public:
       }
     }
     return std::make_shared<vtkSPHRanksPartition>(
-      ranks, this->Whole, std::move(places), BrickCubes * this->Globals.cube_size);
+      ranks, this->Whole, std::move(places), BrickCubes * this->Globals.measured.cube);
   }
 
   /** Scaled support radius. */
   double SupportOf(std::int64_t i) const
   {
     return this->Input.estimate_smoothing_length
-      ? this->Globals.smoothing_length * this->Factor
+      ? this->Globals.measured.h_estimate * this->Factor
       : ValueOf(this->Input.smoothing_length, i) * this->Support;
   }
 
@@ -206,9 +206,9 @@ public:
       }
       ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
     }
-    const double h = this->Globals.smoothing_length_max;
+    const double h = this->Globals.measured.h_max;
     const double pairs = o.seeds == MCOR_PAIRS && o.field != MCOR_WEIGHT_SUM
-      ? h + std::max(h, this->Globals.support_max) +
+      ? h + std::max(h, this->Globals.measured.support_max) +
         mcor_reach_margin(&this->Options, &this->Globals, h) - this->LeastMargin
       : 0.0;
     for (double& radius : radii)
@@ -237,7 +237,7 @@ public:
 //------------------------------------------------------------------------------
 vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals)
 {
-  const double cube = globals.cube_size;
+  const double cube = globals.measured.cube;
   for (int a = 0; a < 3; ++a)
   {
     const double first = options.periodic[2 * a];

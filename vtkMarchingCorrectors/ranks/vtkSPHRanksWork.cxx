@@ -33,21 +33,22 @@ public:
     , Options(options)
     , Globals(globals)
   {
-    this->Edge = CellLengths * globals.smoothing_length_median;
+    this->Edge = CellLengths * globals.measured.h_median;
     double cells = 0.0;
-    for (this->Edge = std::max(this->Edge, globals.cube_size); cells == 0.0 || cells > CellLimit;
-         this->Edge *= cells > CellLimit ? 1.25 : 1.0)
+    for (this->Edge = std::max(this->Edge, globals.measured.cube);
+         cells == 0.0 || cells > CellLimit; this->Edge *= cells > CellLimit ? 1.25 : 1.0)
     {
       cells = 1.0;
       for (int a = 0; a < 3; ++a)
       {
-        cells *= std::floor((globals.fluid_high[a] - globals.fluid_low[a]) / this->Edge) + 1.0;
+        cells *=
+          std::floor((globals.measured.x_high[a] - globals.measured.x_low[a]) / this->Edge) + 1.0;
       }
     }
     for (int a = 0; a < 3; ++a)
     {
       this->Size[a] =
-        static_cast<int>((globals.fluid_high[a] - globals.fluid_low[a]) / this->Edge) + 1;
+        static_cast<int>((globals.measured.x_high[a] - globals.measured.x_low[a]) / this->Edge) + 1;
     }
     const auto count = static_cast<std::size_t>(this->Size[0]) *
       static_cast<std::size_t>(this->Size[1]) * static_cast<std::size_t>(this->Size[2]);
@@ -85,7 +86,7 @@ public:
   /** What each particle of a cell stands for. */
   std::vector<std::int64_t> Share() const
   {
-    const double across = this->Edge / this->Globals.cube_size;
+    const double across = this->Edge / this->Globals.measured.cube;
     std::vector<std::int64_t> shares(this->Counts.size(), 1);
     std::size_t cell = 0;
     for (int z = 0; z < this->Size[2]; ++z)
@@ -117,7 +118,7 @@ private:
     for (int a = 2; a >= 0; --a)
     {
       const double at =
-        (vtkMarchingCorrectorsPositionOf(this->Input, i, a) - this->Globals.fluid_low[a]) /
+        (vtkMarchingCorrectorsPositionOf(this->Input, i, a) - this->Globals.measured.x_low[a]) /
         this->Edge;
       const double within = std::min(std::max(std::floor(at), 0.0), this->Size[a] - 1.0);
       cell = cell * static_cast<std::size_t>(this->Size[a]) + static_cast<std::size_t>(within);

@@ -318,8 +318,8 @@ static void test_share(void** state)
     const double expected = find_share(&set, (oracle_kernel)kernel);
     mcor_globals globals;
     CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
-    CORE_CHECK(fabs(globals.wall_share - expected) < 1e-6, "kernel %d: share %.9g, not %.9g",
-      kernel, globals.wall_share, expected);
+    CORE_CHECK(fabs(globals.measured.wall_share - expected) < 1e-6,
+      "kernel %d: share %.9g, not %.9g", kernel, globals.measured.wall_share, expected);
     mcor_free_globals(&globals);
   }
   core_free_set(&set);
@@ -344,17 +344,17 @@ static void test_measured(void** state)
   options.globals = &globals;
   surface[2] = core_extract(*state, &input, &options);
   options.globals = NULL;
-  options.wall_share = globals.wall_share;
+  options.wall_share = globals.measured.wall_share;
   surface[3] = core_extract(*state, &input, &options);
   uint64_t hash[4];
   for (int i = 0; i < 4; ++i)
   {
     hash[i] = core_hash(&surface[i]);
-    assert_true(surface[i].statistics.wall_share == (i == 0 ? 0.5 : globals.wall_share));
+    assert_true(surface[i].statistics.wall_share == (i == 0 ? 0.5 : globals.measured.wall_share));
     mcor_free_surface(&surface[i]);
   }
   CORE_CHECK(hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0],
-    "the surface of share %g is another one", globals.wall_share);
+    "the surface of share %g is another one", globals.measured.wall_share);
   mcor_free_globals(&globals);
   core_free_set(&set);
 }
@@ -382,7 +382,7 @@ static void test_auto(void** state)
       if (i == 1)
       {
         CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
-        assert_true((globals.wall_share > 0) == (field != MCOR_WEIGHT_SUM));
+        assert_true((globals.measured.wall_share > 0) == (field != MCOR_WEIGHT_SUM));
       }
       options.globals = i == 1 ? &globals : NULL;
       mcor_surface surface = core_extract(*state, &input, &options);
@@ -421,9 +421,10 @@ static void test_measured_elsewhere(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_exact), cmocka_unit_test(test_caps), cmocka_unit_test(test_forms),
-    cmocka_unit_test(test_iso_values), cmocka_unit_test(test_without_solids),
-    cmocka_unit_test(test_share), cmocka_unit_test(test_measured),
-    cmocka_unit_test(test_measured_elsewhere), cmocka_unit_test(test_auto) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_exact), cmocka_unit_test(test_caps),
+    cmocka_unit_test(test_forms), cmocka_unit_test(test_iso_values),
+    cmocka_unit_test(test_without_solids), cmocka_unit_test(test_share),
+    cmocka_unit_test(test_measured), cmocka_unit_test(test_measured_elsewhere),
+    cmocka_unit_test(test_auto) };
   return cmocka_run_group_tests_name("wall", tests, core_set_up, core_tear_down);
 }

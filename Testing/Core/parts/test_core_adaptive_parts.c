@@ -76,7 +76,7 @@ static core_set take_reaching(
   for (int64_t i = set->count - 1; i >= 0; --i)
   {
     const double h = set->smoothing_length[i];
-    const double level = floor(log2(h / globals->smoothing_length_min * (1 + 1e-12)));
+    const double level = floor(log2(h / globals->measured.h_min * (1 + 1e-12)));
     const double reach = 2 * h + 6 * cube * exp2(level);
     core_add_near(&near, set, i, box, reach);
   }
@@ -104,7 +104,7 @@ static void given_levels(void** state)
   {
     const int at[3] = { i & 1, i >> 1 & 1, i >> 2 };
     core_set_box(&options, core_cuts + 3, at);
-    core_set near = take_reaching(&set, options.box, &globals, globals.cube_size);
+    core_set near = take_reaching(&set, options.box, &globals, globals.measured.cube);
     fewest = near.count < fewest ? near.count : fewest;
     input = core_input(&near);
     surface = core_extract(*state, &input, &options);

@@ -282,14 +282,14 @@ static void impossible_globals(void** state)
   IMPOSSIBLE(components = NULL);
   IMPOSSIBLE(component_count = -1);
   IMPOSSIBLE(split_count = -1);
-  IMPOSSIBLE(fluid_particles = -1);
-  IMPOSSIBLE(low[1] = NAN);
-  IMPOSSIBLE(high[2] = -100);
-  IMPOSSIBLE(smoothing_length_min = 0);
-  IMPOSSIBLE(smoothing_length_max = 1e-3);
-  IMPOSSIBLE(support_max = 0.01);
+  IMPOSSIBLE(measured.fluid_count = -1);
+  IMPOSSIBLE(measured.low[1] = NAN);
+  IMPOSSIBLE(measured.high[2] = -100);
+  IMPOSSIBLE(measured.h_min = 0);
+  IMPOSSIBLE(measured.h_max = 1e-3);
+  IMPOSSIBLE(measured.support_max = 0.01);
   IMPOSSIBLE(scalar_shift = INFINITY);
-  IMPOSSIBLE(wall_share = NAN);
+  IMPOSSIBLE(measured.wall_share = NAN);
 #undef IMPOSSIBLE
   options.globals = &measured;
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));

@@ -164,9 +164,9 @@ static void check_globals(mcor_context* context, const core_set* set, const meas
   const mcor_options options = measure_options(what);
   mcor_globals expected;
   CORE_OK(context, mcor_measure_globals(context, &input, &options, &expected));
-  assert_true(expected.neighbours_median > 10 && expected.spacing_median > 0);
-  assert_true(expected.wall_share > 0);
-  assert_int_equal(what->estimate, expected.smoothing_length > 0);
+  assert_true(expected.measured.neighbours > 10 && expected.measured.spacing > 0);
+  assert_true(expected.measured.wall_share > 0);
+  assert_int_equal(what->estimate, expected.measured.h_estimate > 0);
   for (size_t s = 0; s < SPLITS; ++s)
   {
     for (int count = 1; count <= CORE_MOST_RANKS; count += count == 3 ? 5 : 1)

@@ -48,17 +48,18 @@ static mcor_status mcor_check_capping(mcor_context* context, const mcor_options*
 /* What no measure gives; of nothing, ranges are empty. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
-  bool good = g->fluid_particles >= 0 && g->solid_particles >= 0 && g->component_count >= 0 &&
-    (g->components || g->component_count == 0) && g->split_count >= 0;
-  for (int a = 0; a < 3 && good && g->fluid_particles > 0; ++a)
+  bool good = g->measured.fluid_count >= 0 && g->measured.solid_count >= 0 &&
+    g->component_count >= 0 && (g->components || g->component_count == 0) && g->split_count >= 0;
+  for (int a = 0; a < 3 && good && g->measured.fluid_count > 0; ++a)
   {
-    good = g->low[a] <= g->high[a];
+    good = g->measured.low[a] <= g->measured.high[a];
   }
-  if (good && g->fluid_particles > 0)
+  if (good && g->measured.fluid_count > 0)
   {
-    good = g->smoothing_length_min > 0 && g->smoothing_length_min <= g->smoothing_length_max &&
-      g->support_min > 0 && g->support_min <= g->support_max && g->smoothing_length >= 0 &&
-      isfinite(g->scalar_shift) && g->mass_max >= 0 && g->wall_share >= 0 && g->wall_share <= 1;
+    good = g->measured.h_min > 0 && g->measured.h_min <= g->measured.h_max &&
+      g->measured.support_min > 0 && g->measured.support_min <= g->measured.support_max &&
+      g->measured.h_estimate >= 0 && isfinite(g->scalar_shift) && g->mass_max >= 0 &&
+      g->measured.wall_share >= 0 && g->measured.wall_share <= 1;
   }
   MCOR_RETURN_IF(!good, context, MCOR_INVALID_ARGUMENT,
     "options.globals was not produced by mcor_measure_globals, or has been changed.");

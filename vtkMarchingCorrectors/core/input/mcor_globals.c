@@ -92,7 +92,7 @@ static mcor_status mcor_measure_all(
   MCOR_RETURN_IF(particles == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
-  mcor_give_globals(&context->measure, globals);
+  globals->measured = context->measure;
   globals->mass_max =
     mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));

@@ -376,54 +376,6 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   return MCOR_OK;
 }
 
-/* What was measured over more particles than are at hand. */
-static void mcor_take_globals(mcor_context* context, const mcor_globals* globals)
-{
-  mcor_measure* m = &context->measure;
-  m->fluid_count = globals->fluid_particles;
-  m->solid_count = globals->solid_particles;
-  memcpy(m->low, globals->low, sizeof m->low);
-  memcpy(m->high, globals->high, sizeof m->high);
-  m->h_min = globals->smoothing_length_min;
-  m->h_max = globals->smoothing_length_max;
-  m->support_min = globals->support_min;
-  m->support_max = globals->support_max;
-  m->h_estimate = globals->smoothing_length;
-  m->scalar_min = globals->scalar_min;
-  m->scalar_max = globals->scalar_max;
-  m->h_median = globals->smoothing_length_median;
-  m->neighbours = globals->neighbours_median;
-  m->spacing = globals->spacing_median;
-  m->filled = globals->filled_median;
-  m->wall_share = globals->wall_share;
-  memcpy(m->x_low, globals->fluid_low, sizeof m->x_low);
-  memcpy(m->x_high, globals->fluid_high, sizeof m->x_high);
-}
-
-/* The other direction; what the measure does not hold is left. */
-void mcor_give_globals(const mcor_measure* m, mcor_globals* globals)
-{
-  globals->fluid_particles = m->fluid_count;
-  globals->solid_particles = m->solid_count;
-  memcpy(globals->low, m->low, sizeof m->low);
-  memcpy(globals->high, m->high, sizeof m->high);
-  globals->smoothing_length_min = m->h_min;
-  globals->smoothing_length_max = m->h_max;
-  globals->support_min = m->support_min;
-  globals->support_max = m->support_max;
-  globals->smoothing_length = m->h_estimate;
-  globals->cube_size = m->cube;
-  globals->scalar_min = m->scalar_min;
-  globals->scalar_max = m->scalar_max;
-  globals->smoothing_length_median = m->h_median;
-  globals->neighbours_median = m->neighbours;
-  globals->spacing_median = m->spacing;
-  globals->filled_median = m->filled;
-  globals->wall_share = m->wall_share;
-  memcpy(globals->fluid_low, m->x_low, sizeof m->x_low);
-  memcpy(globals->fluid_high, m->x_high, sizeof m->x_high);
-}
-
 /* Bounds and ranges; then the lattice. */
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
@@ -432,7 +384,7 @@ mcor_status mcor_measure_input(
   *m = mcor_nothing;
   if (options->globals)
   {
-    mcor_take_globals(context, options->globals);
+    *m = options->globals->measured;
     return mcor_measure_lattice(context, options);
   }
   if (input->estimate_smoothing_length)

@@ -84,11 +84,11 @@ int mcor_view_priority(const char* name, int components, int is_real, int varies
   }
   const bool describes = mcor_name_priority(MCOR_SMOOTHING_LENGTH, name) >= 0 ||
     mcor_name_priority(MCOR_VOLUME, name) >= 0 || mcor_name_priority(MCOR_MASS, name) >= 0;
-  return !is_real                                                 ? 5
+  return !is_real                                                     ? 5
     : components == 3 && mcor_name_priority(MCOR_VELOCITY, name) >= 0 ? 0
-    : components == 3                                             ? 1
-    : components == 1                                             ? 2 + describes
-                                                                  : 4;
+    : components == 3                                                 ? 1
+    : components == 1                                                 ? 2 + describes
+                                                                      : 4;
 }
 
 /* By which names a solver's output is told, as above; sources: Documentation/Guide/your-data.md. Those

@@ -315,10 +315,10 @@ double mcor_reach_of(const mcor_reach_box* box, double h)
 double mcor_reach_margin(
   const mcor_options* options, const mcor_globals* globals, double smoothing_length)
 {
-  const double h_min = globals->smoothing_length_min, h_max = globals->smoothing_length_max;
+  const double h_min = globals->measured.h_min, h_max = globals->measured.h_max;
   const int limit = options->level_limit;
   const bool adaptive = mcor_tree_level_of(h_max, h_min, limit) > 0;
-  return globals->cube_size *
+  return globals->measured.cube *
     (adaptive ? ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(smoothing_length, h_min, limit))
               : MCOR_GLOBALS_MARGIN);
 }

@@ -4,9 +4,11 @@
 /* The life of a context: what it begins with, what is given back when; and how any call on it runs. */
 
 #include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_input.h"
+#include "mcor_pair_rounds.h"
 
 #include <stdlib.h>
 
@@ -98,6 +100,19 @@ void mcor_free_context(mcor_context* context)
   mcor_release_memory(context);
   mcor_close_device(context);
   free(context);
+}
+
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
+{
+  bool other;
+  MCOR_TRY(mcor_need_other_device(context, build, &other));
+  if (!other)
+  {
+    return MCOR_OK;
+  }
+  mcor_release_memory(context);
+  context->grid_valid = context->value_valid = context->nodes_valid = false;
+  return mcor_change_device(context, build);
 }
 
 /* Search grid and scalar for these options, from the last call where they still hold. */

@@ -5,8 +5,10 @@
  * are those of the paper named in mcor.h. */
 
 #include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
+#include "mcor_pair_rounds.h"
 
 /* One iso value's surface, appended. */
 static mcor_status mcor_extract_iso(

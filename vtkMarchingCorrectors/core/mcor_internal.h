@@ -160,7 +160,7 @@ typedef struct mcor_adaptive
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
   int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
-  mcor_buffer rungs;                       /* mcor_rung, of all levels of leaves */
+  mcor_buffer rungs;      /* mcor_rung, of all levels of leaves */
   mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
   mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
   mcor_buffer states, chosen;              /* int, uchar: of all leaves */
@@ -405,6 +405,8 @@ typedef mcor_status (*mcor_body)(
 /* Runs the body, and once more where memory ran out but some could be given back. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result);
+/* Before a call: where no device was named and this one cannot do the build, another one is opened. */
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
 

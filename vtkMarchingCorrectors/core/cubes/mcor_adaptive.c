@@ -10,10 +10,12 @@
  * and sees the search grid in cells of that level (mcor_view_level). */
 
 #include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_adaptive_pair.h"
 #include "mcor_adaptive_seed.h"
 #include "mcor_adaptive_topology.h"
 #include "mcor_box.h"
+#include "mcor_pair_rounds.h"
 #include "mcor_tree.h"
 
 #include <string.h>

@@ -12,6 +12,7 @@
 
 #include "mcor_adaptive_pair.h"
 #include "mcor_box.h"
+#include "mcor_pair_rounds.h"
 
 /* ---- Leaves by their place ---- */
 
@@ -94,7 +95,9 @@ static mcor_status mcor_limit_growth(mcor_context* context)
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
-mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh)
+/* Of mcor_exchange_cells. */
+static mcor_status mcor_take_reached(
+  mcor_context* context, const cl_int* cells, int count, bool* fresh)
 {
   mcor_adaptive_pairs* pairs = &context->adaptive_pairs;
   cl_int flag;
@@ -122,7 +125,7 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso)
   for (bool grown = true; grown;)
   {
     MCOR_TRY(mcor_grow_reached(context, &grown));
-    MCOR_TRY(grown ? MCOR_OK : mcor_exchange_cells(context, &grown));
+    MCOR_TRY(grown ? MCOR_OK : mcor_exchange_cells(context, mcor_take_reached, &grown));
   }
   return MCOR_LAUNCH(context, "mcor_adaptive_pair_keep", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&context->mesh.used));

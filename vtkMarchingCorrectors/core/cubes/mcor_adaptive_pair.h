@@ -10,9 +10,6 @@
 /* Leaves the cells that pairs reach, of those in mesh.used; adaptive_pairs.seeds: those that pairs mark. iso: relative
  * to A0. */
 mcor_status mcor_keep_reached(mcor_context* context, double iso);
-/* Adds `count` cells of this box, int4 with their level last, that others have reached; *fresh: whether one is
- * new. */
-mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh);
 void mcor_release_adaptive_pairs(mcor_context* context);
 
 #endif

@@ -7,7 +7,7 @@
  * all parts of a brick at once. */
 
 #include "mcor_adaptive_seed.h"
-#include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_parallel.h"
 #include "mcor_tree.h"
 

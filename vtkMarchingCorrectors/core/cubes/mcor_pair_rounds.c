@@ -8,8 +8,8 @@
  * box has right values at its nodes, and ends in a cell of that box or of its ring. Cells of adaptive cubes
  * have a level; uniform ones have level 0. */
 
-#include "mcor_adaptive.h"
-#include "mcor_adaptive_pair.h"
+#include "mcor_pair_rounds.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_ranks.h"
 
@@ -195,7 +195,7 @@ static mcor_status mcor_take_cells(
 
 /* Takes what is in this box of what all boxes tell. */
 static mcor_status mcor_hear_cells(
-  mcor_context* context, const mcor_world_cell* told, int64_t count, bool* fresh)
+  mcor_context* context, const mcor_world_cell* told, int64_t count, mcor_take take, bool* fresh)
 {
   cl_int* places = NULL;
   int64_t found = 0, room = 0;
@@ -216,9 +216,8 @@ static mcor_status mcor_hear_cells(
     }
     found += mcor_place_cell(context, told + i, places + 4 * found);
   }
-  const mcor_status status = found == 0 ? MCOR_OK
-    : mcor_is_adaptive(context)         ? mcor_take_reached(context, places, (int)found, fresh)
-                                        : mcor_take_cells(context, places, (int)found, fresh);
+  const mcor_take own = take ? take : mcor_take_cells;
+  const mcor_status status = found > 0 ? own(context, places, (int)found, fresh) : MCOR_OK;
   free(places);
   return status;
 }
@@ -243,7 +242,7 @@ static mcor_status mcor_tell_cells(
   return status;
 }
 
-mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
+mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* grown)
 {
   mcor_cell_list list = { 0 };
   const void* all;
@@ -262,7 +261,7 @@ mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
   if (status == MCOR_OK && context->grid.count > 0 && has_leaves)
   {
     bool some;
-    status = mcor_hear_cells(context, all, count, &some);
+    status = mcor_hear_cells(context, all, count, take, &some);
     fresh = some;
   }
   free(list.cells);
@@ -285,7 +284,7 @@ mcor_status mcor_attend_growth(mcor_context* context)
 {
   for (bool grown = true; grown;)
   {
-    MCOR_TRY(mcor_exchange_cells(context, &grown));
+    MCOR_TRY(mcor_exchange_cells(context, NULL, &grown));
   }
   return MCOR_OK;
 }

@@ -4,7 +4,7 @@
 /* Topology by the field: what Marching Cubes leaves ambiguous is decided by samples of the
  * field. */
 
-#include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 
 /* Adaptive cubes: the bricks of all levels, their numbers and places. */
 
-#include "mcor_tree.h"
+#include "mcor_tree_brick.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 /* Adaptive cubes: split bricks as keys, numbers of all levels' bricks, as other ranks and calls are told
  * of them. */
 
-#include "mcor_tree.h"
+#include "mcor_tree_brick.h"
 
 #include <stdlib.h>
 

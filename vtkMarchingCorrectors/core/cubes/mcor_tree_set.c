@@ -3,7 +3,7 @@
 
 /* Adaptive cubes: sets of bricks. */
 
-#include "mcor_tree.h"
+#include "mcor_tree_set.h"
 
 #include <stdlib.h>
 #include <string.h>

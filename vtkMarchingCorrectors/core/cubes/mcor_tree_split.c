@@ -15,7 +15,7 @@
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
 #include "mcor_sph_kernel.h"
-#include "mcor_tree.h"
+#include "mcor_tree_brick.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -349,38 +349,6 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   return mcor_start_device(context, &list, chosen, place, count);
 }
 
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
-{
-  mcor_cl* cl = &context->cl;
-  const bool is_open = cl->timed_queue != NULL; /* not where the last change of devices failed */
-  if (!cl->is_default ||
-    (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
-  {
-    return MCOR_OK;
-  }
-  mcor_device_list list;
-  mcor_find_devices(&list);
-  const int chosen = mcor_choose_device(&list, build);
-  if (chosen < 0)
-  {
-    return mcor_fail_without_device(context, &list);
-  }
-  if (is_open && list.platforms[chosen] == cl->platform)
-  {
-    return MCOR_OK;
-  }
-  const mcor_cl before = *cl;
-  mcor_release_memory(context);
-  mcor_close_device(context);
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
-  *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
-  const mcor_status status = mcor_start_default(context, &list, build);
-  cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory
-    ? before.memory_limit
-    : cl->device_memory;
-  return status;
-}
-
 void mcor_close_device(mcor_context* context)
 {
   mcor_cl* cl = &context->cl;
@@ -404,4 +372,36 @@ void mcor_close_device(mcor_context* context)
   {
     clReleaseDevice(cl->share);
   }
+}
+
+mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* build, bool* other)
+{
+  const mcor_cl* cl = &context->cl;
+  const bool is_open = cl->timed_queue != NULL; /* not where the last change of devices failed */
+  *other = false;
+  if (!cl->is_default ||
+    (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
+  {
+    return MCOR_OK;
+  }
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  const int chosen = mcor_choose_device(&list, build);
+  *other = chosen >= 0 && !(is_open && list.platforms[chosen] == cl->platform);
+  return chosen < 0 ? mcor_fail_without_device(context, &list) : MCOR_OK;
+}
+
+mcor_status mcor_change_device(mcor_context* context, const mcor_build* build)
+{
+  mcor_cl* cl = &context->cl;
+  const mcor_cl before = *cl;
+  mcor_device_list list;
+  mcor_find_devices(&list);
+  mcor_close_device(context);
+  *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
+  const mcor_status status = mcor_start_default(context, &list, build);
+  cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory
+    ? before.memory_limit
+    : cl->device_memory;
+  return status;
 }

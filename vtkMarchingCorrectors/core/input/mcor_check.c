@@ -125,66 +125,6 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
   return mcor_check_box(context, options);
 }
 
-typedef struct mcor_check
-{
-  const mcor_array* array;
-  bool positive;
-  bool illegal[MCOR_SLICES];
-} mcor_check;
-
-/* Whether elements are finite, and above 0 where they must be; written to be vectorised. */
-static void mcor_check_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_check* check = data;
-  const bool positive = check->positive;
-  int illegal = 0;
-  if (check->array->type == MCOR_FLOAT64)
-  {
-    const double *x = check->array->data, least = positive ? 0 : -DBL_MAX;
-    for (int64_t i = first; i < last; ++i)
-    {
-      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > least : x[i] >= least));
-    }
-  }
-  else
-  {
-    const float *x = check->array->data, least = positive ? 0 : -FLT_MAX;
-    for (int64_t i = first; i < last; ++i)
-    {
-      illegal |= !((x[i] <= FLT_MAX) & (positive ? x[i] > least : x[i] >= least));
-    }
-  }
-  check->illegal[slice] = illegal;
-}
-
-static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
-{
-  mcor_check check = { .array = array, .positive = positive };
-  const int slices = mcor_parallel_for(elements, MCOR_MEMORY_GRAIN, mcor_check_slice, &check);
-  bool illegal = false;
-  for (int s = 0; s < slices; ++s)
-  {
-    illegal = illegal || check.illegal[s];
-  }
-  return !illegal;
-}
-
-/* Index of the first particle, solids left out where `solid` is not NULL, of which a component is
- * not finite, or not above 0 where it must be; -1 if there is none. */
-static int64_t mcor_find_illegal(
-  const mcor_array* array, const uint8_t* solid, int64_t count, int component, bool positive)
-{
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const double x = mcor_array_at(array, i, component);
-    if ((!isfinite(x) || (positive && !(x > 0))) && !(solid && solid[i]))
-    {
-      return i;
-    }
-  }
-  return -1;
-}
-
 /* The array has a known type and as many components as it must. */
 static mcor_status mcor_check_form(
   mcor_context* context, const mcor_array* array, const char* role, int components)
@@ -196,23 +136,6 @@ static mcor_status mcor_check_form(
     MCOR_INVALID_ARGUMENT, "The %s array %s has %d components; it must have %d.", role, name,
     array->components, components);
   return MCOR_OK;
-}
-
-int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count)
-{
-  const int components = mcor_components(array);
-  int64_t first = -1;
-  if (array->data && mcor_is_legal(array, count * components, false))
-  {
-    return -1;
-  }
-  for (int c = 0; c < components; ++c)
-  {
-    const int64_t rest = first >= 0 ? first : array->data ? count : 1;
-    const int64_t i = mcor_find_illegal(array, array->data ? solid : NULL, rest, c, false);
-    first = i < 0 ? first : i;
-  }
-  return first;
 }
 
 /* The array has the right form, and every element that is used is finite, and above 0

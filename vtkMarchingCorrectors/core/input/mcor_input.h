@@ -52,8 +52,13 @@ double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count
  * which one to the sentence. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
-/* mcor_check.c. The first particle, solids left out, of which a component is not finite; -1 if there
- * is none. */
+/* mcor_finite.c. Whether all elements are finite, and above 0 where they must be. */
+bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive);
+/* Index of the first particle, solids left out where `solid` is not NULL, of which a component is
+ * not finite, or not above 0 where it must be; -1 if there is none. */
+int64_t mcor_find_illegal(
+  const mcor_array* array, const uint8_t* solid, int64_t count, int component, bool positive);
+/* The first particle, solids left out, of which any component is not finite; -1 if there is none. */
 int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count);
 
 /* Whether all values of one component are equal. */
@@ -120,5 +125,12 @@ void mcor_free_watch(mcor_watch* watch);
 /* Smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
+
+/* Whether volumes are computed from the particles' density on the device. */
+static inline bool mcor_needs_density(const mcor_input* input)
+{
+  return !mcor_is_given(&input->volume) &&
+    !(mcor_is_given(&input->mass) && mcor_is_given(&input->density));
+}
 
 #endif

@@ -7,7 +7,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
-#include "mcor_tree.h"
+#include "mcor_tree_brick.h"
 
 #include <float.h>
 #include <math.h>

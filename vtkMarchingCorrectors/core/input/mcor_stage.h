@@ -3,7 +3,7 @@
 #ifndef mcor_stage_h
 #define mcor_stage_h
 
-#include "mcor_internal.h"
+#include "mcor_input.h"
 
 /* The input in the device's form, in input order; solids that are not used left out. Arrays are
  * views of the buffers named like them. */
@@ -15,13 +15,6 @@ typedef struct mcor_staging
   double size_scale;  /* see mcor_size_scale */
   void* level;        /* uint8_t */
 } mcor_staging;
-
-/* Whether volumes are computed from the particles' density on the device. */
-static inline bool mcor_needs_density(const mcor_input* input)
-{
-  return !mcor_is_given(&input->volume) &&
-    !(mcor_is_given(&input->mass) && mcor_is_given(&input->density));
-}
 
 /* What the input's volume or mass is multiplied by on the way to the device. */
 double mcor_size_scale(const mcor_context* context, const mcor_input* input);

@@ -4,7 +4,7 @@
 /* A chunk of the caller's particles, in the staging arrays' units. */
 
 #include "mcor_stage_chunk.h"
-#include "mcor_tree.h"
+#include "mcor_tree_brick.h"
 
 #include <float.h>
 #include <math.h>

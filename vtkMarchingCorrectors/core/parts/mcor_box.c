@@ -21,11 +21,10 @@
  * mcor_pair_rounds.c. */
 
 #include "mcor_box.h"
-#include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_stage.h"
-#include "mcor_tree.h"
+#include "mcor_tree_brick.h"
 
 #include <float.h>
 #include <math.h>

@@ -66,12 +66,6 @@ int mcor_list_images(
 /* Whether the device lacks particles that are far from the box, or has images of some. */
 bool mcor_is_limited(const mcor_context* context);
 
-/* mcor_pair_rounds.c. *grown is false when no box has a new cell. */
-mcor_status mcor_exchange_cells(mcor_context* context, bool* grown);
-mcor_status mcor_attend_growth(mcor_context* context);
-mcor_status mcor_attend_rounds(mcor_context* context, int first);
-void mcor_end_rounds(mcor_context* context);
-
 /* Seeds: of cubes of a size, and of bricks, those off the box become void. */
 mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size);
 mcor_status mcor_void_bricks(mcor_context* context);

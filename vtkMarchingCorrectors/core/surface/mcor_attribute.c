@@ -6,7 +6,7 @@
  * at hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values,
  * often masses or smoothing lengths, is that value. */
 
-#include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 

@@ -4,7 +4,7 @@
 /* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
  * makes, and ascending in the order of the whole surface's points. */
 
-#include "mcor_adaptive.h"
+#include "mcor_adaptive_level.h"
 #include "mcor_cap.h"
 #include "mcor_tree.h"
 

@@ -44,6 +44,7 @@ foreach (kernel IN LISTS kernels)
   set(name "${CMAKE_MATCH_1}")
   string(REGEX REPLACE "[ \n]+" " " parameters "${CMAKE_MATCH_2}")
   string(REPLACE "," ";" parameters "${parameters}")
+  set(taken "")
   set(passed "")
   set(i 0)
   foreach (parameter IN LISTS parameters)
@@ -61,13 +62,17 @@ foreach (kernel IN LISTS kernels)
         message(FATAL_ERROR "${name}: a kernel of the built-in device has no argument of the type ${type}")
       endif ()
     endif ()
-    string(APPEND passed ", *(${type} __private*)arguments[${i}]")
+    string(APPEND taken "      const ${type} a${i} = *(${type} __private*)arguments[${i}];\n")
+    string(APPEND passed ", a${i}")
     math(EXPR i "${i} + 1")
   endforeach ()
   string(APPEND names "${name};")
   string(APPEND kinds ";")
-  string(APPEND cases "    case ${number}:\n      for (size_t i = first; i < last; ++i)\n"
-    "        ${name}(i${passed});\n      break;\n")
+  # Work-items are independent: no access of one depends on another's.
+  string(APPEND cases "    case ${number}:\n    {\n${taken}"
+    "      _Pragma(\"clang loop vectorize(assume_safety)\")\n"
+    "      for (size_t i = first; i < last; ++i)\n"
+    "        ${name}(i${passed});\n      break;\n    }\n")
   math(EXPR number "${number} + 1")
 endforeach ()
 string(REGEX REPLACE "__kernel void ([a-z0-9_]+)\\(" "void \\1(const size_t mcor_item, " text "${text}")

@@ -119,7 +119,7 @@ class TestPeriod(unittest.TestCase):
         probe.Update()
         data = probe.GetOutput().GetPointData()
         self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (1, 1))
-        for name in ("Velocity", "Weight"):
+        for name in ("Velocity", "WeightSum"):
             array = data.GetArray(name)
             for i in range(81):
                 x, y = i % 9, i // 9
@@ -131,7 +131,7 @@ class TestPeriod(unittest.TestCase):
             filter_.SetPeriodicBounds(*(0, 1) * 3)
             filter_.Update()
             expected = bytes_of(filter_.GetOutput()) if filter_.GetOutput().IsA("vtkPointSet") else None
-            weight = filter_.GetOutput().GetPointData().GetArray("Weight")
+            weight = filter_.GetOutput().GetPointData().GetArray("WeightSum")
             filter_.SetPeriodicBounds(*(0,) * 6)
             filter_.DetectPeriodOn()
             errors = []
@@ -149,7 +149,7 @@ class TestPeriod(unittest.TestCase):
             if expected:
                 self.assertEqual(bytes_of(filter_.GetOutput()), expected)
             else:
-                found = filter_.GetOutput().GetPointData().GetArray("Weight")
+                found = filter_.GetOutput().GetPointData().GetArray("WeightSum")
                 self.assertEqual(bytes(memoryview(found)), bytes(memoryview(weight)))
             particles.GetFieldData().RemoveArray("BoxSize")
 
@@ -258,7 +258,7 @@ class TestProbe(unittest.TestCase):
             probe.SetInputData(points)
             probe.Update()
             data = probe.GetOutput().GetPointData()
-            results.append([vtk_to_numpy(data.GetArray(name)).tobytes() for name in ("Weight", "Velocity")])
+            results.append([vtk_to_numpy(data.GetArray(name)).tobytes() for name in ("WeightSum", "Velocity")])
             self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (0, 1))
         self.assertTrue(results[0] == results[1])
 

@@ -13,7 +13,8 @@ mcor_is_installed() { # PACKAGE
 }
 
 # Plain VTK's and ParaView's development packages exclude each other on Debian, so a machine has one
-# of them. Prints the one to use: what was asked for, else what is there, else plain VTK.
+# of them. Prints the one to use: what was asked for, else what is there, else the answer to a question, or
+# plain VTK where nobody can answer.
 mcor_choose_sdk() { # "" | vtk | paraview
   case "${1:-}" in
     vtk) mcor_is_installed python3-paraview &&
@@ -25,7 +26,24 @@ mcor_choose_sdk() { # "" | vtk | paraview
   esac
   if [ -n "${1:-}" ]; then echo "$1"
   elif mcor_is_installed paraview-dev; then echo paraview
-  else echo vtk; fi
+  elif mcor_is_installed libvtk9-dev; then echo vtk
+  else mcor_ask_sdk; fi
+}
+
+# Before anything is installed.
+mcor_ask_sdk() {
+  local answer=
+  echo "No SDK is installed yet: paraview (the plugin, and ParaView itself) or vtk (program, Python and C++" >&2
+  echo "without a plugin). On Debian they exclude each other." >&2
+  if [ -t 0 ]; then
+    read -r -p "Which one, vtk or paraview? [vtk] " answer
+  else
+    echo "Taking vtk; --sdk paraview takes the other." >&2
+  fi
+  case "${answer:-vtk}" in
+    vtk | paraview) echo "${answer:-vtk}" ;;
+    *) mcor_die "the SDK is vtk or paraview, not '$answer'" ;;
+  esac
 }
 
 mcor_common_packages() {

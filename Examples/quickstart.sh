@@ -4,7 +4,8 @@
 #
 #   ./Examples/quickstart.sh [--sdk vtk|paraview]
 #
-# --sdk chooses on a machine that has neither; plain VTK is the default. Results: build/quickstart/.
+# --sdk chooses on a machine that has neither: paraview builds the plugin, too, vtk does without ParaView.
+# Without --sdk you are asked; where nobody can answer it is vtk. Results: build/quickstart/.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 . .ci/packages.sh

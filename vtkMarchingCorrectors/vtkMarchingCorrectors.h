@@ -58,13 +58,14 @@
  * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
  * "Points", "Triangles", "Area" and, of a closed surface, "Volume" (of one process), "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
- * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
+ * "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices", "TrimVerticesLinear",
  * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
  * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
  * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "WallShare", "Kernel", "SeedMode",
  * "Topology", "Precision", "CubeSize", "Box", "PeriodicBounds" and "Capping" (where they are used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
  * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
- * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar;
+ * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar, at positions
+ * that the device has rounded by up to "PositionError" (in L);
  * mcor_statistics in mcor.h says more of each. All of it, and the output, is a function of the input and the
  * properties, but for what the run cost, and the two numbers of complete seeds, which count the cells
  * examined: also those that KeepDeviceData kept.

@@ -277,7 +277,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
                           : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
     if (this->InterpolateAttributes)
     {
-      input.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
+      input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
     }
   }
   this->Probe(input, points, vtkDataSet::SafeDownCast(output));

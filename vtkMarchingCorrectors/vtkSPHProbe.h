@@ -15,12 +15,12 @@
  * The output is the data set of port 0, its own arrays included, with
  *
  *     one array for each float or double point array of the particles, of its name, its type
- *     Weight                sum_j V_j W(x - x_j, s h_j): about 1 in the fluid, 0 far from it
+ *     WeightSum             sum_j V_j W(x - x_j, s h_j): about 1 in the fluid, 0 far from it
  *     vtkValidPointMask     1 where the weight is not below WeightThreshold, else 0
- *     NAME_Gradient         of each of these arrays and of Weight, if ComputeGradients is on: 3
+ *     NAME_Gradient         of each of these arrays and of WeightSum, if ComputeGradients is on: 3
  *                           values per component: d/dx, d/dy, d/dz of the first, then the next
  *
- * Where a point is not valid, the arrays, but Weight, are 0, or what was chosen, see SetNullValue(). Active
+ * Where a point is not valid, the arrays, but WeightSum, are 0, or what was chosen, see SetNullValue(). Active
  * scalars become the particles' velocities, else their first vector or scalar that varies. Arrays that were there under these
  * names are replaced. Arrays of other types, such as identifiers, are left out, as are those named
  * by AddExcludedArray(); one that is NaN or infinite at a fluid particle is left out with a warning.
@@ -100,7 +100,7 @@ public:
 
   ///@{
   /**
-   * Add the particles' arrays; off, Weight and the mask alone. On by default.
+   * Add the particles' arrays; off, WeightSum and the mask alone. On by default.
    */
   vtkSetMacro(InterpolateAttributes, vtkTypeBool);
   vtkGetMacro(InterpolateAttributes, vtkTypeBool);
@@ -118,7 +118,7 @@ public:
 
   ///@{
   /**
-   * What arrays, but Weight and the mask, are where a point is not valid: NaN, or NullValue, 0 by default.
+   * What arrays, but WeightSum and the mask, are where a point is not valid: NaN, or NullValue, 0 by default.
    * NaNOutside is off by default.
    */
   vtkSetMacro(NaNOutside, vtkTypeBool);

@@ -114,7 +114,7 @@ def compare_slices(particles, array, size, runs):
               f"{beside[1] / median[name][1]:7.1f}")
     ours = probe.GetOutput().GetPointData()
     theirs = interpolator.GetOutputDataObject(0).GetPointData()
-    inside = vtk_to_numpy(ours.GetArray("Weight")) > 0.9
+    inside = vtk_to_numpy(ours.GetArray("WeightSum")) > 0.9
     a, b = (vtk_to_numpy(data.GetArray(array))[inside] for data in (ours, theirs))
     print(f"  largest difference at the {inside.sum()} points inside: "
           f"{numpy.abs(a - b).max() / numpy.ptp(a):.2e} of the range")

@@ -110,7 +110,7 @@ class SphAccessor:
     def probe(self, points: Union[pyvista.DataSet, np.ndarray],
               **options: Unpack[Particles]) -> pyvista.DataSet:
         """A copy of the points (a data set, or (points, 3)) with the field of the point arrays at
-        them, "WeightSum", and "Valid": 1 where there is fluid.
+        them, "WeightSum", and "vtkValidPointMask": 1 where there is fluid.
 
         points: a data set, or an array (points, 3).
         """
@@ -124,7 +124,7 @@ class SphAccessor:
         for name, values in found.gradients.items():
             result.point_data[name + "_Gradient"] = values.reshape(len(values), -1)
         result.point_data["WeightSum"] = found.weight_sum
-        result.point_data["Valid"] = found.valid.astype(np.uint8)
+        result.point_data["vtkValidPointMask"] = found.valid.astype(np.uint8)
         return result
 
     @_method(DERIVATIVES)

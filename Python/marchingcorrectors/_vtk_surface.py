@@ -188,6 +188,7 @@ def add_statistics(data, s, surface, options):
     add_count(data, "IterationsMax", s["iterations_max"])
     add_count(data, "NewtonEvaluations", s["newton_evaluations"])
     add_real(data, "ResidualMax", s["residual_max"])
+    add_real(data, "PositionError", s["position_error"])
     add_count(data, "TrimVertices", s["trim_vertices"])
     add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
     add_real(data, "Area", s["area"])

@@ -395,7 +395,7 @@ class Options(CommandLineTest):
                 self.assertEqual((result.returncode, result.stderr), (0, ""))
                 self.assertIn(f"points      5, {valid} of them valid", result.stdout)
                 text = output.read_bytes().decode("latin1")
-                for array in ("Radius", "Weight", "vtkValidPointMask", "Divergence", "Radius_Gradient"):
+                for array in ("Radius", "WeightSum", "vtkValidPointMask", "Divergence", "Radius_Gradient"):
                     self.assertRegex(text, rf'\b{array}\b')
                 self.assertNotIn("Density", text)
         text = (self.directory / "out.vtp").read_text()
@@ -427,7 +427,7 @@ class Options(CommandLineTest):
         numbers = [float(v) for v in (image.get("Origin") + " " + image.get("Spacing")).split()]
         for found, expected in zip(numbers, [-0.45, -0.45, 0.1, 0.05, 0.05, 0.05]):
             self.assertAlmostEqual(found, expected, places=6)
-        for name in ("Radius", "Weight", "vtkValidPointMask", "Divergence"):
+        for name in ("Radius", "WeightSum", "vtkValidPointMask", "Divergence"):
             self.assertIn(f'Name="{name}"', output.read_text())
         result = self.run_program(self.input, self.directory / "slice.vtk", "--slice=x=-7")
         self.assertIn("points      262144, 0 of them valid", result.stdout)
@@ -501,6 +501,7 @@ class Options(CommandLineTest):
 
     def test_input_formats(self):
         expected = self.succeed(*ISO)["statistics"]
+        self.assertTrue(0 < expected["PositionError"] < 1e-6)
         for name, write in (("p.vtu", files.write_vtu), ("p.vtk", files.write_legacy)):
             with self.subTest(name):
                 write(self.directory / name, self.points, self.arrays)

@@ -63,7 +63,7 @@ void CheckValues(bool sum)
   probe->SetWeightThreshold(0.3);
   probe->Update();
   vtkPointData* output = OutputOf(probe);
-  vtkDataArray *radius = output->GetArray("Radius"), *weight = output->GetArray("Weight");
+  vtkDataArray *radius = output->GetArray("Radius"), *weight = output->GetArray("WeightSum");
   auto* mask = vtkCharArray::SafeDownCast(output->GetArray("vtkValidPointMask"));
   CHECK(output->GetArray("Number") == points->GetPointData()->GetArray("Number"));
   CHECK(radius && weight && mask && !output->GetArray("Radius_Gradient"));
@@ -126,7 +126,7 @@ void CheckBits()
   probe->Update();
   back->Update();
   bool same = true;
-  for (const char* name : { "Radius", "Weight" })
+  for (const char* name : { "Radius", "WeightSum" })
   {
     vtkDataArray *a = OutputOf(probe)->GetArray(name), *b = OutputOf(back)->GetArray(name);
     for (int i = 0; i < count; ++i)
@@ -161,7 +161,7 @@ void CheckBits()
   CHECK(first && second &&
     test::SameValues(
       first->GetPointData()->GetArray("Radius"), second->GetPointData()->GetArray("Radius")));
-  CHECK(first->GetPointData()->GetArray("Weight")->GetComponent(20, 0) > 0.5);
+  CHECK(first->GetPointData()->GetArray("WeightSum")->GetComponent(20, 0) > 0.5);
   CHECK(first->GetExtent()[2] == 2);
 }
 
@@ -219,14 +219,14 @@ void CheckSources()
   }
   auto joined = MakeProbe(points, blocks);
   joined->Update();
-  CHECK(
-    test::SameValues(OutputOf(whole)->GetArray("Weight"), OutputOf(joined)->GetArray("Weight")));
+  CHECK(test::SameValues(
+    OutputOf(whole)->GetArray("WeightSum"), OutputOf(joined)->GetArray("WeightSum")));
   CHECK(!OutputOf(joined)->GetArray("Radius"));
   test::AddArray<vtkIntArray>(
     cube, "Type", 1, [&](vtkIdType i, int) { return cube->GetPoint(i)[0] > 0.0; });
   whole->SetFluidArrayName("Type");
   whole->Update();
-  vtkDataArray* weight = OutputOf(whole)->GetArray("Weight");
+  vtkDataArray* weight = OutputOf(whole)->GetArray("WeightSum");
   bool good = true;
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {

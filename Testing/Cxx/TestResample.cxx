@@ -46,7 +46,7 @@ void CheckValues(vtkSPHResample* filter, vtkPolyData* particles)
   probe->Update();
   vtkPointData* expected = vtkDataSet::SafeDownCast(probe->GetOutput())->GetPointData();
   vtkPointData* data = made->GetPointData();
-  CHECK(test::SameValues(expected->GetArray("Weight"), data->GetArray("Weight")));
+  CHECK(test::SameValues(expected->GetArray("WeightSum"), data->GetArray("WeightSum")));
   vtkDataArray *mask = data->GetArray("vtkValidPointMask"), *radius = data->GetArray("Radius");
   CHECK(mask && radius && data->GetScalars() == data->GetArray("Velocity"));
   int valid = 0;

@@ -10,11 +10,13 @@
 
 #include "vtkCommunicator.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkMPIController.h"
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkXMLPolyDataReader.h"
 
@@ -49,6 +51,8 @@ void ContourDamBreak(vtkMarchingCorrectors* filter)
   filter->SetValue(0, 1.0);
   filter->SetFluidArrayName("ParticleType");
 }
+
+const char* const TwoSizes = "two sizes"; // no file
 
 const std::vector<Case> Cases = {
   { "free surface", "double_dam_break_small",
@@ -167,7 +171,40 @@ const std::vector<Case> Cases = {
       f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
       f->SetCubeSizeFactor(1.0);
     } },
+  { "computed volumes of large particles beside small ones", TwoSizes,
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->DetectArraysOff();
+      f->SetSmoothingLengthArrayName("h");
+    } },
 };
+
+/// Small particles for x < 2, beyond these large ones, whose supports hold many small ones: a rank that has
+/// no large one must be told how far others need its particles.
+vtkSmartPointer<vtkPolyData> MakeTwoSizes()
+{
+  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkDoubleArray> lengths;
+  lengths->SetName("h");
+  for (const double size : { 0.05, 0.4 })
+  {
+    const double first = size < 0.1 ? 0.0 : 2.0;
+    const int along = size < 0.1 ? 40 : 5, across = static_cast<int>(std::lround(1.2 / size));
+    for (int i = 0; i < along * across * across; ++i)
+    {
+      const int x = i % along, y = i / along % across, z = i / along / across;
+      const double shift = 0.2 * std::sin(1.3 * x + 2.1 * y + 0.7 * z);
+      points->InsertNextPoint(
+        first + size * (x + 0.5 + shift), size * (y + 0.5 - shift), size * (z + 0.5));
+      lengths->InsertNextValue(1.2 * size);
+    }
+  }
+  particles->SetPoints(points);
+  particles->GetPointData()->AddArray(lengths);
+  return particles;
+}
 
 vtkSmartPointer<vtkPolyData> Read(const std::string& file)
 {
@@ -227,7 +264,8 @@ bool SayTheSame(vtkMultiProcessController* controller, const Extracted& own, Ext
 /// Returns how many partitions give another surface.
 int Check(const Case& tried, const std::string& folder, vtkMPIController* controller)
 {
-  const vtkSmartPointer<vtkPolyData> particles = Read(folder + "/" + tried.File + ".vtp");
+  const vtkSmartPointer<vtkPolyData> particles =
+    tried.File == TwoSizes ? MakeTwoSizes() : Read(folder + "/" + tried.File + ".vtp");
   const bool isFirst = controller->GetLocalProcessId() == 0;
   const Extracted whole = isFirst ? Extract(tried.SetUp, particles, nullptr) : Extracted();
   int failures = 0;

@@ -64,10 +64,10 @@ def check_probe(folder, ranks, particles):
     file = os.path.join(folder, f"probe_{ranks}.pvtp")
     SaveData(file, proxy=probe(particles), DataMode="Binary")
     alone, union = in_order(read(os.path.join(folder, "probe_1.vtp"))), in_order(read(file))
-    assert set(alone) == set(union) and {"Weight", "Gradients"} <= set(alone), (alone.keys(), union.keys())
+    assert set(alone) == set(union) and {"WeightSum", "Gradients"} <= set(alone), (alone.keys(), union.keys())
     for name, values in alone.items():
         assert values.tobytes() == union[name].tobytes(), name
-    print(f"probe: {len(alone['Weight'])} points of {ranks} processes", flush=True)
+    print(f"probe: {len(alone['WeightSum'])} points of {ranks} processes", flush=True)
 
 
 def check_ranks(folder, ranks):

@@ -61,6 +61,7 @@ extern "C"
     int quadrants; /* bits: valid cells around it, u >= 0: 1, v >= 0: 2, the axes after its own */
     int used;      /* by a loop of three or more */
     int certain;   /* all cells around it are */
+    int doubtful;  /* rounding may join it on a face in another way */
     int64_t component;
   } adaptive_edge;
 
@@ -85,22 +86,39 @@ extern "C"
     adaptive_segment* segments; /* of valid cells, but of loops of two */
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;
-    int64_t component_count, triangle_count;
+    int64_t component_count, triangle_count; /* triangles but for tunnels */
+    const struct oracle_decider* decider;    /* during oracle_march_adaptive */
   } oracle_adaptive;
+
+  /* Topology by the field: how an ambiguous face between two plain cells is joined is asked of the field at
+   * the saddle of its values. */
+  typedef struct oracle_decider
+  {
+    const oracle_field* field;
+    const oracle_limits* limits;
+    double unit; /* roundoff of the working precision */
+  } oracle_decider;
+
+  /* Whether the nodes above iso are joined on a face: 0 or 1, or -1 where that is within rounding. value: at
+   * the corners (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: where the first one is. */
+  int oracle_decide_face(const oracle_decider* decider, const double value[4],
+    const double corner[3], double cube, int u, int v);
 
   /* level_limit: the highest level at most. Evaluates all nodes; 0 if there are more than
    * node_limit. */
   int oracle_create_adaptive(oracle_adaptive* adaptive, const oracle_field* field, double cube,
     int level_limit, int64_t node_limit);
-  /* Classifies the nodes, finds cells, edges and segments for an iso value. */
-  void oracle_march_adaptive(
-    oracle_adaptive* adaptive, const oracle_field* field, const oracle_limits* limits);
+  /* Classifies the nodes, finds cells, edges and segments for an iso value. by_field: topology is. */
+  void oracle_march_adaptive(oracle_adaptive* adaptive, const oracle_field* field,
+    const oracle_limits* limits, int by_field, double unit);
   void oracle_free_adaptive(oracle_adaptive* adaptive);
 
   /* The nodes of the cell, made if `add`, else -1 where there are none; which middles are nodes
    * follows from finer bricks around the cell's. */
   void oracle_adaptive_nodes(oracle_adaptive* adaptive, const adaptive_brick* brick,
     const int64_t at[3], int add, int64_t node[27]);
+  /* Whether a cell of the level is there, and no finer brick touches it, not even its corner. */
+  int oracle_adaptive_is_plain(oracle_adaptive* adaptive, int level, const int64_t at[3]);
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@
 
 #include "oracle_adaptive.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,6 +98,54 @@ static int adaptive_ring(
   return count;
 }
 
+int oracle_decide_face(const oracle_decider* decider, const double value[4], const double corner[3],
+  double cube, int u, int v)
+{
+  const double sum = value[0] - value[2] - value[1] + value[3];
+  double point[3] = { corner[0], corner[1], corner[2] };
+  oracle_sample sample;
+  point[u] += cube * (value[0] - value[2]) / sum;
+  point[v] += cube * (value[0] - value[1]) / sum;
+  oracle_evaluate(decider->field, NULL, point, &sample);
+  /* Rounding of the value, and of the node values, which moves the point. */
+  const double moved = cube * decider->limits->close / fabs(sum);
+  const double rounding = decider->limits->close +
+    oracle_rounding(decider->field, point, decider->unit) +
+    moved * (fabs(sample.gradient[u]) + fabs(sample.gradient[v]));
+  if (fabs(sample.value - decider->limits->iso) <= rounding ||
+    (decider->field->kind == ORACLE_SHEPARD && fabs(sample.weight) < 1e-9))
+  {
+    return -1;
+  }
+  return sample.value > decider->limits->iso;
+}
+
+/* The same for a face of a cell; as in the case table, 0, where the field does not decide. */
+static int adaptive_joined(oracle_adaptive* adaptive, const adaptive_cell* cell, int face)
+{
+  static const int stride[3] = { 1, 3, 9 };
+  const int axis = face / 2, side = face % 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const int64_t size = (int64_t)1 << cell->level;
+  int64_t across[3] = { cell->at[0], cell->at[1], cell->at[2] };
+  double value[4], corner[3];
+  across[axis] += side ? size : -size;
+  if (!adaptive->decider || !oracle_adaptive_is_plain(adaptive, cell->level, cell->at) ||
+    !oracle_adaptive_is_plain(adaptive, cell->level, across))
+  {
+    return 0;
+  }
+  for (int n = 0; n < 4; ++n)
+  {
+    const int place = 2 * side * stride[axis] + 2 * (n & 1) * stride[u] + 2 * (n >> 1) * stride[v];
+    value[n] = adaptive->nodes.value[cell->node[place]];
+    for (int a = 0; a < 3 && n == 0; ++a)
+    {
+      corner[a] = (double)adaptive->node_at[3 * cell->node[place] + a] * adaptive->cube;
+    }
+  }
+  return oracle_decide_face(adaptive->decider, value, corner, (double)size * adaptive->cube, u, v);
+}
+
 /* A cell's segments: next[n] follows edge[n] on its loop. */
 typedef struct adaptive_links
 {
@@ -126,6 +175,49 @@ static void adaptive_link(oracle_adaptive* adaptive, const adaptive_cell* cell, 
   }
 }
 
+static int adaptive_ambiguous(const oracle_adaptive* adaptive, const int64_t* ring, int count)
+{
+  return count == 4 && !adaptive_above(adaptive, ring[0]) == !adaptive_above(adaptive, ring[2]) &&
+    !adaptive_above(adaptive, ring[1]) == !adaptive_above(adaptive, ring[3]) &&
+    !adaptive_above(adaptive, ring[0]) != !adaptive_above(adaptive, ring[1]);
+}
+
+/* Nodes above joined: each of the two below is cut off. */
+static void adaptive_link_joined(oracle_adaptive* adaptive, const adaptive_cell* cell,
+  const int64_t ring[4], adaptive_links* links)
+{
+  for (int n = 0; n < 4; ++n)
+  {
+    if (!adaptive_above(adaptive, ring[n]))
+    {
+      links->edge[links->count] = adaptive_edge_between(adaptive, cell, ring[n], ring[(n + 1) % 4]);
+      links->next[links->count++] =
+        adaptive_edge_between(adaptive, cell, ring[n], ring[(n + 3) % 4]);
+    }
+  }
+}
+
+/* On a face that is not split. */
+static void adaptive_link_face(oracle_adaptive* adaptive, const adaptive_cell* cell, int face,
+  const int64_t* ring, int count, adaptive_links* links)
+{
+  const int ambiguous = adaptive_ambiguous(adaptive, ring, count);
+  const int joined = ambiguous ? adaptive_joined(adaptive, cell, face) : 0;
+  if (joined > 0)
+  {
+    adaptive_link_joined(adaptive, cell, ring, links);
+  }
+  else
+  {
+    adaptive_link(adaptive, cell, ring, count, links);
+  }
+  for (int n = 0; n < 4 && joined < 0; ++n)
+  {
+    const int64_t edge = adaptive_edge_between(adaptive, cell, ring[n], ring[(n + 1) % 4]);
+    adaptive->edges[edge].doubtful = 1;
+  }
+}
+
 static void adaptive_link_cell(
   oracle_adaptive* adaptive, const adaptive_cell* cell, adaptive_links* links)
 {
@@ -139,7 +231,14 @@ static void adaptive_link_cell(
       const int lowest[2] = { part & 1, part >> 1 };
       int64_t ring[8];
       const int count = adaptive_ring(cell, face / 2, face % 2, lowest, split ? 1 : 2, ring);
-      adaptive_link(adaptive, cell, ring, count, links);
+      if (split)
+      {
+        adaptive_link(adaptive, cell, ring, count, links);
+      }
+      else
+      {
+        adaptive_link_face(adaptive, cell, face, ring, count, links);
+      }
     }
   }
 }
@@ -302,14 +401,17 @@ static void adaptive_unite(oracle_adaptive* adaptive)
   }
 }
 
-void oracle_march_adaptive(
-  oracle_adaptive* adaptive, const oracle_field* field, const oracle_limits* limits)
+void oracle_march_adaptive(oracle_adaptive* adaptive, const oracle_field* field,
+  const oracle_limits* limits, int by_field, double unit)
 {
+  const oracle_decider decider = { field, limits, unit };
   adaptive_map_free(&adaptive->edge_map);
   adaptive->cell_count = adaptive->edge_count = adaptive->segment_count = 0;
   adaptive->component_count = adaptive->triangle_count = 0;
   oracle_classify(&adaptive->nodes, field->kind, limits);
+  adaptive->decider = by_field ? &decider : NULL;
   adaptive_visit_cells(adaptive, adaptive_march_cell);
+  adaptive->decider = NULL;
   adaptive_visit_cells(adaptive, adaptive_doubt_cell);
   adaptive_unite(adaptive);
 }

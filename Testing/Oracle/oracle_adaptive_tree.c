@@ -127,24 +127,49 @@ static int adaptive_finer(
   return 0;
 }
 
+/* On which sides of the brick a place of one of its cells lies, of 3 x 3 x 3 half a cell apart, and where that is. */
+static void adaptive_sides(
+  const adaptive_brick* brick, const int64_t at[3], const int place[3], int64_t p[3], int sides[3])
+{
+  const int64_t size = adaptive_brick_size(brick->level);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    p[axis] = at[axis] + (((int64_t)place[axis] << brick->level) >> 1);
+    sides[axis] = place[axis] == 1 ? 0
+      : p[axis] == brick->at[axis] ? -1
+                                   : p[axis] == brick->at[axis] + size;
+  }
+}
+
+int oracle_adaptive_is_plain(oracle_adaptive* adaptive, int level, const int64_t at[3])
+{
+  const int64_t size = adaptive_brick_size(level);
+  adaptive_brick brick = { { at[0] & -size, at[1] & -size, at[2] & -size }, level };
+  adaptive_brick larger = { { at[0] & -2 * size, at[1] & -2 * size, at[2] & -2 * size },
+    level + 1 };
+  int plain = !adaptive_is_split(adaptive, &brick) &&
+    (level >= adaptive->top || adaptive_is_split(adaptive, &larger));
+  for (int n = 0; n < 27 && plain && level > 0; ++n)
+  {
+    const int place[3] = { n % 3, n / 3 % 3, n / 9 };
+    int64_t p[3];
+    int sides[3];
+    adaptive_sides(&brick, at, place, p, sides);
+    plain = !adaptive_finer(adaptive, &brick, sides);
+  }
+  return plain;
+}
+
 void oracle_adaptive_nodes(oracle_adaptive* adaptive, const adaptive_brick* brick,
   const int64_t at[3], int add, int64_t node[27])
 {
-  const int64_t size = adaptive_brick_size(brick->level);
   for (int n = 0; n < 27; ++n)
   {
     const int place[3] = { n % 3, n / 3 % 3, n / 9 };
     const int middles = (place[0] == 1) + (place[1] == 1) + (place[2] == 1);
     int64_t p[3];
-    int sides[3] = { 0, 0, 0 };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      p[axis] = at[axis] + (((int64_t)place[axis] << brick->level) >> 1);
-      if (place[axis] != 1)
-      {
-        sides[axis] = p[axis] == brick->at[axis] ? -1 : p[axis] == brick->at[axis] + size;
-      }
-    }
+    int sides[3];
+    adaptive_sides(brick, at, place, p, sides);
     const int is_node =
       middles == 0 || (middles < 3 && brick->level > 0 && adaptive_finer(adaptive, brick, sides));
     node[n] = is_node ? adaptive_node(adaptive, p, add) : -1;

@@ -177,7 +177,8 @@ int oracle_set_iso(oracle_reference* reference, double iso)
   reference->limits.margin = relative;
   if (reference->is_adaptive)
   {
-    oracle_march_adaptive(&reference->adaptive, &reference->field, &reference->limits);
+    oracle_march_adaptive(&reference->adaptive, &reference->field, &reference->limits,
+      reference->by_field, reference->unit);
     return 1;
   }
   oracle_free_surface(&reference->surface);
@@ -231,6 +232,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
   message[0] = '\0';
   reference->unit =
     options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON : 0.5 * DBL_EPSILON;
+  reference->by_field = options->topology == MCOR_TOPOLOGY_FIELD;
   reference->limits.node_threshold = options->node_threshold;
   reference->limits.least_weight = 1e-3;
   reference->limits.least_at_vertices = options->sph_kernel == MCOR_M_PRIME_4 ? 0.05 : 1e-3;

@@ -100,7 +100,7 @@ static void check_uniform(
   if (made)
   {
     int64_t used = 0, valid = 0;
-    oracle_march_adaptive(&adaptive, &uniform.field, &uniform.limits);
+    oracle_march_adaptive(&adaptive, &uniform.field, &uniform.limits, 0, uniform.unit);
     for (int64_t e = 0; e < adaptive.edge_count; ++e)
     {
       used += adaptive.edges[e].used;

@@ -60,6 +60,17 @@ static void fill_options(oracle_case* at, uint64_t* state, double* iso)
   }
 }
 
+/* Without any there is no surface, but a sentence. */
+static int has_fluid(const mcor_input* input)
+{
+  int64_t solids = 0;
+  for (int64_t j = 0; input->solid && j < input->count; ++j)
+  {
+    solids += input->solid[j] != 0;
+  }
+  return input->count > solids;
+}
+
 static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
 {
   particle_set set;
@@ -83,7 +94,7 @@ static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
   snprintf(at.name, sizeof(at.name), "random/%llu/%s/f%d%s", (unsigned long long)seed,
     mcor_sph_kernel_name(at.options.sph_kernel), (int)at.options.field,
     adaptive ? "/adaptive" : "");
-  if (set.count > 0)
+  if (has_fluid(&at.input))
   {
     oracle_run_case(suite, &at);
   }

@@ -9,9 +9,10 @@ import pathlib
 import sys
 import unittest
 
+import numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkPolyData
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersGeneral import vtkImageDataToPointSet
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
@@ -74,10 +75,41 @@ def vortex_errors(n):
     return [math.sqrt(s / count) for s in sums]
 
 
+def gradient_error(n, jitter):
+    """The largest error of the corrected gradient of sin(3x) cos(2y) + z^2 inside [0, 1]^3, of n^3 particles."""
+    rng = numpy.random.default_rng(n)
+    at = (numpy.stack(numpy.meshgrid(*[numpy.arange(n)] * 3, indexing="ij"), -1).reshape(-1, 3) + 0.5) / n
+    at += jitter / n * rng.uniform(-1, 1, at.shape)
+    x, y, z = at.T
+    particles, points = vtkPolyData(), vtkPoints()
+    points.SetData(numpy_to_vtk(at, deep=1))
+    particles.SetPoints(points)
+    for name, values in (("F", numpy.sin(3 * x) * numpy.cos(2 * y) + z ** 2), ("h", numpy.full(n ** 3, 1.3 / n)),
+                         ("Volume", numpy.full(n ** 3, n ** -3.0))):
+        array = numpy_to_vtk(values, deep=1)
+        array.SetName(name)
+        particles.GetPointData().AddArray(array)
+    derivatives = vtkSPHDerivatives()
+    derivatives.SetInputData(particles)
+    derivatives.SetInputArrayToProcess(0, 0, 0, POINTS, "F")
+    derivatives.Update()
+    found = vtk_to_numpy(derivatives.GetOutput().GetPointData().GetArray("Gradients"))
+    exact = numpy.stack([3 * numpy.cos(3 * x) * numpy.cos(2 * y), -2 * numpy.sin(3 * x) * numpy.sin(2 * y), 2 * z], -1)
+    inside = numpy.all((at > 0.3) & (at < 0.7), axis=1)
+    return abs(found - exact)[inside].max()
+
+
 def bytes_of(data):
     """Of the points and all their arrays."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays)]
+
+
+class TestOrder(unittest.TestCase):
+    def test_of_gradients(self):
+        """Of second order where particles lie on a lattice, else of first order, as corrected SPH gradients are."""
+        self.assertGreater(math.log2(gradient_error(10, 0) / gradient_error(20, 0)), 1.8)
+        self.assertGreater(math.log2(gradient_error(10, 0.1) / gradient_error(20, 0.1)), 0.9)
 
 
 class TestPeriod(unittest.TestCase):
@@ -119,7 +151,7 @@ class TestPeriod(unittest.TestCase):
         probe.Update()
         data = probe.GetOutput().GetPointData()
         self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (1, 1))
-        for name in ("Velocity", "Weight"):
+        for name in ("Velocity", "WeightSum"):
             array = data.GetArray(name)
             for i in range(81):
                 x, y = i % 9, i // 9
@@ -131,7 +163,7 @@ class TestPeriod(unittest.TestCase):
             filter_.SetPeriodicBounds(*(0, 1) * 3)
             filter_.Update()
             expected = bytes_of(filter_.GetOutput()) if filter_.GetOutput().IsA("vtkPointSet") else None
-            weight = filter_.GetOutput().GetPointData().GetArray("Weight")
+            weight = filter_.GetOutput().GetPointData().GetArray("WeightSum")
             filter_.SetPeriodicBounds(*(0,) * 6)
             filter_.DetectPeriodOn()
             errors = []
@@ -149,7 +181,7 @@ class TestPeriod(unittest.TestCase):
             if expected:
                 self.assertEqual(bytes_of(filter_.GetOutput()), expected)
             else:
-                found = filter_.GetOutput().GetPointData().GetArray("Weight")
+                found = filter_.GetOutput().GetPointData().GetArray("WeightSum")
                 self.assertEqual(bytes(memoryview(found)), bytes(memoryview(weight)))
             particles.GetFieldData().RemoveArray("BoxSize")
 
@@ -258,7 +290,7 @@ class TestProbe(unittest.TestCase):
             probe.SetInputData(points)
             probe.Update()
             data = probe.GetOutput().GetPointData()
-            results.append([vtk_to_numpy(data.GetArray(name)).tobytes() for name in ("Weight", "Velocity")])
+            results.append([vtk_to_numpy(data.GetArray(name)).tobytes() for name in ("WeightSum", "Velocity")])
             self.assertEqual(data.GetArray("vtkValidPointMask").GetRange(), (0, 1))
         self.assertTrue(results[0] == results[1])
 

@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The wrapped filter: weird input first, then what Python users do."""
 import math
+import pathlib
+import tempfile
 import unittest
 
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints, vtkObject
 from vtkmodules.vtkCommonDataModel import (vtkCompositeDataSet, vtkDataObject,
                                            vtkMultiBlockDataSet, vtkPolyData)
+from vtkmodules.vtkFiltersGeneral import vtkTableToPolyData
+from vtkmodules.vtkIOInfovis import vtkDelimitedTextReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
@@ -56,6 +60,36 @@ class TestFilter(unittest.TestCase):
         self.assertEqual(extract.GetOutput().GetNumberOfPoints(), 0)
         self.assertIn("'Nonsense'", extract.GetErrorMessage())
         self.assertIn("Radius", extract.GetErrorMessage())
+
+    def test_csv(self):
+        """A table of numbers in full, by VTK's reader, gives the same surface to the last bit."""
+        particles = make_particles()
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "particles.csv"
+            data = particles.GetPointData()
+            rows = [[*particles.GetPoint(i), data.GetArray("Radius").GetValue(i), data.GetArray("hsml").GetValue(i)]
+                    for i in range(particles.GetNumberOfPoints())]
+            file.write_text("x,y,z,Radius,hsml\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
+            reader, points = vtkDelimitedTextReader(), vtkTableToPolyData()
+            reader.SetFileName(str(file))
+            reader.SetHaveHeaders(True)
+            reader.SetDetectNumericColumns(True)
+            points.SetInputConnection(reader.GetOutputPort())
+            for axis in "xyz":
+                getattr(points, f"Set{axis.upper()}Column")(axis)
+            points.Update()
+        found = []
+        # The table's points are doubles.
+        exact = vtkPoints()
+        exact.SetDataTypeToDouble()
+        exact.DeepCopy(particles.GetPoints())
+        particles.SetPoints(exact)
+        for input_ in (particles, points.GetOutput()):
+            extract = make_filter(input_)
+            extract.Update()
+            found.append(bytes(memoryview(extract.GetOutput().GetPoints().GetData())))
+        self.assertGreater(len(found[0]), 5000)
+        self.assertEqual(*found)
 
     def test_isosurface(self):
         extract = make_filter(make_particles())

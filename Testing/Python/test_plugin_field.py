@@ -79,12 +79,12 @@ def check_probe(reader, plane):
     assert strings_offered(probe, "ExcludedArrays") >= {"Velocity", "Height", "Idp"}
     assert strings_offered(probe, "SmoothingLengthArray") >= {"(automatic)", "SmoothingLength"}
     assert strings_offered(probe, "FluidArray") >= {"(automatic)", "Kind"}
-    assert {"Velocity", "Height", "Weight", "vtkValidPointMask"} <= set(found) and "Idp" not in found
+    assert {"Velocity", "Height", "WeightSum", "vtkValidPointMask"} <= set(found) and "Idp" not in found
     points = vtk_to_numpy(data.GetPoints().GetData())
     inside = numpy.abs(points[:, :2]).max(1) < 0.25  # the kernel's support is whole there
     outside = numpy.abs(points[:, :2]).max(1) > 0.8
     assert inside.sum() > 20 and outside.sum() > 20
-    assert abs(found["Weight"][inside] - 1).max() < 0.02 and found["Weight"][outside].max() == 0
+    assert abs(found["WeightSum"][inside] - 1).max() < 0.02 and found["WeightSum"][outside].max() == 0
     assert found["vtkValidPointMask"][inside].all() and not found["vtkValidPointMask"][outside].any()
     expected = RATE * numpy.stack((-points[:, 1], points[:, 0], 0 * points[:, 0]), 1)
     assert abs(found["Velocity"] - expected)[inside].max() < 0.01

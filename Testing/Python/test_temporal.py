@@ -281,8 +281,29 @@ class TestTemporal(unittest.TestCase):
         numbered.SetTimeScale(0.1)
         self.assertEqual(self.messages(numbered, 0.5), ([], []))
         self.assertLess(self.farthest(numbered.GetOutput(), 0.05), 3e-6)
+        alone = interpolator({  # in one step each: they move by their velocities alone
+            0.0: make([(0, 0, 0), (1, 0, 0)], id=array("id", [0, 1], vtkIntArray),
+                      Velocity=[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]),
+            1.0: make([(7, 0, 0), (0, 0, 0)], id=array("id", [9, 0], vtkIntArray),
+                      Velocity=[(0.0, 0.0, 2.0), (0.0, 0.0, 0.0)])})
+        alone.SetTimeScale(0.125)
+        self.assertEqual(positions(self.at(alone, 0.25)), [(0, 0, 0), (1, 0.03125, 0)])
+        self.assertEqual(positions(self.at(alone, 0.75)), [(7, 0, -0.0625), (0, 0, 0)])
         numbered.SetTimeScale(0.0)
         self.refuse(numbered, 0.5, "The time scale must be greater than 0")
+
+    def test_velocities_that_are_not_finite(self):
+        """Are named as such: not as positions, which they would make NaN."""
+        for wrong in (math.nan, math.inf):
+            steps = {time: make([(0, 0, 0), (1, 0, 0)], id=array("id", [0, 1], vtkIntArray),
+                                Velocity=[(1.0, 0.0, 0.0), (0.0, wrong if time else 0.0, 0.0)])
+                     for time in (0.0, 1.0)}
+            film = interpolator(steps)
+            errors, warnings = self.messages(film, 0.75)
+            self.assertEqual(errors, [])
+            self.assertEqual(len(warnings), 1)
+            self.assertIn("'Velocity' is NaN or infinite at particle 1 in the step at time 1", warnings[0])
+            self.assertEqual(positions(film.GetOutput()), [(0, 0, 0), (1, 0, 0)])
 
     def test_threads_change_nothing(self):
         """Of so many particles that there is work for several threads."""

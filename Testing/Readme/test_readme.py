@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the snippets of a section of README.md, or of another page, as they stand there.
 
-test_readme.py SOURCE BUILD SCRATCH PAGE SECTION
+test_readme.py SOURCE BUILD SCRATCH PAGE SECTION       "-": what stands before the first section
 test_readme.py SOURCE --links          all links between pages lead somewhere
 
 SCRATCH becomes what the page calls "this folder": it shows the source tree's files and, as "build",
@@ -22,6 +22,8 @@ COMMENT = re.compile(r"(?:#|//|/\*) *([0-9][0-9,]*) triangles")
 
 
 def section_of(page, title):
+    if title == "-":  # what stands before the first section
+        return FENCE.findall(page.split("\n## ")[0])
     match = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL)
     if not match:
         sys.exit(f"the page has no section '{title}'")

@@ -6,6 +6,7 @@
 test_scripts.py SOURCE SCRATCH [TESTS]
 """
 import os
+import pty
 import re
 import shutil
 import signal
@@ -146,6 +147,23 @@ class Configuration(unittest.TestCase):
         result = self.configure("-DMCOR_BUILD_VTK=OFF", "-DMCOR_BUILD_EXAMPLES=OFF", "-DMCOR_WERROR=ON",
                                 "-DCMAKE_DISABLE_FIND_PACKAGE_cmocka=ON")
         self.check_stops(result, "cmocka (Debian: libcmocka-dev) was not found")
+
+    def test_the_sdk_is_told_before_anything_is_installed(self):
+        """Where neither is there: a question at a terminal, else a sentence."""
+        def choose(stdin):
+            return subprocess.run(["bash", "-c", ". .ci/packages.sh; mcor_is_installed() { false; }; mcor_choose_sdk ''"],
+                                  cwd=SOURCE, text=True, check=True, stdin=stdin, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, timeout=600)
+        told = choose(subprocess.DEVNULL)
+        self.assertEqual(told.stdout, "vtk\n")
+        self.assertIn("exclude each other", told.stderr)
+        self.assertIn("--sdk paraview", told.stderr)
+        for answer, sdk in ((b"paraview\n", "paraview\n"), (b"\n", "vtk\n")):
+            terminal, end = pty.openpty()
+            os.write(terminal, answer)
+            self.assertEqual(choose(end).stdout, sdk)
+            os.close(end)
+            os.close(terminal)
 
     def test_a_folder_of_another_sdk(self):
         result = self.configure("-DMCOR_SDK=Another 1.0", "-DMCOR_BUILD_TESTING=OFF",

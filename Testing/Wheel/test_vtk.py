@@ -106,8 +106,8 @@ class Test(unittest.TestCase):
         line = pyvista.Line((1.0, 0.1, 0.5), (2.0, 0.1, 0.5), resolution=20)
         found = self.dam.sph.probe(line, fluid=FLUID)
         self.assertEqual(found.n_points, line.n_points)
-        self.assertTrue(found["Valid"].any())
-        inside = found["Valid"] == 1
+        self.assertTrue(found["vtkValidPointMask"].any())
+        inside = found["vtkValidPointMask"] == 1
         self.assertTrue((np.linalg.norm(found["Velocity"][inside], axis=1) < 20).all())
         derived = self.dam.sph.derivatives("Velocity", fluid=FLUID)
         fluid = np.asarray(self.dam["ParticleType"]) == 0

@@ -61,7 +61,7 @@ vtkSPHSamples::vtkSPHSamples(const vtkSPHParticles& particles, const mcor_option
     }
     made.Values->CopyComponentNames(from.Array);
   }
-  this->Weight = this->Make("Weight", 1, options.precision == MCOR_FLOAT32, gradients);
+  this->Weight = this->Make("WeightSum", 1, options.precision == MCOR_FLOAT32, gradients);
   this->Mask->SetName(maskName.c_str());
   this->Mask->SetNumberOfTuples(count);
   this->Mask->FillValue(0);

@@ -146,7 +146,7 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
     }
     if (this->InterpolateAttributes)
     {
-      mine.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
+      mine.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
     }
   }
   std::int64_t fluid = mine.FluidCount;
@@ -220,7 +220,7 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   }
   if (this->InterpolateAttributes)
   {
-    input.CollectAttributes({ "Weight", this->ValidPointMaskArrayName });
+    input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
   }
   options.globals = &globals;
   std::copy(route.Box, route.Box + 6, options.box);

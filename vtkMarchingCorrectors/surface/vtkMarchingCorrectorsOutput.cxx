@@ -343,6 +343,7 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "IterationsMax", { s.iterations_max });
   vtkSPHAddCount(fieldData, "NewtonEvaluations", { s.newton_evaluations });
   vtkSPHAddReal(fieldData, "ResidualMax", { s.residual_max });
+  vtkSPHAddReal(fieldData, "PositionError", { s.position_error });
   vtkSPHAddCount(fieldData, "TrimVertices", { s.trim_vertices });
   vtkSPHAddCount(fieldData, "TrimVerticesLinear", { s.trim_vertices_linear });
 }

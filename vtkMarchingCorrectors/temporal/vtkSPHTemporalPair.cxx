@@ -15,6 +15,7 @@
 #include "vtkSPHReals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <sstream>
 #include <utility>
@@ -238,6 +239,28 @@ vtkDataArray* vtkSPHTemporalPair::Find(
 }
 
 //------------------------------------------------------------------------------
+bool vtkSPHTemporalPair::AreVelocitiesFinite()
+{
+  for (int k = 0; k < 2; ++k)
+  {
+    const auto values = vtkSPHAsReal(this->Steps[k].Velocities);
+    const vtkSPHReals velocity(values);
+    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+    {
+      if (!(std::isfinite(velocity(i, 0)) && std::isfinite(velocity(i, 1)) &&
+            std::isfinite(velocity(i, 2))))
+      {
+        this->Warnings.push_back("'" + this->VelocityName + "' is NaN or infinite at particle " +
+          std::to_string(i) + " in " + this->NameOfStep(k) + ", so positions from time " +
+          Text(this->Steps[0].Time) + " to " + Text(this->Steps[1].Time) + " are linear in time.");
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
 // How far the particles moved along their mean velocities, over how far these would have moved
 // them. Summed slice by slice and then in order: the same whatever the number of threads.
 void vtkSPHTemporalPair::CheckVelocities()
@@ -246,8 +269,8 @@ void vtkSPHTemporalPair::CheckVelocities()
   const vtkIdType count = static_cast<vtkIdType>(first.Partners.size());
   const vtkIdType matched =
     count - std::count(first.Partners.begin(), first.Partners.end(), vtkIdType(-1));
-  this->FollowsVelocities = first.Velocities != nullptr;
-  if (!first.Velocities || matched < FewParticles)
+  this->FollowsVelocities = first.Velocities && this->AreVelocitiesFinite();
+  if (!this->FollowsVelocities || matched < FewParticles)
   {
     return;
   }

@@ -57,6 +57,7 @@ private:
   bool FindIds(const std::string& name);
   bool FindVelocities(const vtkSPHTemporalChoice& choice);
   vtkDataArray* Find(const std::string& role, const std::string& name, int components, int step);
+  bool AreVelocitiesFinite();
   void CheckVelocities();
   void WarnOfLostArrays();
   bool IsInBoth(vtkAbstractArray* array) const;

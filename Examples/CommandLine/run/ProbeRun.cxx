@@ -130,7 +130,7 @@ std::string ArrayToShow(vtkDataSet* data)
     }
     found = found.empty() && range[0] < range[1] ? array->GetName() : found;
   }
-  return found.empty() ? "Weight" : found;
+  return found.empty() ? "WeightSum" : found;
 }
 
 /// A .png file of the result.

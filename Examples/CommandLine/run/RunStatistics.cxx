@@ -33,9 +33,9 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume",
   "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
   "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
-  "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
-  "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing", "RankParticles", "RankCopies",
-  "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices",
+  "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing", "RankParticles",
+  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {

@@ -5,6 +5,7 @@
 
 #include "core_fixture.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,6 +142,62 @@ static void test_precision(void** state)
   SILENT(call.options.level_limit = MCOR_CUBE_LEVELS - 1; call.set.smoothing_length[5] = 1.3 / 100);
 }
 
+/* A small block of particles beside one 4000 times as large. */
+static core_set far_apart(void)
+{
+  core_set large = core_make_block(6, 0.2, 3, core_slope),
+           small = core_make_block(6, 0.2, 4, core_slope);
+  core_set set = core_make_set(2 * large.count);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const core_set* from = i < large.count ? &large : &small;
+    const int64_t n = i % large.count;
+    const double size = from == &large ? 1 : 1.0 / 4000;
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = size * from->position[3 * n + a] + (from == &large ? 0 : 40.03);
+    }
+    set.smoothing_length[i] = size * from->smoothing_length[n];
+    set.volume[i] = size * size * size * from->volume[n];
+  }
+  core_free_set(&large);
+  core_free_set(&small);
+  return set;
+}
+
+/* residual_max is told at rounded positions; with position_error it bounds what the residual really is. */
+static void test_position_error(void** state)
+{
+  static const double iso = 0.5;
+  core_set set = far_apart();
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const mcor_array points = { .data = surface.points, .type = MCOR_FLOAT64, .components = 3 };
+  mcor_samples exact;
+  options.precision = MCOR_FLOAT64;
+  options.gradients = 1;
+  CORE_OK(*state, mcor_probe(*state, &input, &options, &points, surface.point_count, &exact));
+  const mcor_statistics* told = &surface.statistics;
+  double worst = 0;
+  for (int64_t v = 0; v < surface.point_count; ++v)
+  {
+    const double* g = exact.weight_gradient + 3 * v;
+    const double residual = fabs(exact.weight_sum[v] - iso),
+                 moved = told->position_error * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    CORE_CHECK(residual <= told->residual_max + 4 * moved + 1e-6, "residual %g, told %g and %g",
+      residual, told->residual_max, moved);
+    worst = fmax(worst, residual);
+  }
+  CORE_CHECK(
+    worst > 3 * told->residual_max, "%g of %g is no matter of rounding", worst, told->residual_max);
+  mcor_free_samples(&exact);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
 static void test_tolerance(void** state)
 {
   SILENT(call.options.tolerance = 1e-9; call.options.preview = 1);
@@ -225,6 +282,7 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
     cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
     cmocka_unit_test(test_tolerance), cmocka_unit_test(test_precision),
-    cmocka_unit_test(test_without_input), cmocka_unit_test(test_unused_type) };
+    cmocka_unit_test(test_position_error), cmocka_unit_test(test_without_input),
+    cmocka_unit_test(test_unused_type) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

@@ -27,6 +27,7 @@ extern "C"
     oracle_surface surface;
     int is_adaptive; /* then these two are empty, but for the smallest cube, and this holds all */
     oracle_adaptive adaptive;
+    int by_field; /* topology is */
     oracle_limits limits;
     /* Of the scalar over fluid particles; its largest magnitude if all are equal. Of the
      * weight: its largest value, at least 1. */

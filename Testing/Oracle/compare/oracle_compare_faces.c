@@ -183,31 +183,16 @@ static int compare_face_joined(const compare_state* state, int64_t node, int axi
   const int64_t step[3] = { 1, lattice->size[0], lattice->size[0] * lattice->size[1] };
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
-  const double f00 = lattice->value[node];
-  const double f10 = lattice->value[node + step[u]];
-  const double f01 = lattice->value[node + step[v]];
-  const double f11 = lattice->value[node + step[u] + step[v]];
-  const double sum = f00 - f01 - f10 + f11;
+  const double value[4] = { lattice->value[node], lattice->value[node + step[u]],
+    lattice->value[node + step[v]], lattice->value[node + step[u] + step[v]] };
+  const oracle_decider decider = { &r->field, &r->limits, r->unit };
   double point[3];
-  oracle_sample sample;
-  if (state->options->topology == MCOR_TOPOLOGY_TABLE)
+  if (!r->by_field)
   {
     return 0;
   }
   oracle_node_position(lattice, node, point);
-  point[u] += lattice->cube * (f00 - f01) / sum;
-  point[v] += lattice->cube * (f00 - f10) / sum;
-  oracle_evaluate(&r->field, NULL, point, &sample);
-  /* Rounding of the value, and of the node values, which moves the point. */
-  const double moved = lattice->cube * r->limits.close / fabs(sum);
-  const double rounding = r->limits.close + oracle_rounding(&r->field, point, r->unit) +
-    moved * (fabs(sample.gradient[u]) + fabs(sample.gradient[v]));
-  if (fabs(sample.value - r->limits.iso) <= rounding ||
-    (r->field.kind == ORACLE_SHEPARD && fabs(sample.weight) < 1e-9))
-  {
-    return -1;
-  }
-  return sample.value > r->limits.iso;
+  return oracle_decide_face(&decider, value, point, lattice->cube, u, v);
 }
 
 /* Two crossings: connected, once for each valid cell at the face. Four: in one of two ways. */

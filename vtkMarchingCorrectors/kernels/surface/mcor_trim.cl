@@ -354,10 +354,10 @@ fixv mcor_trim_step(
   return tangent;
 }
 
-/* Moves points that stay at the linear cut, where there is no mean, towards the edge's end inside until
- * there is one. */
-void mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
-  const mcor_trim_limits* limits, fixv back, mcor_points* points, mcor_reach* reach,
+/* Moves points of linear cuts, where there is no mean, towards the edge's end inside until there is one.
+ * Returns which ones. */
+fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
+  const mcor_trim_limits* limits, fixv linear, mcor_points* points, mcor_reach* reach,
   mcor_field_at* at)
 {
   const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
@@ -365,30 +365,32 @@ void mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
     fmax(fabs(limits->inside[0]), fmax(fabs(limits->inside[1]), fabs(limits->inside[2])));
   const realv scale = MCOR_TRIM_REACH / fmax(most, (realv)MCOR_TRIM_REACH);
   real share = 1;
+  fixv moved = 0;
   for (int i = 0; i < MCOR_TRIM_RETREATS; ++i)
   {
-    const fixv move = back && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
+    const fixv move = linear && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
     if (!MCOR_ANY(move))
     {
-      return;
+      break;
     }
     share *= (real)0.5;
     points->ox = move ? x0 + (1 - share) * scale * limits->inside[0] : points->ox;
     points->oy = move ? y0 + (1 - share) * scale * limits->inside[1] : points->oy;
     points->oz = move ? z0 + (1 - share) * scale * limits->inside[2] : points->oz;
+    moved = moved || move;
     mcor_evaluate(grid, query, reach, points, iso, at);
   }
+  return moved;
 }
 
-/* Moves a group of points to where field = iso and weight = threshold; points for which that does
- * not succeed nearby stay where they were. Returns the latter. */
-fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
+/* Moves those points of a group that are to be sought to where field = iso and weight = threshold. Returns
+ * those for which that does not succeed near `start`; they may be anywhere. */
+fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
+  mcor_trim_limits* limits, int steps, const realv start[3], fixv sought, mcor_points* points,
+  mcor_reach* reach, mcor_field_at* at)
 {
-  const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
   mcor_boundary_at bound;
-  mcor_tile_init(&reach->tile);
-  fixv done = 0, failed = 0;
+  fixv done = !sought, failed = 0;
   for (int i = 0;; ++i)
   {
     mcor_evaluate(grid, query, reach, points, iso, at);
@@ -399,31 +401,60 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
     done = done || (met && !lacks);
     if (i == steps || !MCOR_ANY(!(done || failed)))
     {
-      break;
+      return !done;
     }
     realv dx, dy, dz;
     const fixv tangent = mcor_trim_step(at, &bound, &dx, &dy, &dz);
-    const fixv far = fabs(points->ox + dx - x0) > MCOR_TRIM_REACH ||
-      fabs(points->oy + dy - y0) > MCOR_TRIM_REACH || fabs(points->oz + dz - z0) > MCOR_TRIM_REACH;
+    const fixv far = fabs(points->ox + dx - start[0]) > MCOR_TRIM_REACH ||
+      fabs(points->oy + dy - start[1]) > MCOR_TRIM_REACH ||
+      fabs(points->oz + dz - start[2]) > MCOR_TRIM_REACH;
     failed = failed || (!done && (far || tangent));
     const fixv move = !(done || failed);
     points->ox += move ? dx : (realv)0;
     points->oy += move ? dy : (realv)0;
     points->oz += move ? dz : (realv)0;
   }
-  const fixv back = !done;
-  if (MCOR_ANY(back))
+}
+
+/* Puts some points of a group where they were. */
+void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const realv start[3],
+  fixv back, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
+{
+  points->ox = back ? start[0] : points->ox;
+  points->oy = back ? start[1] : points->oy;
+  points->oz = back ? start[2] : points->oz;
+  mcor_evaluate(grid, query, reach, points, iso, at);
+}
+
+/* Moves a group of points to where field = iso and weight = threshold; points for which that does
+ * not succeed nearby stay where they were, or where there is a mean: from there they are sought once more,
+ * as the field has no slope to follow where it has hardly any weight. Returns those that stay. */
+fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
+  mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
+{
+  const realv start[3] = { points->ox, points->oy, points->oz };
+  mcor_tile_init(&reach->tile);
+  fixv linear = mcor_trim_seek(
+    grid, query, iso, tolerance, limits, steps, start, (fixv)MCOR_TRUE, points, reach, at);
+  if (!MCOR_ANY(linear))
   {
-    points->ox = back ? x0 : points->ox;
-    points->oy = back ? y0 : points->oy;
-    points->oz = back ? z0 : points->oz;
-    mcor_evaluate(grid, query, reach, points, iso, at);
-    if (MCOR_FIELD == 0 && steps > 0) /* not in a preview */
-    {
-      mcor_trim_retreat(grid, query, iso, limits, back, points, reach, at);
-    }
+    return linear;
   }
-  return back;
+  mcor_trim_return(grid, query, iso, start, linear, points, reach, at);
+  if (MCOR_FIELD != 0 || steps == 0) /* a preview */
+  {
+    return linear;
+  }
+  const fixv moved = mcor_trim_retreat(grid, query, iso, limits, linear, points, reach, at);
+  if (MCOR_ANY(moved))
+  {
+    const realv mean[3] = { points->ox, points->oy, points->oz };
+    const fixv lost =
+      mcor_trim_seek(grid, query, iso, tolerance, limits, steps, start, moved, points, reach, at);
+    mcor_trim_return(grid, query, iso, mean, lost, points, reach, at);
+    linear = lost || (linear && !moved);
+  }
+  return linear;
 }
 
 #define MCOR_TRIM_SOLVE_PARAMS                                                                     \

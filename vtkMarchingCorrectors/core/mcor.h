@@ -586,10 +586,11 @@ extern "C"
   /* Where lines go through the free surface: where the weight sum of fluid particles, as mcor_extract has
    * it for MCOR_WEIGHT_SUM, is the level, which is the iso value; 0.5 without one. Fluid is where it
    * is at least the level, above 0. Walls do not end it. Each line is sampled at a quarter of the smallest (scaled)
-   * smoothing length; between samples whose neighbours show that an extremum may cross the
-   * level, more finely. Crossings are then solved for. lines: [count]. Options count as for mcor_probe, and
-   * iso_values and wall_share; fields, box and globals do not. Of periodic particles the images count.
-   * *gauges is overwritten. */
+   * smoothing length, or less: finer than half a spacing of particles, unless they lie in more than two; between
+   * samples whose neighbours show that an extremum may cross the level, more finely. Crossings are then solved
+   * for. lines: [count]. Options count as for mcor_probe, and iso_values and wall_share; fields do not. Of periodic
+   * particles the images count. Ranks, which have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM and
+   * level_limit 0) and the same lines, all get all readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);

@@ -273,6 +273,7 @@ void vtkMarchingCorrectors::ClearSummary()
   this->UsedSmoothingLength.clear();
   this->UsedVolume.clear();
   this->UsedCubeSize = 0.0;
+  this->SurfaceMeasures.clear();
   this->EstimatedCells = 0.0;
 }
 
@@ -416,6 +417,7 @@ void vtkMarchingCorrectors::Summarize(
   this->UsedSmoothingLength = vtkMarchingCorrectorsDescribeSmoothingLength(input, statistics);
   this->UsedVolume = vtkMarchingCorrectorsDescribeVolume(input);
   this->UsedCubeSize = statistics.cube_size;
+  this->SurfaceMeasures = vtkMarchingCorrectorsDescribeMeasures(statistics);
 }
 
 //------------------------------------------------------------------------------
@@ -470,5 +472,6 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Used Smoothing Length: " << this->UsedSmoothingLength << "\n";
   os << indent << "Used Volume: " << this->UsedVolume << "\n";
   os << indent << "Used Cube Size: " << this->UsedCubeSize << "\n";
+  os << indent << "Surface Measures: " << this->SurfaceMeasures << "\n";
   os << indent << "Estimated Cells: " << this->EstimatedCells << "\n";
 }

@@ -56,7 +56,7 @@
  * run, one array each: "Device", "Platform", "FluidParticles",
  * "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected", "LatticeOrigin",
  * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
- * "Points", "Triangles", "Area" and, of a closed surface, "Volume" (of one process), "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+ * "Points", "Triangles", "Area" and, of a closed surface, "Volume", "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "TrimVertices", "TrimVerticesLinear",
  * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
@@ -602,6 +602,12 @@ public:
   ///@}
 
   /**
+   * The area of the last update's surface and, if it is closed, its volume, in words, for a panel; empty where nothing was drawn. As
+   * numbers: "Area" and "Volume" of GetRunStatistics().
+   */
+  vtkGetCharFromStdStringMacro(SurfaceMeasures);
+
+  /**
    * About how many cubes of the virtual grid the fluid fills, known before the last update began:
    * the measure of what it may take. From a billion on, a warning says so. 0: not known.
    */
@@ -673,6 +679,7 @@ protected:
   std::string UsedSmoothingLength;
   std::string UsedVolume;
   double UsedCubeSize = 0.0;
+  std::string SurfaceMeasures;
   double EstimatedCells = 0.0;
   double NextScalarRange[2] = { 0.0, 0.0 };
   double NextIsoValue = std::numeric_limits<double>::quiet_NaN();

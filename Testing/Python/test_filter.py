@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The wrapped filter: weird input first, then what Python users do."""
 import math
+import re
 import unittest
 
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints, vtkObject
@@ -220,6 +221,9 @@ class TestFilter(unittest.TestCase):
         self.assertEqual(extract.GetUsedSmoothingLength(), "0.13 (array hsml)")
         self.assertEqual(extract.GetUsedVolume(), "computed from the positions")
         self.assertAlmostEqual(extract.GetUsedCubeSize(), 0.065)
+        area, volume = map(float, re.fullmatch("area (.*), volume (.*)", extract.GetSurfaceMeasures()).groups())
+        self.assertAlmostEqual(area, 4 * math.pi * 0.3 ** 2, delta=0.02)
+        self.assertAlmostEqual(volume, 4 / 3 * math.pi * 0.3 ** 3, delta=0.003)
         # A particle on this lattice takes 0.1^3.
         self.assertAlmostEqual(extract.GetEstimatedCells(), 1331 * (0.1 / 0.065) ** 3, 3)
         extract.SetSmoothingLength(0.26)

@@ -127,7 +127,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     // Of zeros, it is no box to the core; here it is one that was not thought of, and is refused.
     options.box[0] += mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
   }
-  options.capping = this->Capping;
+  options.capping = !this->Capping ? MCOR_CAP_NONE : this->UseBox ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
     ? MCOR_BOUNDARY_EIGENVALUE

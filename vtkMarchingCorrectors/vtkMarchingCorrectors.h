@@ -346,9 +346,9 @@ public:
 
   ///@{
   /**
-   * Close the surface at periodic sides, off by default: by flat triangles around what is above the
-   * iso value, which share the points of the surface's border. What encloses the body is then closed,
-   * unless trimming leaves it open. Of a box its cells are closed that lie on these sides. Not with PAIRS.
+   * Close the surface at periodic sides and at those of the box's cells, off by default: by flat triangles around what
+   * is above the iso value, which share the points of the surface's border. What encloses the body is then closed,
+   * unless trimming leaves it open. Not with PAIRS.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);

@@ -88,6 +88,8 @@ class Program(unittest.TestCase):
         self.check_same_file(*trimmed, "--topology", "field")
         self.check_same_file(*trimmed, "--seeds", "pairs", "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf")
         self.check_same_file("--free-surface")
+        self.check_same_file("--free-surface", "--capping", "--box=-1,0.9,-inf,0.4,-inf,0.5")
+        self.check_same_file(*trimmed, "--capping", "--box=-1,inf,-inf,inf,-inf,0.5", "--periodic", "0,0,3.1")
         self.check_same_file(*trimmed, "--capping", "--periodic=-1,1,-0.5,1.1,-1.05,1.05", "--cube-size", "0.04")
 
     def test_period_of_data(self):

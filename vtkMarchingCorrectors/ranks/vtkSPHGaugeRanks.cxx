@@ -42,9 +42,9 @@ void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& glob
       high = std::max({ high, line.from[a], line.to[a] });
     }
     const auto clamp = [&](double x)
-    { return std::min(std::max(x, globals.low[a]), globals.high[a]); };
+    { return std::min(std::max(x, globals.measured.low[a]), globals.measured.high[a]); };
     const bool isPeriodic = periodic[2 * a] < periodic[2 * a + 1];
-    const double margin = MarginCubes * globals.cube_size;
+    const double margin = MarginCubes * globals.measured.cube;
     box[2 * a] = isPeriodic ? -infinity : clamp(low) - margin;
     box[2 * a + 1] = isPeriodic ? infinity : clamp(high) + margin;
   }

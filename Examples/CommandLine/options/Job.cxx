@@ -218,9 +218,11 @@ void Check(const Job& job)
     throw UsageError("the output is a " + SurfaceFileEndings() +
       " file, or .pvd for a film, not '" + job.Output + "'");
   }
-  if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod)
+  if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod &&
+    !job.Surface->GetUseBox())
   {
-    throw UsageError("--capping closes the surface at periodic sides; add --periodic");
+    throw UsageError(
+      "--capping closes the surface at the sides of a period or a box; add --periodic or --box");
   }
   const bool isFree = job.Surface->GetFreeSurface() != 0;
   if (isFree && !job.Scalar.empty())

@@ -233,7 +233,9 @@ const Options TheMethod = {
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
     "periodic particles: lengths (0: not periodic), x0,x1,y0,y1,z0,z1, or from the field data",
     SetPeriod },
-  { "--capping", "", "close the surface at periodic sides, where values are above the iso value",
+  { "--capping", "",
+    "close the surface at the sides of the period and of the box, where values are above the iso "
+    "value",
     [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
   { "--seeds", "pairs|complete",
     "seeds as in the paper, or complete ones, which miss nothing (default)",

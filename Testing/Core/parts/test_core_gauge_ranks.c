@@ -104,7 +104,7 @@ static void gauge_part(core_rank* rank, void* data)
   }
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
-  const double reach = job->globals.support_max * (job->volumes ? 3 : 1) +
+  const double reach = job->globals.measured.support_max * (job->volumes ? 3 : 1) +
     mcor_reach_margin(&options, &job->globals, 0);
   core_set part = take_near(job, sides[0], sides[1], reach);
   const mcor_input input = gauge_input(job, &part);

@@ -97,12 +97,12 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
 {
   if (call->box)
   {
-    const double h = options->globals->smoothing_length_min;
+    const double h = options->globals->measured.h_min;
     const double margin = MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, h);
     MCOR_RETURN_IF(margin > mcor_reach_margin(options, options->globals, 0), context,
       MCOR_INVALID_ARGUMENT,
       "With cubes of %g a box does not have the particles that gauges need. Leave the cube size.",
-      options->globals->cube_size);
+      options->globals->measured.cube);
     mcor_options wider = *options;
     for (int side = 0; side < 6; ++side)
     {

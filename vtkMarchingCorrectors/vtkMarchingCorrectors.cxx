@@ -127,7 +127,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     // Of zeros, it is no box to the core; here it is one that was not thought of, and is refused.
     options.box[0] += mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
   }
-  options.capping = this->Capping;
+  options.capping = !this->Capping ? MCOR_CAP_NONE : this->UseBox ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
     ? MCOR_BOUNDARY_EIGENVALUE
@@ -273,6 +273,7 @@ void vtkMarchingCorrectors::ClearSummary()
   this->UsedSmoothingLength.clear();
   this->UsedVolume.clear();
   this->UsedCubeSize = 0.0;
+  this->SurfaceMeasures.clear();
   this->EstimatedCells = 0.0;
 }
 
@@ -416,6 +417,7 @@ void vtkMarchingCorrectors::Summarize(
   this->UsedSmoothingLength = vtkMarchingCorrectorsDescribeSmoothingLength(input, statistics);
   this->UsedVolume = vtkMarchingCorrectorsDescribeVolume(input);
   this->UsedCubeSize = statistics.cube_size;
+  this->SurfaceMeasures = vtkMarchingCorrectorsDescribeMeasures(statistics);
 }
 
 //------------------------------------------------------------------------------
@@ -470,5 +472,6 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Used Smoothing Length: " << this->UsedSmoothingLength << "\n";
   os << indent << "Used Volume: " << this->UsedVolume << "\n";
   os << indent << "Used Cube Size: " << this->UsedCubeSize << "\n";
+  os << indent << "Surface Measures: " << this->SurfaceMeasures << "\n";
   os << indent << "Estimated Cells: " << this->EstimatedCells << "\n";
 }

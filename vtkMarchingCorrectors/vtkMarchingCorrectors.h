@@ -56,7 +56,7 @@
  * run, one array each: "Device", "Platform", "FluidParticles",
  * "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected", "LatticeOrigin",
  * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
- * "Points", "Triangles", "Area" and, of a closed surface, "Volume" (of one process), "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+ * "Points", "Triangles", "Area" and, of a closed surface, "Volume", "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
  * "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices", "TrimVerticesLinear",
  * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
@@ -347,9 +347,9 @@ public:
 
   ///@{
   /**
-   * Close the surface at periodic sides, off by default: by flat triangles around what is above the
-   * iso value, which share the points of the surface's border. What encloses the body is then closed,
-   * unless trimming leaves it open. Of a box its cells are closed that lie on these sides. Not with PAIRS.
+   * Close the surface at periodic sides and at those of the box's cells, off by default: by flat triangles around what
+   * is above the iso value, which share the points of the surface's border. What encloses the body is then closed,
+   * unless trimming leaves it open. Not with PAIRS.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);
@@ -603,6 +603,12 @@ public:
   ///@}
 
   /**
+   * The area of the last update's surface and, if it is closed, its volume, in words, for a panel; empty where nothing was drawn. As
+   * numbers: "Area" and "Volume" of GetRunStatistics().
+   */
+  vtkGetCharFromStdStringMacro(SurfaceMeasures);
+
+  /**
    * About how many cubes of the virtual grid the fluid fills, known before the last update began:
    * the measure of what it may take. From a billion on, a warning says so. 0: not known.
    */
@@ -674,6 +680,7 @@ protected:
   std::string UsedSmoothingLength;
   std::string UsedVolume;
   double UsedCubeSize = 0.0;
+  std::string SurfaceMeasures;
   double EstimatedCells = 0.0;
   double NextScalarRange[2] = { 0.0, 0.0 };
   double NextIsoValue = std::numeric_limits<double>::quiet_NaN();

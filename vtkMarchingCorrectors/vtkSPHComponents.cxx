@@ -10,6 +10,8 @@
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -20,6 +22,8 @@
 #include "vtkSPHPieces.h"
 #include "vtkTable.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -48,68 +52,57 @@ void CopyTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes
   to->CopyData(from, ids, places);
 }
 
-/** Points and triangles of the pieces that stay, with all their arrays, in their order. */
-void Keep(vtkPolyData* mesh, const vtkSPHPieces& pieces, const std::vector<vtkIdType>& number,
-  vtkPolyData* output)
-{
-  vtkNew<vtkIdList> points, cells;
-  std::vector<vtkIdType> place(static_cast<size_t>(mesh->GetNumberOfPoints()), -1);
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-  {
-    const vtkIdType piece = pieces.PieceOfPoint[static_cast<size_t>(i)];
-    if (piece >= 0 && number[static_cast<size_t>(piece)] >= 0)
-    {
-      place[static_cast<size_t>(i)] = points->InsertNextId(i);
-    }
-  }
-  vtkNew<vtkCellArray> kept;
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType t = 0; t < mesh->GetNumberOfPolys(); ++t)
-  {
-    if (number[static_cast<size_t>(pieces.PieceOfTriangle[static_cast<size_t>(t)])] >= 0)
-    {
-      mesh->GetPolys()->GetCellAtId(t, corners);
-      for (vtkIdType i = 0; i < 3; ++i)
-      {
-        corners->SetId(i, place[static_cast<size_t>(corners->GetId(i))]);
-      }
-      kept->InsertNextCell(corners);
-      cells->InsertNextId(t);
-    }
-  }
-  vtkNew<vtkPoints> where;
-  where->SetDataType(mesh->GetPoints()->GetDataType());
-  where->SetNumberOfPoints(points->GetNumberOfIds());
-  mesh->GetPoints()->GetPoints(points, where);
-  output->SetPoints(where);
-  output->SetPolys(kept);
-  CopyTuples(mesh->GetPointData(), points, output->GetPointData());
-  CopyTuples(mesh->GetCellData(), cells, output->GetCellData());
-  output->GetFieldData()->PassData(mesh->GetFieldData());
-}
-
-/** Numbers of pieces that stay, of those that have one. */
-void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& of,
-  const std::vector<vtkIdType>& number)
+/** Those that are not left out. */
+void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
 {
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName(IdName);
-  for (const vtkIdType piece : of)
+  for (const vtkIdType number : numbers)
   {
-    if (piece >= 0 && number[static_cast<size_t>(piece)] >= 0)
+    if (number >= 0)
     {
-      ids->InsertNextValue(number[static_cast<size_t>(piece)]);
+      ids->InsertNextValue(number);
     }
   }
   data->AddArray(ids);
 }
+
+/** A sum whose bits do not depend on the order of its numbers, each of which is expected first: they are rounded to
+ * a unit in which the sum is exact. */
+class OrderlessSum
+{
+public:
+  void Expect(double number)
+  {
+    this->Greatest = std::max(this->Greatest, std::abs(number));
+    this->Count += 1.0;
+  }
+
+  void Add(double number)
+  {
+    const double bound = this->Greatest * this->Count;
+    const double unit = bound > 0.0 ? std::ldexp(1.0, std::ilogb(bound) + 1 - 53) : 1.0;
+    this->Sum += unit > 0.0 ? std::nearbyint(number / unit) * unit : number;
+  }
+
+  double Sum = 0.0;
+
+private:
+  double Greatest = 0.0, Count = 0.0;
+};
 }
 
 /** What a piece encloses. */
 struct vtkSPHComponents::Content
 {
-  double Particles = 0.0, Mass = 0.0, Momentum[3] = { 0.0, 0.0, 0.0 };
+  double Particles = 0.0;
+  OrderlessSum Mass, Momentum[3]; ///< without masses, as if these were 1
   bool HasMass = false, HasVelocity = false;
+
+  double Velocity(int axis) const
+  {
+    return this->HasVelocity ? this->Momentum[axis].Sum / this->Mass.Sum : NoNumber;
+  }
 };
 
 //------------------------------------------------------------------------------
@@ -120,9 +113,15 @@ vtkSPHComponents::vtkSPHComponents()
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
+  this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
-vtkSPHComponents::~vtkSPHComponents() = default;
+vtkSPHComponents::~vtkSPHComponents()
+{
+  this->SetController(nullptr);
+}
+
+vtkCxxSetObjectMacro(vtkSPHComponents, Controller, vtkMultiProcessController);
 
 //------------------------------------------------------------------------------
 vtkTable* vtkSPHComponents::GetTable()
@@ -149,6 +148,24 @@ int vtkSPHComponents::FillOutputPortInformation(int port, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
+std::vector<vtkIdType> vtkSPHComponents::ListFluid(vtkPointSet* particles) const
+{
+  const bool all =
+    this->FluidArrayName.empty() || this->FluidArrayName == "(none)"; // of a panel's list
+  vtkDataArray* types =
+    all ? nullptr : FindArray(particles, this->FluidArrayName, MCOR_PARTICLE_TYPE, 1);
+  std::vector<vtkIdType> fluid;
+  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+  {
+    if (!types || types->GetComponent(i, 0) == this->FluidValue)
+    {
+      fluid.push_back(i);
+    }
+  }
+  return fluid;
+}
+
+//------------------------------------------------------------------------------
 std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   const vtkSPHPieces& pieces, vtkPointSet* particles) const
 {
@@ -156,46 +173,37 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   vtkDataArray* masses =
     this->Mass > 0.0 ? nullptr : FindArray(particles, this->MassArrayName, MCOR_MASS, 1);
   vtkDataArray* velocities = FindArray(particles, this->VelocityArrayName, MCOR_VELOCITY, 3);
-  const bool all =
-    this->FluidArrayName.empty() || this->FluidArrayName == "(none)"; // of a panel's list
-  vtkDataArray* types =
-    all ? nullptr : FindArray(particles, this->FluidArrayName, MCOR_PARTICLE_TYPE, 1);
-  std::vector<std::array<double, 3>> places;
-  std::vector<vtkIdType> numbers;
-  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+  const std::vector<vtkIdType> fluid = this->ListFluid(particles);
+  std::vector<std::array<double, 3>> places(fluid.size());
+  for (size_t i = 0; i < fluid.size(); ++i)
   {
-    if (!types || types->GetComponent(i, 0) == this->FluidValue)
-    {
-      places.emplace_back();
-      particles->GetPoint(i, places.back().data());
-      numbers.push_back(i);
-    }
+    particles->GetPoint(fluid[i], places[i].data());
   }
   const std::vector<vtkIdType> around = pieces.FindEnclosing(places);
-  for (size_t i = 0; i < numbers.size(); ++i)
+  using Step = void (OrderlessSum::*)(double);
+  for (const Step step : { &OrderlessSum::Expect, &OrderlessSum::Add })
   {
-    if (around[i] < 0)
+    for (size_t i = 0; i < fluid.size(); ++i)
     {
-      continue;
-    }
-    Content& content = contents[static_cast<size_t>(around[i])];
-    const double mass = masses ? masses->GetComponent(numbers[i], 0) : this->Mass;
-    content.Particles += 1.0;
-    content.Mass += mass;
-    for (int a = 0; a < 3 && velocities; ++a)
-    {
-      content.Momentum[a] += (masses ? mass : 1.0) * velocities->GetComponent(numbers[i], a);
+      if (around[i] < 0)
+      {
+        continue;
+      }
+      Content& content = contents[static_cast<size_t>(around[i])];
+      const double one = this->Mass > 0.0 ? this->Mass : 1.0;
+      const double mass = masses ? masses->GetComponent(fluid[i], 0) : one;
+      content.Particles += step == &OrderlessSum::Add ? 1.0 : 0.0;
+      (content.Mass.*step)(mass);
+      for (int a = 0; a < 3 && velocities; ++a)
+      {
+        (content.Momentum[a].*step)(mass * velocities->GetComponent(fluid[i], a));
+      }
     }
   }
   for (Content& content : contents)
   {
     content.HasMass = masses || this->Mass > 0.0;
-    content.HasVelocity = velocities != nullptr && content.Particles > 0.0;
-    const double whole = masses ? content.Mass : content.Particles;
-    for (double& momentum : content.Momentum)
-    {
-      momentum /= whole > 0.0 ? whole : 1.0; // a velocity now
-    }
+    content.HasVelocity = velocities != nullptr && content.Mass.Sum > 0.0;
   }
   return contents;
 }
@@ -228,30 +236,9 @@ std::vector<vtkIdType> vtkSPHComponents::Choose(
 }
 
 //------------------------------------------------------------------------------
-int vtkSPHComponents::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<Content>& contents,
+  const std::vector<vtkIdType>& number, vtkTable* table)
 {
-  vtkPolyData* mesh = vtkPolyData::GetData(inputVector[0]);
-  vtkPointSet* particles = vtkPointSet::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-  vtkTable* table = vtkTable::GetData(outputVector, 1);
-  if (mesh->GetNumberOfCells() != mesh->GetNumberOfPolys() ||
-    (mesh->GetNumberOfPolys() > 0 && mesh->GetPolys()->IsHomogeneous() != 3))
-  {
-    vtkErrorMacro(<< "The surface has cells that are no triangles. Put vtkTriangleFilter, with "
-                     "PassLines and PassVerts off, before this filter.");
-    return 0;
-  }
-  const vtkSPHPieces pieces(mesh, this->PeriodicBounds);
-  const std::vector<Content> contents =
-    particles ? this->Count(pieces, particles) : std::vector<Content>();
-  const std::vector<vtkIdType> number = this->Choose(pieces, contents);
-  if (mesh->GetPoints())
-  {
-    Keep(mesh, pieces, number, output);
-  }
-  AddIds(output->GetPointData(), pieces.PieceOfPoint, number);
-  AddIds(output->GetCellData(), pieces.PieceOfTriangle, number);
   const char* const names[] = { "component", "parent", "closed", "area", "volume", "x", "y", "z",
     "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx", "vy",
     "vz" };
@@ -274,21 +261,123 @@ int vtkSPHComponents::RequestData(
     const bool has = piece.HasVolume(), filled = has && piece.Volume > 0.0 && !contents.empty();
     const Content content = filled ? contents[i] : Content();
     const double* b = piece.Bounds;
-    const double* v = content.Momentum;
-    const bool moves = content.HasVelocity;
     const double row[columnCount] = { static_cast<double>(number[i]),
       piece.Parent >= 0 ? static_cast<double>(number[static_cast<size_t>(piece.Parent)]) : NoNumber,
       piece.Closed ? 1.0 : 0.0, piece.Area, has ? piece.Volume : NoNumber, piece.Centre[0],
       piece.Centre[1], piece.Centre[2], b[0], b[1], b[2], b[3], b[4], b[5],
-      has ? std::cbrt(6.0 * std::abs(piece.Volume) / 3.14159265358979323846) : NoNumber,
-      filled ? content.Particles : NoNumber, content.HasMass ? content.Mass : NoNumber,
-      moves ? v[0] : NoNumber, moves ? v[1] : NoNumber, moves ? v[2] : NoNumber };
+      has ? std::cbrt(6.0 * std::abs(piece.Volume) / vtkMath::Pi()) : NoNumber,
+      filled ? content.Particles : NoNumber, content.HasMass ? content.Mass.Sum : NoNumber,
+      content.Velocity(0), content.Velocity(1), content.Velocity(2) };
     for (size_t c = 0; c < columnCount; ++c)
     {
       columns[c]->InsertNextValue(row[c]);
     }
   }
-  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkSPHComponents::Numbers vtkSPHComponents::Split(
+  vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const
+{
+  const vtkSPHPieces pieces(mesh, this->PeriodicBounds);
+  const std::vector<Content> contents =
+    particles ? this->Count(pieces, particles) : std::vector<Content>();
+  const std::vector<vtkIdType> number = this->Choose(pieces, contents);
+  FillTable(pieces, contents, number, table);
+  Numbers numbers = { pieces.PieceOfPoint, pieces.PieceOfTriangle };
+  for (std::vector<vtkIdType>* of : { &numbers.OfPoint, &numbers.OfTriangle })
+  {
+    for (vtkIdType& piece : *of)
+    {
+      piece = piece >= 0 ? number[static_cast<size_t>(piece)] : -1;
+    }
+  }
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+// Points and triangles of the pieces that stay, with all their arrays, in their order.
+void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output)
+{
+  vtkNew<vtkIdList> points, cells;
+  std::vector<vtkIdType> place(numbers.OfPoint.size(), -1);
+  for (size_t i = 0; i < place.size(); ++i)
+  {
+    if (numbers.OfPoint[i] >= 0)
+    {
+      place[i] = points->InsertNextId(static_cast<vtkIdType>(i));
+    }
+  }
+  vtkNew<vtkCellArray> kept;
+  vtkNew<vtkIdList> corners;
+  for (size_t t = 0; t < numbers.OfTriangle.size(); ++t)
+  {
+    if (numbers.OfTriangle[t] >= 0)
+    {
+      mesh->GetPolys()->GetCellAtId(static_cast<vtkIdType>(t), corners);
+      for (vtkIdType i = 0; i < 3; ++i)
+      {
+        corners->SetId(i, place[static_cast<size_t>(corners->GetId(i))]);
+      }
+      kept->InsertNextCell(corners);
+      cells->InsertNextId(static_cast<vtkIdType>(t));
+    }
+  }
+  if (mesh->GetPoints())
+  {
+    vtkNew<vtkPoints> where;
+    where->SetDataType(mesh->GetPoints()->GetDataType());
+    where->SetNumberOfPoints(points->GetNumberOfIds());
+    mesh->GetPoints()->GetPoints(points, where);
+    output->SetPoints(where);
+    output->SetPolys(kept);
+    CopyTuples(mesh->GetPointData(), points, output->GetPointData());
+    CopyTuples(mesh->GetCellData(), cells, output->GetCellData());
+    output->GetFieldData()->PassData(mesh->GetFieldData());
+  }
+  AddIds(output->GetPointData(), numbers.OfPoint);
+  AddIds(output->GetCellData(), numbers.OfTriangle);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
+{
+  const bool hasOthers = mesh->GetNumberOfCells() != mesh->GetNumberOfPolys() ||
+    (mesh->GetNumberOfPolys() > 0 && mesh->GetPolys()->IsHomogeneous() != 3);
+  return hasOthers ? "The surface has cells that are no triangles. Put vtkTriangleFilter, with "
+                     "PassLines and PassVerts off, before this filter."
+                   : "";
+}
+
+//------------------------------------------------------------------------------
+int vtkSPHComponents::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* mesh = vtkPolyData::GetData(inputVector[0]);
+  vtkPointSet* particles = vtkPointSet::GetData(inputVector[1]);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+  vtkTable* table = vtkTable::GetData(outputVector, 1);
+  std::string problem;
+#if MCOR_HAS_RANKS
+  if (this->Controller && this->Controller->IsA("vtkMPIController") &&
+    this->Controller->GetNumberOfProcesses() > 1)
+  {
+    problem = this->SplitDistributed(mesh, particles, output, table);
+  }
+  else
+#endif
+  {
+    problem = FindProblem(mesh);
+    if (problem.empty())
+    {
+      Keep(mesh, this->Split(mesh, particles, table), output);
+    }
+  }
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem);
+  }
+  return problem.empty() ? 1 : 0;
 }
 
 //------------------------------------------------------------------------------
@@ -308,4 +397,5 @@ void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
   os << indent << "Fluid Array Name: " << this->FluidArrayName << "\n";
   os << indent << "Fluid Value: " << this->FluidValue << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
 }

@@ -27,8 +27,10 @@
  * The surface may have been cut: what matters are its triangles. That of a period with caps is closed by
  * them: leave PeriodicBounds alone then, so that pieces end there.
  *
- * @warning
- * A process takes its piece of the surface for the whole.
+ * Processes that share a run (SetController()) find the pieces of the surface that vtkMarchingCorrectors made of their
+ * particles together: each has its part, with ComponentId; the table, as of one process, is the first one's, the
+ * others' have no rows. The first one takes the points and triangles of all, and the places, masses and velocities of
+ * the particles: as much memory as one process needs without the other arrays.
  *
  * @sa
  * vtkMarchingCorrectors vtkConnectivityFilter vtkMassProperties
@@ -39,11 +41,14 @@
 
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // For particles
 
 #include <string> // For members
 #include <vector> // For pieces
 
+class vtkMultiProcessController;
 class vtkSPHPieces;
+class vtkSPHRanks;
 class vtkTable;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHComponents : public vtkPolyDataAlgorithm
@@ -111,6 +116,14 @@ public:
   vtkGetMacro(FluidValue, double);
   ///@}
 
+  ///@{
+  /**
+   * The processes that share a run; VTK's global controller by default.
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
 protected:
   vtkSPHComponents();
   ~vtkSPHComponents() override;
@@ -128,15 +141,33 @@ protected:
   std::string VelocityArrayName;
   std::string FluidArrayName;
   double FluidValue = 0.0;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkSPHComponents(const vtkSPHComponents&) = delete;
   void operator=(const vtkSPHComponents&) = delete;
 
   struct Content;
+
+  /// Of points and triangles the number of their piece; -1: it is left out.
+  struct Numbers
+  {
+    std::vector<vtkIdType> OfPoint, OfTriangle;
+  };
+  Numbers Split(vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const;
+  std::vector<vtkIdType> ListFluid(vtkPointSet* particles) const;
   std::vector<Content> Count(const vtkSPHPieces& pieces, vtkPointSet* particles) const;
   std::vector<vtkIdType> Choose(
     const vtkSPHPieces& pieces, const std::vector<Content>& contents) const;
+  static void FillTable(const vtkSPHPieces& pieces, const std::vector<Content>& contents,
+    const std::vector<vtkIdType>& number, vtkTable* table);
+  static void Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output);
+  static std::string FindProblem(vtkPolyData* mesh);
+
+  // For many processes together.
+  std::string SplitDistributed(
+    vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const;
+  vtkSmartPointer<vtkPointSet> GatherParticles(vtkSPHRanks& ranks, vtkPointSet* particles) const;
 };
 
 #endif

@@ -46,7 +46,7 @@ vtkStandardNewMacro(vtkSPHGauge);
 vtkSPHGauge::vtkSPHGauge()
 {
   this->SetNumberOfInputPorts(2);
-  this->SharesRuns = true; // to say that it does not
+  this->SharesRuns = true;
 }
 
 vtkSPHGauge::~vtkSPHGauge() = default;
@@ -104,14 +104,14 @@ const char* vtkSPHGauge::GetOutputClassName(const char*)
 }
 
 //------------------------------------------------------------------------------
-// All of both, whatever piece of the table is wanted.
+// All of both, whatever piece of the table is wanted; of processes that share a run, all of the lines.
 int vtkSPHGauge::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   for (int port = 0; port < 2; ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    if (info && !this->IsShared())
+    if (info && (port == 1 || !this->IsShared()))
     {
       info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
       info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
@@ -160,10 +160,9 @@ void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const
 }
 
 //------------------------------------------------------------------------------
-// False, and reported, where two have one name.
-bool vtkSPHGauge::ListGauges(std::vector<Gauge>& gauges)
+std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::ListGauges() const
 {
-  gauges = this->Gauges;
+  std::vector<Gauge> gauges = this->Gauges;
   if (auto* lines = vtkDataSet::SafeDownCast(this->Lines))
   {
     this->AddLines(lines, gauges);
@@ -173,6 +172,13 @@ bool vtkSPHGauge::ListGauges(std::vector<Gauge>& gauges)
     const double *a = this->Point1, *b = this->Point2;
     gauges.push_back({ "gauge", { a[0], a[1], a[2], b[0], b[1], b[2] } });
   }
+  return gauges;
+}
+
+//------------------------------------------------------------------------------
+// False, and reported, where two have one name.
+bool vtkSPHGauge::CheckNames(const std::vector<Gauge>& gauges)
+{
   std::set<std::string> names;
   for (const Gauge& gauge : gauges)
   {
@@ -189,16 +195,17 @@ bool vtkSPHGauge::ListGauges(std::vector<Gauge>& gauges)
 void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* particles = vtkPointSet::SafeDownCast(data);
+  auto* table = vtkTable::SafeDownCast(output);
   this->SetUsedNames(nullptr);
-  std::vector<Gauge> gauges;
+#if MCOR_HAS_RANKS
   if (this->IsShared())
   {
-    this->Fail(
-      "Gauges are measured by one process, and here are several. Run without mpirun, or with one "
-      "process.");
+    this->ProcessDistributed(particles, table);
     return;
   }
-  if (!particles || this->IsAborted() || !this->ListGauges(gauges))
+#endif
+  const std::vector<Gauge> gauges = this->ListGauges();
+  if (!particles || this->IsAborted() || !this->CheckNames(gauges))
   {
     return;
   }
@@ -218,12 +225,11 @@ void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
     input.FluidCount == 0 ? this->WarnOfNoFluid(choice, "all gauges are dry")
                           : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
   }
-  this->Measure(input, particles, gauges, vtkTable::SafeDownCast(output));
+  this->Measure(input, particles, gauges, table);
 }
 
 //------------------------------------------------------------------------------
-void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
-  const std::vector<Gauge>& gauges, vtkTable* output)
+std::vector<mcor_gauge_line> vtkSPHGauge::ListLines(const std::vector<Gauge>& gauges)
 {
   std::vector<mcor_gauge_line> lines;
   for (const Gauge& gauge : gauges)
@@ -234,14 +240,21 @@ void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
     line.name = gauge.Name.c_str();
     lines.push_back(line);
   }
+  return lines;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
+  const std::vector<Gauge>& gauges, vtkTable* output)
+{
+  const std::vector<mcor_gauge_line> lines = ListLines(gauges);
   mcor_options options;
   this->FillOptions(options);
   if (!this->SetPeriod(particles, options))
   {
     return;
   }
-  const double level = this->Level;
-  options.iso_values = &level;
+  options.iso_values = &this->Level;
   options.iso_count = 1;
   mcor_gauges found = {};
   const auto count = static_cast<int64_t>(lines.size());
@@ -252,6 +265,15 @@ void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
+  this->Fill(output, gauges, found, input.FluidCount > 0);
+  mcor_free_gauges(&found);
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::Fill(
+  vtkTable* output, const std::vector<Gauge>& gauges, const mcor_gauges& found, bool hasFluid)
+{
+  const auto count = static_cast<vtkIdType>(found.count);
   auto* times = AddColumn<vtkDoubleArray>(output, "time", count);
   auto* names = AddColumn<vtkStringArray>(output, "gauge", count);
   auto* states = AddColumn<vtkStringArray>(output, "state", count);
@@ -261,7 +283,7 @@ void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
   auto* crossings = AddColumn<vtkIdTypeArray>(output, "crossings", count);
   vtkDoubleArray* place[3] = { AddColumn<vtkDoubleArray>(output, "x", count),
     AddColumn<vtkDoubleArray>(output, "y", count), AddColumn<vtkDoubleArray>(output, "z", count) };
-  for (int64_t i = 0; i < count; ++i)
+  for (vtkIdType i = 0; i < count; ++i)
   {
     const mcor_gauge_reading& reading = found.readings[i];
     const std::string& name = gauges[static_cast<size_t>(i)].Name;
@@ -276,14 +298,13 @@ void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
     {
       place[a]->SetValue(i, reading.place[a]);
     }
-    if (reading.outside && input.FluidCount > 0)
+    if (reading.outside && hasFluid)
     {
       this->Warn("Gauge '" + name +
         "' is outside of all fluid: no particle reaches its line. If it is "
         "always so, check its ends.");
     }
   }
-  mcor_free_gauges(&found);
 }
 
 //------------------------------------------------------------------------------

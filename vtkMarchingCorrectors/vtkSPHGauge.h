@@ -28,8 +28,9 @@
  *
  * Blocks of composite data are one set of particles, always.
  *
- * @warning
- * One process measures: where the controller has many, the filter says so, and makes no table.
+ * Processes that share a run measure together, see vtkSPHAlgorithm::SetController(): each has some of the
+ * particles, all have the same gauges; lines that only some have count, too. The table, bit for bit that of one process, is the
+ * first one's; the others' have no rows.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe
@@ -46,7 +47,10 @@
 #include <vector> // For gauges
 
 class vtkDataSet;
+class vtkPolyData;
 class vtkTable;
+struct mcor_gauge_line;
+struct mcor_gauges;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHGauge : public vtkSPHAlgorithm
 {
@@ -139,10 +143,20 @@ private:
     std::string Name;
     std::array<double, 6> Ends; // x, y, z of the one, then of the other
   };
-  bool ListGauges(std::vector<Gauge>& gauges);
+  std::vector<Gauge> ListGauges() const;
+  bool CheckNames(const std::vector<Gauge>& gauges);
   void AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const;
+  static std::vector<mcor_gauge_line> ListLines(const std::vector<Gauge>& gauges);
   void Measure(vtkSPHParticles& input, vtkPointSet* particles, const std::vector<Gauge>& gauges,
     vtkTable* output);
+  void Fill(
+    vtkTable* output, const std::vector<Gauge>& gauges, const mcor_gauges& found, bool hasFluid);
+
+  // For many processes together.
+  void ProcessDistributed(vtkPointSet* particles, vtkTable* output);
+  void MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+    const std::vector<Gauge>& gauges, vtkTable* output);
+  static std::vector<Gauge> Merge(vtkSPHRanks& ranks, const std::vector<Gauge>& mine);
 
   std::vector<Gauge> Gauges;
   vtkDataObject* Lines = nullptr; // while a run lasts

@@ -75,14 +75,18 @@ void CheckFiles(const Job& job, MessageCapture* messages)
 }
 
 /// The last of the runs, and what is known of all.
-Run RunAndTell(const Job& job, MessageCapture* messages,
-  std::vector<vtkSmartPointer<vtkFieldData>>& runs, std::vector<double>& wallSeconds)
+Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
+  std::vector<vtkSmartPointer<vtkFieldData>>& runs, std::vector<double>& wallSeconds,
+  std::vector<std::string>& warnings, ComponentTable& pieces)
 {
   Run run;
   for (int i = 0; i < job.Repeat; ++i)
   {
     run.Surface = nullptr; // not two at once
     run = Extract(job, messages);
+    warnings = Warnings(run.Surface, run.Statistics, messages);
+    pieces = ComponentTable(job);
+    pieces.Add(run, particles, messages);
     runs.emplace_back(run.Statistics);
     wallSeconds.push_back(run.WallSeconds);
     if (!job.Quiet)
@@ -101,12 +105,11 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   SetUpSurface(job, particles);
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
   std::vector<double> wallSeconds;
-  Run run = RunAndTell(job, messages, runs, wallSeconds);
-  vtkPolyData* surface = run.Surface;
-  const double peakResidentBytes = PeakResidentBytes(); // of reading and extracting alone
-  std::vector<std::string> warnings = Warnings(surface, runs.back(), messages);
+  std::vector<std::string> warnings;
   ComponentTable pieces(job);
-  pieces.Add(run, particles, messages);
+  const Run run = RunAndTell(job, particles, messages, runs, wallSeconds, warnings, pieces);
+  vtkPolyData* surface = run.Surface;
+  const double peakResidentBytes = PeakResidentBytes();
   AddHintOfPeriod(job, particles, warnings);
   ColorScale colors(job.Picture);
   colors.Include(surface);
@@ -158,7 +161,7 @@ bool Execute(Job& job)
   }
   else if (job.IsGauge())
   {
-    return MeasureGauges(job, messages);
+    return MakeGaugeTable(job, messages);
   }
   else if (job.IsProbe())
   {

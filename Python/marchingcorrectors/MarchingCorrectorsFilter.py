@@ -353,7 +353,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options.level_limit = choice.CubeLevelLimit if choice.CubeSizeMode else 0  # adaptive
         if choice.UseBox:
             options.box[:] = choice.Box if any(choice.Box) else (5e-324, 0, 0, 0, 0, 0)  # refused, see the C++ filter
-        options.periodic[:], options.capping = choice.PeriodicBounds, choice.Capping
+        options.periodic[:] = choice.PeriodicBounds
+        options.capping = (2 if choice.UseBox else 1) if choice.Capping else 0  # MCOR_CAP_BOX, MCOR_CAP_PERIOD
         options.node_threshold = choice.NodeThreshold
         options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
         ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (

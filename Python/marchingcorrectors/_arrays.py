@@ -171,6 +171,8 @@ class Arguments:
                 target = self.options if name in c.KINDS["mcor_options"] else self.input
                 value = self.bounds_of_period(words[name]) if name == "periodic" else words[name]
                 set_option(target, name, kind_of(name), value)
+        if self.options.capping and any(self.options.box):
+            self.options.capping = 2  # MCOR_CAP_BOX
 
     def bounds_of_period(self, period):
         """Six bounds, also of three lengths: where the particles lie in them."""

@@ -62,6 +62,13 @@ def describe_volume(given):
     return "computed from the positions"
 
 
+def describe_measures(statistics):
+    if statistics.area <= 0:
+        return ""
+    return f"area {statistics.area:g}" + (f", volume {statistics.volume:g}" if statistics.is_closed
+                                          else "; open, so that it has no volume")
+
+
 class Summary:
     """Of the last run; the part of the filter that tells about it."""
 
@@ -69,6 +76,7 @@ class Summary:
         self.FluidScalarRange, self.UsedIsoValues = (0.0, 0.0), ""
         self.UsedSmoothingLength, self.UsedVolume = "", ""
         self.UsedCubeSize = self.EstimatedCells = 0.0
+        self.SurfaceMeasures = ""
 
     def summarize(self, arguments, surface):
         given, options, statistics = arguments.input, arguments.options, surface.statistics
@@ -77,6 +85,7 @@ class Summary:
         self.UsedIsoValues = ", ".join(f"{options.iso_values[i]:g}" for i in range(options.iso_count))
         self.UsedSmoothingLength = describe_smoothing_length(given, statistics)
         self.UsedVolume, self.UsedCubeSize = describe_volume(given), statistics.cube_size
+        self.SurfaceMeasures = describe_measures(statistics)
 
     def GetFluidScalarRange(self):
         return self.FluidScalarRange
@@ -92,6 +101,9 @@ class Summary:
 
     def GetUsedCubeSize(self):
         return self.UsedCubeSize
+
+    def GetSurfaceMeasures(self):
+        return self.SurfaceMeasures
 
     def GetEstimatedCells(self):
         return self.EstimatedCells

@@ -228,9 +228,11 @@ def add_parameters(data, particles, arguments, wall_share):
         add_count(data, "CubeLevelLimit", o.level_limit)
     if any(o.box):
         add_real(data, "Box", *o.box)
-    if any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3)):
+    periodic = any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3))
+    if periodic:
         add_real(data, "PeriodicBounds", *o.periodic)
-        add_count(data, "Capping", o.capping)
+    if periodic or o.capping == 2:  # MCOR_CAP_BOX
+        add_count(data, "Capping", o.capping > 0)
     add_real(data, "HScaleFactor", o.h_scale)
     add_real(data, "NodeThreshold", o.node_threshold)
     add_text(data, "BoundaryDetection", ("weight sum", "eigenvalue")[o.boundary_detection])

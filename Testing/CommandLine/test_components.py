@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pieces of surfaces by the program marching-correctors: test_components.py PROGRAM PRELOAD."""
 import csv
+import json
 import math
 
 import particle_files as files
@@ -78,6 +79,43 @@ class Components(CommandLineTest):
         self.assertEqual([(row["time"], row["component"]) for row in self.rows(["time", *COLUMNS])],
                          [("0", "0"), ("0", "1"), ("0.5", "0")])
 
+    def test_numbers_of_a_film(self):
+        """A row for each step, between steps, too, with what gauges read; without the pieces that are left out."""
+        for i in range(2):
+            points = [(x, y, z + 0.1 * i) for x, y, z in self.all_points]
+            arrays = {**self.all_arrays, "Id": list(range(len(points))), "Velocity": [(0.0, 0.0, 0.4)] * len(points)}
+            files.write_vtp(self.directory / f"step_{i}.vtp", points, arrays)
+        files.write_pvd(self.directory / "steps.pvd", [(0, "step_0.vtp"), (0.25, "step_1.vtp")])
+        numbers = self.directory / "numbers.csv"
+        film = ["steps.pvd", "film.pvd", *FREE, "--times", "0,0.1,0.25", "--numbers", numbers, "--gauge",
+                "mast=0,0,-1:0,0,1"]
+        rows = []
+        for options in ([], ["--components", self.table], ["--components", self.table, "--least-volume", "0.3"]):
+            result = self.run_program(*film, *options)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            with numbers.open() as file:
+                rows.append(list(csv.DictReader(file)))
+        names = ["time", "triangles", "area", "volume", "pieces", "mast.last", "mast.depth", "mast.crossings"]
+        self.assertEqual([list(table[0]) for table in rows], [names[:4] + names[5:], names, names])
+        self.assertEqual([row["time"] for row in rows[0]], ["0", "0.1", "0.25"])
+        for i, (plain, both, one) in enumerate(zip(*rows)):
+            for name in plain:
+                self.assertEqual(plain[name], both[name])
+            self.assertEqual([both["pieces"], one["pieces"]], ["2", "1"])
+            self.assertAlmostEqual(float(both["volume"]), 1.1, delta=0.1)
+            self.assertAlmostEqual(float(one["volume"]), 1.0, delta=0.1)
+            self.assertAlmostEqual(float(one["area"]), 6, delta=0.9)
+            self.assertAlmostEqual(float(plain["mast.last"]), 1.5 + (0, 0.04, 0.1)[i], delta=0.01)
+            self.assertLess(int(one["triangles"]), int(both["triangles"]))
+
+    def test_area_is_that_of_what_stays(self):
+        row, = self.pieces("--least-volume", "0.3", "--stats", self.directory / "s.json", "--quiet")
+        with open(self.directory / "s.json", encoding="utf-8") as file:
+            statistics = json.load(file)["statistics"]
+        self.assertEqual(statistics["pieces"], 1)
+        self.assertAlmostEqual(statistics["area"] / float(row["area"]), 1, delta=1e-6)
+        self.assertAlmostEqual(statistics["volume"] / float(row["volume"]), 1, delta=1e-6)
+
     def test_period(self):
         """A block across a side is one; a layer has no end, but with caps."""
         moved = [((x + 0.5) % 2, y, z) for x, y, z in self.points]
@@ -97,7 +135,8 @@ class Components(CommandLineTest):
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
                                   ([*FREE, "--least-volume", "1"], "no use for --least-volume"),
-                                  ([*FREE, "--components", self.output], "writes a .csv file")):
+                                  ([*FREE, "--components", self.output], "writes a .csv file"),
+                                  ([*FREE, "--numbers", "numbers.csv"], "the table of a film")):
             self.refuse(self.extract(*options), 2, sentence)
         self.refuse(self.extract(*FREE, "--components", "nowhere/pieces.csv"), 1, "could not be written")
 

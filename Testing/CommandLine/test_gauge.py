@@ -3,6 +3,8 @@
 """Gauges by the program marching-correctors: test_gauge.py PROGRAM PRELOAD."""
 import csv
 import math
+import subprocess
+import time
 import xml.etree.ElementTree
 
 import particle_files as files
@@ -89,6 +91,39 @@ class Gauge(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(self.table.read_text(), before)
 
+    def test_times_between_steps(self):
+        """The particles move on between two steps, and so does the level."""
+        entries = []
+        for i in range(2):
+            points, arrays = files.lattice()
+            arrays["Id"] = list(range(len(points)))
+            arrays["Velocity"] = [(0.0, 0.0, 0.4)] * len(points)
+            files.write_vtp(self.directory / f"step_{i}.vtp", [(x, y, z + 0.1 * i) for x, y, z in points], arrays)
+            entries.append((0.25 * i, f"step_{i}.vtp"))
+        files.write_pvd(self.directory / "steps.pvd", entries)
+        stored = self.good("--gauge", UP, source="steps.pvd")
+        rows = self.good("--gauge", UP, "--times", "0,0.1,0.25", source="steps.pvd")
+        self.assertEqual([float(row["time"]) for row in rows], [0, 0.1, 0.25])
+        self.assertEqual([rows[0], rows[2]], stored)
+        self.assertAlmostEqual(float(rows[1]["z"]), float(stored[0]["z"]) + 0.04, delta=1e-5)
+
+    def test_a_table_that_grows(self):
+        """Steps that were measured are in the table before the others are."""
+        program = subprocess.Popen([self.program, *[self.input] * 1000, self.table, "--gauge", UP], cwd=self.directory,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        end = time.monotonic() + 300
+        while not self.table.exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        program.kill()
+        program.communicate()
+        text = self.table.read_text()
+        self.assertTrue(text.endswith("\n"))
+        times = [row["time"] for row in self.rows()]
+        self.assertEqual(times, [str(i) for i in range(len(times))])
+        self.assertLess(len(times), 1000)
+        for part in self.directory.glob(".*"):
+            part.unlink()
+
     def test_a_step_that_fails(self):
         """The others are in the table."""
         result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP)
@@ -117,7 +152,7 @@ class Gauge(CommandLineTest):
                  (["--gauge", UP, "--scalar", "Radius"], "leave out --scalar"),
                  (["--gauge", UP, "--iso", "0.2,0.5"], "all but one --iso value"),
                  (["--gauge", UP, "--iso", "0"], "--iso value above 0"),
-                 (["--gauge", UP, "--times", "1"], "leave out --times"),
+                 (["--gauge", UP, "--times", "1"], "--times: 1 is outside the times of the steps, 0 to 0"),
                  (["--gauge", UP, "--solids", "wall"], "leave out --solids wall"),
                  (["--gauge-grid", "1,1:0,1,0,1,0,1"], "the output of --gauge-grid is a .vti file")]
         for options, sentence in cases:

@@ -88,6 +88,8 @@ class Program(unittest.TestCase):
         self.check_same_file(*trimmed, "--topology", "field")
         self.check_same_file(*trimmed, "--seeds", "pairs", "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf")
         self.check_same_file("--free-surface")
+        self.check_same_file("--free-surface", "--capping", "--box=-1,0.9,-inf,0.4,-inf,0.5")
+        self.check_same_file(*trimmed, "--capping", "--box=-1,inf,-inf,inf,-inf,0.5", "--periodic", "0,0,3.1")
         self.check_same_file(*trimmed, "--capping", "--periodic=-1,1,-0.5,1.1,-1.05,1.05", "--cube-size", "0.04")
 
     def test_period_of_data(self):
@@ -151,6 +153,55 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vti"), "--probe", self.path("points.vti"),
                                         "--smoothing-length", "Nope"), "Nope")
         self.assertFalse(os.path.exists(self.path("o.vti")))
+
+    def test_gauges(self):
+        """Two steps, one of them in pieces: the table, and an image of levels, are those of one process, byte for byte."""
+        pieces = write_pieces(PARTICLES, self.folder.name, 5)
+        how = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1", "--periodic", "0,0,3.1"]
+        alone = self.run_alone(PARTICLES, PARTICLES, self.path("alone.csv"), *how)
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        done = self.run_ranks(pieces, PARTICLES, self.path("ranks.csv"), *how)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, alone.stdout)
+        with open(self.path("alone.csv"), encoding="utf-8") as stream:
+            rows = stream.read().splitlines()
+        self.assertEqual(len(rows), 5)
+        self.assertIn(",wet,", rows[1])
+        self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
+        how = ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]
+        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vti"), *how).returncode, 0)
+        self.assertEqual(self.run_ranks(pieces, self.path("ranks.vti"), *how).returncode, 0)
+        self.assertTrue(filecmp.cmp(self.path("alone.vti"), self.path("ranks.vti"), shallow=False))
+        self.check_fails(self.run_ranks(PARTICLES, self.path("o.csv"), "--gauge", "a=0,0,0:0,0,1", "--smoothing-length",
+                                        "Nope"), "Nope")
+        self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "could not be written")
+
+    def test_components(self):
+        """The table of pieces, and the numbers that points have, are those of one process, byte for byte."""
+        how = ["--free-surface", "--components"]
+        least = ["--least-particles", "3"]
+        alone = self.run_alone(PARTICLES, self.path("alone.vtp"), *how, self.path("alone.csv"), *least)
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        pieces = write_pieces(PARTICLES, self.folder.name, 5)
+        done = self.run_ranks(pieces, self.path("ranks.vtp"), *how, self.path("ranks.csv"), *least)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
+        line = next(line for line in alone.stdout.splitlines() if line.startswith("surface"))
+        self.assertIn(line, done.stdout.splitlines())
+        self.assertRegex(line, "pieces? of area .*, volume ")
+        done = self.run_ranks(pieces, self.path("out.pvtp"), *how, self.path("ranks.csv"), *least)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
+        whole = read(self.path("alone.vtp"))
+        self.assertGreater(whole.GetPointData().GetArray("ComponentId").GetRange()[1], 1)
+        for other in ("ranks.vtp", "out.pvtp"):
+            ranks = read(self.path(other))
+            if other == "ranks.vtp":
+                np.testing.assert_array_equal(corners(whole), corners(ranks))
+                np.testing.assert_array_equal(vtk_to_numpy(whole.GetPointData().GetArray("ComponentId")),
+                                              vtk_to_numpy(ranks.GetPointData().GetArray("ComponentId")))
+            else:
+                self.assertEqual(difference(ranks, whole), "")
 
     def image_arrays(self, file):
         reader = vtkXMLImageDataReader()

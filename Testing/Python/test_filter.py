@@ -4,11 +4,13 @@
 import math
 import pathlib
 import tempfile
+import re
 import unittest
 
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints, vtkObject
 from vtkmodules.vtkCommonDataModel import (vtkCompositeDataSet, vtkDataObject,
                                            vtkMultiBlockDataSet, vtkPolyData)
+from vtkmodules.vtkFiltersCore import vtkMassProperties
 from vtkmodules.vtkFiltersGeneral import vtkTableToPolyData
 from vtkmodules.vtkIOInfovis import vtkDelimitedTextReader
 
@@ -254,6 +256,11 @@ class TestFilter(unittest.TestCase):
         self.assertEqual(extract.GetUsedSmoothingLength(), "0.13 (array hsml)")
         self.assertEqual(extract.GetUsedVolume(), "computed from the positions")
         self.assertAlmostEqual(extract.GetUsedCubeSize(), 0.065)
+        area, volume = map(float, re.fullmatch("area (.*), volume (.*)", extract.GetSurfaceMeasures()).groups())
+        masses = vtkMassProperties()
+        masses.SetInputData(extract.GetOutput())
+        self.assertAlmostEqual(area / masses.GetSurfaceArea(), 1, delta=1e-5)
+        self.assertAlmostEqual(volume / masses.GetVolume(), 1, delta=1e-4)
         # A particle on this lattice takes 0.1^3.
         self.assertAlmostEqual(extract.GetEstimatedCells(), 1331 * (0.1 / 0.065) ** 3, 3)
         extract.SetSmoothingLength(0.26)

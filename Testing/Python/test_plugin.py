@@ -119,6 +119,7 @@ def check_in_use(reader):
     assert value_of(extract, "UsedSmoothingLength") == "0.0236 (array SmoothingLength)"
     assert value_of(extract, "UsedVolume") == "array Mass / array Density"
     assert abs(value_of(extract, "UsedCubeSize") - 0.0118) < 1e-6
+    assert value_of(extract, "SurfaceMeasures").startswith("area "), value_of(extract, "SurfaceMeasures")
     assert 1e5 < value_of(extract, "EstimatedCells") < 3e5
     assert value_of(extract, "NextCells") == value_of(extract, "EstimatedCells")
     Delete(extract)

@@ -101,6 +101,14 @@ extern "C"
  * number of the largest bricks, there may be fewer levels: see mcor_statistics.highest_level. */
 #define MCOR_CUBE_LEVELS 25
 
+  /* Which sides caps close, see mcor_options.capping. */
+  typedef enum mcor_capping
+  {
+    MCOR_CAP_NONE = 0,   /* the default */
+    MCOR_CAP_PERIOD = 1, /* those of the period */
+    MCOR_CAP_BOX = 2     /* and those of the box */
+  } mcor_capping;
+
   /* How trimming tells where the fluid ends. Both are about 1 inside and have no unit. */
   typedef enum mcor_boundary_detection
   {
@@ -238,14 +246,15 @@ extern "C"
      * number of cubes: the cube size is reduced to fit, by less than a half. x0 = x1 (default 0): not
      * periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
     double periodic[6];
-    /* Nonzero: flat triangles close the surface at the periodic sides, where values are above the iso
-     * value. These caps share the points of the surface's border; their other points are nodes of the
+    /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are above the iso
+     * value; MCOR_CAP_BOX: at those of the box, too, which are the sides of its cells (of ranks, of whole_box). These
+     * caps share the points of the surface's border; their other points are nodes of the
      * virtual grid, with normals pointing out of the period, boundary flag 8, and a meaningless
      * residual. Trimming also cuts caps, and leaves its own border open. All cubes then have the
-     * smallest size. With a box, those sides of its cells are closed that lie on a periodic side; a box
+     * smallest size. With a box and MCOR_CAP_PERIOD, those sides of its cells are closed that lie on a periodic side; a box
      * that no particle reaches gets no caps, though with the iso value 0 of a sum it counts as above.
-     * Not with MCOR_PAIRS; no effect without a period. */
-    int capping;
+     * Not with MCOR_PAIRS; no effect without a period or box. */
+    int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, while
      * the input holds only some of them: at least those whose supports miss the box by no more than
@@ -564,19 +573,19 @@ extern "C"
   typedef struct mcor_gauge_reading
   {
     mcor_gauge_state state;
-    int outside;             /* 1: no particle's support reaches the line */
-    double first, last;      /* where fluid first, and last, ends: at the line's end if it ends nowhere
+    int outside;        /* 1: no particle's support reaches the line */
+    double first, last; /* where fluid first, and last, ends: at the line's end if it ends nowhere
                               * before; NaN where dry */
-    double depth;            /* length of the line in fluid; 0 where dry */
-    double place[3];         /* of `last`; NaN where dry */
-    int64_t first_crossing;  /* of this line, among all */
-    int64_t crossing_count;  /* whichever way the line goes through the surface */
+    double depth;       /* length of the line in fluid; 0 where dry */
+    double place[3];    /* of `last`; NaN where dry */
+    int64_t first_crossing; /* of this line, among all */
+    int64_t crossing_count; /* whichever way the line goes through the surface */
   } mcor_gauge_reading;
 
   /* Owned; free with mcor_free_gauges. */
   typedef struct mcor_gauges
   {
-    int64_t count; /* of lines */
+    int64_t count;                /* of lines */
     mcor_gauge_reading* readings; /* [count] */
     int64_t crossing_count;
     double* crossings; /* [crossing_count], ascending for each line, unit L */
@@ -586,10 +595,11 @@ extern "C"
   /* Where lines go through the free surface: where the weight sum of fluid particles, as mcor_extract has
    * it for MCOR_WEIGHT_SUM, is the level, which is the iso value; 0.5 without one. Fluid is where it
    * is at least the level, above 0. Walls do not end it. Each line is sampled at a quarter of the smallest (scaled)
-   * smoothing length; between samples whose neighbours show that an extremum may cross the
-   * level, more finely. Crossings are then solved for. lines: [count]. Options count as for mcor_probe, and
-   * iso_values and wall_share; fields, box and globals do not. Of periodic particles the images count.
-   * *gauges is overwritten. */
+   * smoothing length, or less: finer than half a spacing of particles, unless they lie in more than two; between
+   * samples whose neighbours show that an extremum may cross the level, more finely. Crossings are then solved
+   * for. lines: [count]. Options count as for mcor_probe, and iso_values and wall_share; fields do not. Of periodic
+   * particles the images count. Ranks, which have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM and
+   * level_limit 0) and the same lines, all get all readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);

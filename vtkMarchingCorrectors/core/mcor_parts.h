@@ -101,6 +101,23 @@ extern "C"
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
 
+  /* Area and volume of a surface in parts, as the statistics have those of one, to the last bit. */
+  typedef struct mcor_measures
+  {
+    double origin[3];       /* any point; the first one of the whole surface, for the same bits */
+    int64_t triangle_count; /* 1: reduce by the sum, */
+    double area_most, volume_most; /* by the greatest, */
+    double area, volume;           /* 2: by the sum, which is exact in any order, */
+    int64_t open;                  /* by the sum, which may overflow and start over; 0: closed */
+  } mcor_measures;
+
+  /* Before the second pass, all parts' numbers of the first one are to be reduced. numbers: [point_count], of the points
+   * in the whole surface; NULL: as they are. */
+  void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures);
+  void mcor_measure_sums(
+    const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures);
+  void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics);
+
   /* mcor_measure_globals for calls of mcor_probe and mcor_derive. */
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);

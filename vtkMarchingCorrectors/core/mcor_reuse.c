@@ -81,7 +81,8 @@ void mcor_check_reuse(
   const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
-    options->level_limit == o->level_limit && mcor_same_box(options, o) &&
+    options->level_limit == o->level_limit && options->capping == o->capping &&
+    mcor_same_box(options, o) &&
     mcor_same_globals(context, options->globals);
   context->grid_valid =
     context->grid_valid && particles && parameters && uses_solids == context->uses_solids;

@@ -178,6 +178,7 @@ void vtkMarchingCorrectors::FinishDistributed(
     { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
       run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
+  vtkSPHMeasure(ranks, surface, numbers, surface.statistics);
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
@@ -193,6 +194,7 @@ void vtkMarchingCorrectors::FinishDistributed(
   vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
   builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
+  builder.AddMeasures(this->RunStatistics);
   vtkSPHAddCount(this->RunStatistics, "Points", { points });
   vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
   vtkSPHAddShares(this->RunStatistics, shares);

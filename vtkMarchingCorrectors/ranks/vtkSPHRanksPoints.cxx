@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksPoints.h"
 
+#include "mcor_parts.h"
 #include "vtkSPHRanks.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -238,4 +240,33 @@ vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
     to += cells[i][2];
   }
   return numbers;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
+  mcor_statistics& statistics)
+{
+  mcor_measures measures = {};
+  const std::vector<std::int64_t> own(
+    numbers->GetPointer(0), numbers->GetPointer(0) + numbers->GetNumberOfTuples());
+  const auto first = std::find(own.begin(), own.end(), std::int64_t(0)); // of all
+  for (int a = 0; a < 3; ++a)
+  {
+    measures.origin[a] = first == own.end() ? std::numeric_limits<double>::infinity()
+                                            : surface.points[3 * (first - own.begin()) + a];
+  }
+  ranks.Reduce(vtkSPHRanks::LEAST, measures.origin, 3);
+  mcor_measure_terms(&surface, &measures);
+  ranks.Reduce(vtkSPHRanks::SUM, &measures.triangle_count, 1);
+  double most[2] = { measures.area_most, measures.volume_most };
+  ranks.Reduce(vtkSPHRanks::GREATEST, most, 2);
+  measures.area_most = most[0];
+  measures.volume_most = most[1];
+  mcor_measure_sums(&surface, own.data(), &measures);
+  double sums[2] = { measures.area, measures.volume };
+  ranks.Reduce(vtkSPHRanks::SUM, sums, 2);
+  measures.area = sums[0];
+  measures.volume = sums[1];
+  ranks.Reduce(vtkSPHRanks::SUM, &measures.open, 1);
+  mcor_keep_measures(&measures, &statistics);
 }

@@ -20,6 +20,10 @@ class vtkSPHRanks;
 vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
   vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);
 
+/** Area and volume of all ranks' surface, into `statistics`; numbers: of this rank's points. Collective. */
+void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
+  mcor_statistics& statistics);
+
 /** The same of this rank's triangles, which ascend. Collective. */
 vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
   vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);

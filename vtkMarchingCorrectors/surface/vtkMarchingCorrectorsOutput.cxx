@@ -393,10 +393,14 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAddCount(fieldData, "CubeLevelLimit", { o.level_limit });
   }
   const double* p = o.periodic;
-  if (p[0] < p[1] || p[2] < p[3] || p[4] < p[5])
+  const bool isPeriodic = p[0] < p[1] || p[2] < p[3] || p[4] < p[5];
+  if (isPeriodic)
   {
     vtkSPHAddReal(fieldData, "PeriodicBounds", { p[0], p[1], p[2], p[3], p[4], p[5] });
-    vtkSPHAddCount(fieldData, "Capping", { o.capping });
+  }
+  if (isPeriodic || o.capping == MCOR_CAP_BOX)
+  {
+    vtkSPHAddCount(fieldData, "Capping", { o.capping != MCOR_CAP_NONE ? 1 : 0 });
   }
   if (mcor_has_box(&o))
   {

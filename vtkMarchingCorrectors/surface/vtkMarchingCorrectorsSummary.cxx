@@ -136,3 +136,12 @@ std::string vtkMarchingCorrectorsDescribeIsoValues(const mcor_options& options)
   }
   return text;
 }
+
+//------------------------------------------------------------------------------
+std::string vtkMarchingCorrectorsDescribeMeasures(const mcor_statistics& statistics)
+{
+  return statistics.area <= 0.0 ? ""
+                                : "area " + Text(statistics.area) +
+      (statistics.is_closed ? ", volume " + Text(statistics.volume)
+                            : "; open, so that it has no volume");
+}

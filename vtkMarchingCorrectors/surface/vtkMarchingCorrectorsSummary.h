@@ -36,6 +36,9 @@ double vtkMarchingCorrectorsEstimateCells(
 std::string vtkMarchingCorrectorsDescribeSmoothingLength(
   const mcor_input& input, const mcor_statistics& statistics);
 
+/** Of the surface; empty where there is none. */
+std::string vtkMarchingCorrectorsDescribeMeasures(const mcor_statistics& statistics);
+
 /** "array Mass / array Density", "computed from the positions". */
 std::string vtkMarchingCorrectorsDescribeVolume(const mcor_input& input);
 

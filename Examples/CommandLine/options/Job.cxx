@@ -45,8 +45,6 @@ void CheckGauge(const Job& job)
       { !job.ComponentFile.empty(), "--components" }, { !job.Picture.File.empty(), "--screenshot" },
       { job.IsProbe(), "--probe, --slice and --line" },
       { job.Surface->GetUseBox() != 0, "--box" } });
-  Exclude("gauges are measured at the steps that are stored; leave out ",
-    { { !job.Times.empty(), "--times" } });
   Exclude("gauges take the fluid alone, and do not end at walls; leave out ",
     { { job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL, "--solids wall" } });
   Exclude("--gauge-grid has all its gauges; leave out ",
@@ -62,10 +60,27 @@ void CheckGauge(const Job& job)
     throw UsageError(
       "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual");
   }
-  if (LaunchedCount() > 1)
+  Exclude("several processes measure at the times that are stored; leave out mpirun or ",
+    { { LaunchedCount() > 1 && !job.Times.empty(), "--times" } });
+}
+
+void CheckNumbers(const Job& job)
+{
+  if (job.NumbersFile.empty())
   {
-    throw UsageError("gauges are measured by one process; leave out mpirun");
+    return;
   }
+  if (!EndsWith(job.NumbersFile, ".csv"))
+  {
+    throw UsageError("--numbers writes a .csv file, not '" + job.NumbersFile + "'");
+  }
+  if (!job.IsFilm())
+  {
+    throw UsageError("--numbers is the table of a film, which is a .pvd file or has %04d in its "
+                     "name; one surface has its numbers in --stats");
+  }
+  Exclude(
+    "a film has no image of levels; leave out ", { { job.Grid.Counts[0] > 0, "--gauge-grid" } });
 }
 
 void CheckComponents(const Job& job)
@@ -82,10 +97,6 @@ void CheckComponents(const Job& job)
   if (!EndsWith(job.ComponentFile, ".csv"))
   {
     throw UsageError("--components writes a .csv file, not '" + job.ComponentFile + "'");
-  }
-  if (LaunchedCount() > 1)
-  {
-    throw UsageError("pieces are found by one process; --components goes without mpirun");
   }
 }
 
@@ -194,6 +205,7 @@ void Check(const Job& job)
     { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
       "--resolution" } });
   CheckComponents(job);
+  CheckNumbers(job);
   if (job.IsProbe())
   {
     CheckProbe(job);
@@ -206,9 +218,11 @@ void Check(const Job& job)
     throw UsageError("the output is a " + SurfaceFileEndings() +
       " file, or .pvd for a film, not '" + job.Output + "'");
   }
-  if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod)
+  if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod &&
+    !job.Surface->GetUseBox())
   {
-    throw UsageError("--capping closes the surface at periodic sides; add --periodic");
+    throw UsageError(
+      "--capping closes the surface at the sides of a period or a box; add --periodic or --box");
   }
   const bool isFree = job.Surface->GetFreeSurface() != 0;
   if (isFree && !job.Scalar.empty())

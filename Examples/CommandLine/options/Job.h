@@ -41,7 +41,7 @@ struct Job
   vtkNew<vtkMarchingCorrectors> Surface;
   vtkNew<vtkSPHDerivatives> Derivatives; ///< where Derive is not empty
   vtkNew<vtkSPHProbe> Probe;             ///< where IsProbe()
-  vtkNew<vtkSPHGauge> Gauge;             ///< where IsGauge()
+  vtkNew<vtkSPHGauge> Gauge;             ///< where HasGauges()
 
   /// For settings that all of them have.
   std::array<vtkSPHAlgorithm*, 4> All() const
@@ -52,7 +52,8 @@ struct Job
   {
     return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
   }
-  bool IsGauge() const
+  bool IsGauge() const { return this->HasGauges() && this->NumbersFile.empty(); }
+  bool HasGauges() const
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
@@ -61,7 +62,7 @@ struct Job
 
   std::vector<std::string> Inputs;
   std::string Output;
-  std::vector<double> Times; ///< of a film, ascending; empty: all that are stored
+  std::vector<double> Times; ///< of a film or gauges, ascending; empty: all that are stored
   double TimeStep = 1.0;     ///< between the steps of a film of particle files
   std::string ProbeFile;
   SliceOptions Slice;
@@ -84,6 +85,7 @@ struct Job
   bool HasVertexThreshold = false;         ///< else it is what suits the boundary detection
   std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
 
+  std::string NumbersFile;   ///< table of a film's numbers; empty: none
   std::string ComponentFile; ///< table of the surface's pieces; empty: none
   double LeastVolume = 0.0;  ///< of a piece
   int LeastParticles = 0;    ///< in a piece

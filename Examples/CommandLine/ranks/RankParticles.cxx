@@ -57,11 +57,22 @@ vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet*
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
-  RankSession& session, const std::string& file, MessageCapture* messages)
+  RankSession& session, const std::vector<std::string>& files, MessageCapture* messages)
 {
-  vtkSmartPointer<vtkPointSet> particles;
+  vtkSmartPointer<vtkPointSet> particles = vtkSmartPointer<vtkPolyData>::New();
   session.RunOnAll(
-    [&] { particles = ReadParticlesPart(file, session.GetRank(), session.GetCount(), messages); });
+    [&]
+    {
+      if (files.size() == 1)
+      {
+        particles =
+          ReadParticlesPart(files.front(), session.GetRank(), session.GetCount(), messages);
+      }
+      else if (session.IsFirst())
+      {
+        particles = ReadParticles(files, messages);
+      }
+    });
   return GiveArrays(session, particles);
 }
 

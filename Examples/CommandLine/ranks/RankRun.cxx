@@ -3,11 +3,13 @@
 #include "RankRun.h"
 
 #include "ColorScale.h"
+#include "ComponentRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "ProbeRun.h"
+#include "RankGauge.h"
 #include "RankOutput.h"
 #include "RankParticles.h"
 #include "RankProbe.h"
@@ -35,8 +37,12 @@ void CheckUse(const Job& job, const RankSession& session, MessageCapture* messag
 {
   if (job.IsFilm() || !job.Picture.File.empty() || job.Repeat > 1)
   {
-    throw std::runtime_error("several processes share a surface or a probe, but no film, "
+    throw std::runtime_error("several processes share a surface, a probe or gauges, but no film, "
                              "--screenshot or --repeat; run these without mpirun");
+  }
+  if (job.IsGauge())
+  {
+    return; // looks for itself
   }
   if (job.IsProbe())
   {
@@ -54,7 +60,7 @@ void CheckUse(const Job& job, const RankSession& session, MessageCapture* messag
       outputs.push_back(PieceName(job.Output, rank));
     }
   }
-  for (const std::string& file : { job.Output, job.StatisticsFile })
+  for (const std::string& file : { job.Output, job.StatisticsFile, job.ComponentFile })
   {
     if (session.IsFirst() && !file.empty())
     {
@@ -123,7 +129,7 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
 {
   Run run;
   const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesDistributed(session, job.Inputs.front(), messages);
+    ReadParticlesDistributed(session, { job.Inputs.front() }, messages);
   ResolvePeriod(job, session, particles);
   session.RunOnAll([&] { SetUpSurface(job, particles); });
   session.RunOnAll([&] { run = Extract(job, messages); });
@@ -132,6 +138,8 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
     ? messages->GetWarnings()
     : Warnings(run.Surface, run.Statistics, messages);
   const double peakResidentBytes = PeakResidentBytes();
+  ComponentTable pieces(job);
+  session.RunOnAll([&] { pieces.Add(run, particles, messages); });
   vtkSmartPointer<vtkPolyData> whole;
   if (!IsInPieces(job.Output))
   {
@@ -149,6 +157,10 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
         warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
       }
       WriteSurface(job, session, run.Surface, whole, colors, messages, files);
+      if (session.IsFirst() && !job.ComponentFile.empty())
+      {
+        files.Write(job.ComponentFile, pieces.Text());
+      }
       if (session.IsFirst() && !job.StatisticsFile.empty())
       {
         files.Write(job.StatisticsFile,
@@ -172,6 +184,10 @@ bool RunDistributed(Job& job, MessageCapture* messages)
   try
   {
     session.RunOnAll([&] { CheckUse(job, session, messages); });
+    if (job.IsGauge())
+    {
+      return ShareGauges(job, session, messages);
+    }
     job.IsProbe() ? ShareProbe(job, session, messages) : ShareSurface(job, session, messages);
   }
   catch (const std::exception& error)

@@ -8,6 +8,7 @@
 #include "TableText.h"
 
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
 #include "vtkSPHComponents.h"
@@ -15,15 +16,52 @@
 
 #include <stdexcept>
 
+namespace
+{
+
+double SumOf(vtkTable* table, const char* column)
+{
+  auto* numbers = vtkDoubleArray::SafeDownCast(table->GetColumnByName(column));
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < numbers->GetNumberOfTuples(); ++i)
+  {
+    sum += numbers->GetValue(i);
+  }
+  return sum;
+}
+
+void SetNumber(vtkFieldData* statistics, const char* name, double value)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->InsertNextValue(value);
+  statistics->AddArray(array);
+}
+
+/// How many pieces there are; where some are to be left out, area and volume are those of the others.
+void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
+{
+  SetNumber(statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
+  for (const char* name : { "Area", "Volume" })
+  {
+    if (!isWhole && statistics->HasArray(name))
+    {
+      SetNumber(statistics, name, SumOf(pieces, name[0] == 'A' ? "area" : "volume"));
+    }
+  }
+}
+
+}
+
 //------------------------------------------------------------------------------
 // Of the particles as the surface was told of them.
 void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time)
 {
-  if (this->Options.ComponentFile.empty())
+  if (this->Options->ComponentFile.empty())
   {
     return;
   }
-  vtkMarchingCorrectors* surface = this->Options.Surface;
+  vtkMarchingCorrectors* surface = this->Options->Surface;
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
   split->SetParticlesData(particles);
@@ -35,17 +73,19 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   split->SetMass(surface->GetMass());
   split->SetFluidArrayName(surface->GetFluidArrayName());
   split->SetFluidValue(surface->GetFluidValue());
-  split->SetLeastVolume(this->Options.LeastVolume);
-  split->SetLeastParticles(this->Options.LeastParticles);
+  split->SetLeastVolume(this->Options->LeastVolume);
+  split->SetLeastParticles(this->Options->LeastParticles);
   split->Update();
   if (!messages->GetErrors().empty())
   {
     throw std::runtime_error(messages->GetErrors().front());
   }
-  run.Surface->ShallowCopy(split->GetOutput());
   vtkTable* pieces = split->GetTable();
+  const bool isWhole = this->Options->LeastVolume == 0.0 && this->Options->LeastParticles == 0;
+  run.Surface->ShallowCopy(split->GetOutput());
+  AddNumbers(run.Statistics, pieces, isWhole);
   vtkNew<vtkTable> table;
-  if (this->Options.IsFilm())
+  if (this->Options->IsFilm())
   {
     vtkNew<vtkDoubleArray> times;
     times->SetName("time");

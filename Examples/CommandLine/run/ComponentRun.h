@@ -15,7 +15,7 @@ class ComponentTable
 {
 public:
   explicit ComponentTable(const Job& job)
-    : Options(job)
+    : Options(&job)
   {
   }
 
@@ -26,7 +26,7 @@ public:
   const std::string& Text() const { return this->Lines; }
 
 private:
-  const Job& Options;
+  const Job* Options;
   std::string Lines;
 };
 

@@ -6,12 +6,14 @@
 #include "ColorScale.h"
 #include "ComponentRun.h"
 #include "Ending.h"
+#include "FilmNumbers.h"
+#include "GrowingFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
-#include "ParticleSteps.h"
+#include "ParticleTimes.h"
 #include "Picture.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
@@ -20,12 +22,7 @@
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
 
-#include "vtkNew.h"
-#include "vtkSPHTemporalInterpolator.h"
-
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
@@ -38,43 +35,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-using Steps = std::vector<ParticleSteps::Step>;
-using Clock = std::chrono::steady_clock;
-
-std::string Text(double value)
-{
-  std::ostringstream stream;
-  stream << std::setprecision(12) << value;
-  return stream.str();
-}
-
-/// The stored times, or those that were asked for.
-std::vector<double> ListTimes(const Job& job, const Steps& steps)
-{
-  std::vector<double> times = job.Times;
-  for (std::size_t i = 0; job.Times.empty() && i < steps.size(); ++i)
-  {
-    times.push_back(steps[i].Time);
-  }
-  const double begin = steps.front().Time, end = steps.back().Time;
-  for (double& time : times)
-  {
-    // 3 * 0.1 is meant to be 0.3.
-    const double tolerance = 1e-12 * (end - begin);
-    const auto next = FindStep(steps, time - tolerance);
-    if (next != steps.end() && next->Time <= time + tolerance)
-    {
-      time = next->Time;
-    }
-    if (time < begin || time > end)
-    {
-      throw UsageError("--times: " + Text(time) + " is outside the times of the steps, " +
-        Text(begin) + " to " + Text(end));
-    }
-  }
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
-}
 
 /// "film.pvd" -> "film_0000.vtp", ...; "film_%04d.ply" -> "film_0000.ply", ...
 std::vector<std::string> ListSurfaces(const std::string& output, std::size_t count)
@@ -96,33 +56,26 @@ std::vector<std::string> ListSurfaces(const std::string& output, std::size_t cou
 
 /// No file is written over another, and, beside a .pvd file, none over one that is no step of an older
 /// film: nobody named these.
-void CheckFiles(const Job& job, const Steps& steps, const std::vector<std::string>& surfaces,
-  MessageCapture* messages)
+void CheckFiles(const Job& job, const std::vector<std::string>& stored,
+  const std::vector<std::string>& surfaces, MessageCapture* messages)
 {
   if (Printable(job.Output) != job.Output)
   {
     throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
   }
   std::vector<std::string> inputs = job.Inputs, outputs = surfaces;
-  for (const ParticleSteps::Step& step : steps)
-  {
-    inputs.insert(inputs.end(), step.Files.begin(), step.Files.end());
-  }
+  inputs.insert(inputs.end(), stored.begin(), stored.end());
   for (std::size_t i = 0; !job.Picture.File.empty() && i < surfaces.size(); ++i)
   {
     outputs.push_back(NameOfStep(job.Picture.File, i));
   }
-  if (!job.StatisticsFile.empty())
+  for (const std::string& file : { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
+         IsCollectionFile(job.Output) ? job.Output : "" })
   {
-    outputs.push_back(job.StatisticsFile);
-  }
-  if (!job.ComponentFile.empty())
-  {
-    outputs.push_back(job.ComponentFile);
-  }
-  if (IsCollectionFile(job.Output))
-  {
-    outputs.push_back(job.Output);
+    if (!file.empty())
+    {
+      outputs.push_back(file);
+    }
   }
   CheckOutputs(ListFiles(inputs, messages), outputs);
   for (const std::string& surface : surfaces)
@@ -144,13 +97,16 @@ public:
   Film(const Job& job, MessageCapture* messages)
     : Options(job)
     , Messages(messages)
-    , Stored(ListSteps(job, messages))
-    , Times(ListTimes(job, this->Stored))
-    , Surfaces(ListSurfaces(job.Output, this->Times.size()))
+    , Times(job, messages)
+    , Surfaces(ListSurfaces(job.Output, this->Times.Get().size()))
     , Colors(job.Picture)
     , Pieces(job)
+    , Numbers(job)
+    , ListFile(job.Output)
+    , PieceFile(job.ComponentFile)
+    , NumberFile(job.NumbersFile)
   {
-    CheckFiles(job, this->Stored, this->Surfaces, messages);
+    CheckFiles(job, this->Times.ListFiles(), this->Surfaces, messages);
     if (!job.Picture.File.empty())
     {
       this->Drawn.reset(new Picture(job.Picture));
@@ -159,9 +115,8 @@ public:
 
   bool Make()
   {
-    this->Connect();
     bool isGood = true;
-    for (std::size_t i = 0; i < this->Times.size(); ++i)
+    for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
     {
       const Activity making(this->Label(i) + ": the run failed",
         "the OpenCL driver may be at fault, or memory ran out");
@@ -169,10 +124,6 @@ public:
     }
     this->List(true);
     this->Said.TellCounts();
-    if (!this->Pieces.Text().empty())
-    {
-      WriteOutput(this->Options.ComponentFile, this->Pieces.Text());
-    }
     if (!this->Options.StatisticsFile.empty())
     {
       std::cout.flush(); // the file may be /dev/stdout
@@ -185,7 +136,7 @@ public:
 private:
   std::string Label(std::size_t i) const
   {
-    return this->Surfaces[i] + " (time " + Text(this->Times[i]) + ")";
+    return this->Surfaces[i] + " (time " + TimeText(this->Times.Get()[i]) + ")";
   }
 
   bool TryStep(std::size_t i)
@@ -211,31 +162,17 @@ private:
     FilmStep step = this->Describe(i);
     step.Error = sentence;
     this->Add(step, StepAsJson(step, nullptr, 0.0));
-    this->Connect(); // nothing is left of what failed halfway
+    this->Times.Reset();
     return false;
-  }
-
-  void Connect()
-  {
-    vtkNew<ParticleSteps> source;
-    vtkNew<vtkSPHTemporalInterpolator> interpolator;
-    source->SetSteps(&this->Stored, this->Messages);
-    interpolator->SetInputConnection(source->GetOutputPort());
-    this->Source = source;
-    this->Interpolator = interpolator;
   }
 
   /// Without its statistics.
   FilmStep Describe(std::size_t i) const
   {
     FilmStep step;
-    step.Time = this->Times[i];
+    step.Time = this->Times.Get()[i];
     step.Output = this->Surfaces[i];
-    const auto next = FindStep(this->Stored, step.Time);
-    for (auto used = next->Time == step.Time ? next : next - 1; used <= next; ++used)
-    {
-      step.Inputs.insert(step.Inputs.end(), used->Files.begin(), used->Files.end());
-    }
+    step.Inputs = this->Times.ListFiles(step.Time);
     return step;
   }
 
@@ -249,36 +186,21 @@ private:
     this->Made.push_back(step);
   }
 
-  vtkSmartPointer<vtkPointSet> ParticlesAt(double time, std::vector<std::string>& warnings)
-  {
-    this->Messages->Clear();
-    this->Source->ClearError();
-    this->Interpolator->UpdateTimeStep(time);
-    std::string error = this->Source->GetError();
-    error = error.empty() ? this->Interpolator->GetErrorMessage() : error;
-    if (!error.empty() || !this->Messages->GetErrors().empty())
-    {
-      throw std::runtime_error(error.empty() ? this->Messages->GetErrors().front() : error);
-    }
-    warnings = this->Messages->GetWarnings();
-    auto particles = vtkSmartPointer<vtkPolyData>::New();
-    particles->ShallowCopy(this->Interpolator->GetOutput());
-    return particles;
-  }
-
   void MakeStep(std::size_t i)
   {
     const std::string progress = "step " + std::to_string(i + 1) + " of " +
-      std::to_string(this->Times.size()) + ", time " + Text(this->Times[i]) + ": ";
+      std::to_string(this->Times.Get().size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
     std::vector<std::string> warnings;
-    const vtkSmartPointer<vtkPointSet> particles = this->ParticlesAt(this->Times[i], warnings);
+    const double time = this->Times.Get()[i];
+    const vtkSmartPointer<vtkPointSet> particles = this->Times.At(time, warnings);
     SetUpSurface(this->Options, particles);
     Run run = Extract(this->Options, this->Messages, progress);
-    this->Pieces.Add(run, particles, this->Messages, this->Times[i]);
     for (const std::string& warning : Warnings(run.Surface, run.Statistics, this->Messages))
     {
       warnings.push_back(warning);
     }
+    this->Pieces.Add(run, particles, this->Messages, time);
+    this->Numbers.Add(run, particles, this->Messages, time, warnings);
     if (i == 0)
     {
       AddHintOfPeriod(this->Options, particles, warnings);
@@ -325,16 +247,8 @@ private:
     }
   }
 
-  /// All surfaces so far: the film can be looked at while it grows, and where the program is ended. The
-  /// list of a long film is not written after each step, but as often as it takes a twentieth of the time.
-  void List(bool isLast)
+  std::string ListText() const
   {
-    const auto begin = Clock::now();
-    if (!IsCollectionFile(this->Options.Output) || this->Made.size() == this->Listed ||
-      (!isLast && begin < this->NextList))
-    {
-      return;
-    }
     std::vector<CollectionEntry> entries;
     for (const FilmStep& step : this->Made)
     {
@@ -343,29 +257,42 @@ private:
         entries.push_back({ step.Time, step.Output });
       }
     }
-    if (!entries.empty())
+    return CollectionText(entries);
+  }
+
+  /// The lists and tables of all surfaces so far.
+  void List(bool isLast)
+  {
+    if (this->Setting.empty()) // no step went well
     {
-      WriteOutput(this->Options.Output, CollectionText(entries));
+      return;
     }
-    this->Listed = this->Made.size();
-    this->NextList = Clock::now() + 19 * (Clock::now() - begin);
+    if (IsCollectionFile(this->Options.Output))
+    {
+      this->ListFile.Write([this] { return this->ListText(); }, isLast);
+    }
+    if (!this->Options.ComponentFile.empty())
+    {
+      this->PieceFile.Write([this] { return this->Pieces.Text(); }, isLast);
+    }
+    if (!this->Options.NumbersFile.empty())
+    {
+      this->NumberFile.Write([this] { return this->Numbers.Text(); }, isLast);
+    }
   }
 
   const Job& Options;
   MessageCapture* const Messages;
-  const Steps Stored;
-  const std::vector<double> Times;
+  ParticleTimes Times;
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
-  std::string Setting;    ///< of the last one that went well
-  std::size_t Listed = 0; ///< how many of them the list knows of
-  Clock::time_point NextList;
+  std::string Setting; ///< of the last one that went well
   Sentences Said;
   ColorScale Colors;
   ComponentTable Pieces;
+  FilmNumbers Numbers;
+  GrowingFile ListFile, PieceFile, NumberFile;
   std::unique_ptr<Picture> Drawn; ///< where pictures are asked for
-  vtkSmartPointer<ParticleSteps> Source;
-  vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
 
 }

@@ -3,11 +3,12 @@
 #include "GaugeRun.h"
 
 #include "DataSetFile.h"
+#include "GrowingFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
-#include "ParticleSteps.h"
+#include "ParticleTimes.h"
 #include "SafeText.h"
 #include "Sentences.h"
 #include "SurfaceRun.h"
@@ -27,49 +28,6 @@
 
 namespace
 {
-
-using Steps = std::vector<ParticleSteps::Step>;
-
-std::vector<GaugeLine> ListGauges(const Job& job)
-{
-  std::vector<GaugeLine> gauges = job.Gauges;
-  if (!job.GaugeFile.empty())
-  {
-    const std::vector<GaugeLine> more = ReadGauges(job.GaugeFile);
-    gauges.insert(gauges.end(), more.begin(), more.end());
-  }
-  if (job.Grid.Counts[0] > 0)
-  {
-    gauges = LinesOf(job.Grid);
-  }
-  CheckNames(gauges);
-  return gauges;
-}
-
-void CheckFiles(const Job& job, const Steps& steps, MessageCapture* messages)
-{
-  std::vector<std::string> inputs = job.Inputs;
-  for (const ParticleSteps::Step& step : steps)
-  {
-    inputs.insert(inputs.end(), step.Files.begin(), step.Files.end());
-  }
-  if (!job.GaugeFile.empty())
-  {
-    inputs.push_back(job.GaugeFile);
-  }
-  CheckOutputs(ListFiles(inputs, messages), { job.Output });
-}
-
-/// The table of one step. Throws std::runtime_error.
-vtkTable* MeasureStep(const Job& job, const ParticleSteps::Step& step, MessageCapture* messages,
-  const std::string& progress)
-{
-  const vtkSmartPointer<vtkPointSet> particles = ReadParticles(step.Files, messages);
-  job.Gauge->SetInputData(SetUpParticles(job.Gauge, job, particles));
-  job.Gauge->SetTime(step.Time);
-  Update(job.Gauge, job, messages, progress);
-  return job.Gauge->GetOutput();
-}
 
 /// A column of the table as an array of the image's points.
 void AddArray(vtkImageData* image, vtkTable* table, const char* column, const char* name)
@@ -102,36 +60,77 @@ void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
   WriteDataSet(job.Output, image, messages);
 }
 
-}
-
-//------------------------------------------------------------------------------
-bool MeasureGauges(const Job& job, MessageCapture* messages)
+/// The steps of a table or the one of an image, and what is said of them.
+class GaugeTable
 {
-  const std::vector<GaugeLine> gauges = ListGauges(job);
-  const Steps steps = ListSteps(job, messages);
-  const bool isGrid = job.Grid.Counts[0] > 0;
-  CheckFiles(job, steps, messages);
-  if (isGrid && steps.size() > 1)
+public:
+  GaugeTable(const Job& job, MessageCapture* messages, const GaugeSharing& sharing)
+    : Options(job)
+    , Messages(messages)
+    , Sharing(sharing)
+    , Times(job, messages)
+    , IsGrid(job.Grid.Counts[0] > 0)
+    , File(job.Output)
   {
-    throw std::runtime_error(
-      "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
+    sharing.OnAll(
+      [&]
+      {
+        if (sharing.IsFirst)
+        {
+          this->CheckFiles();
+        }
+      });
+    if (this->IsGrid && this->Times.Get().size() > 1)
+    {
+      throw std::runtime_error(
+        "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
+    }
   }
-  for (const GaugeLine& gauge : gauges)
+
+  bool Make()
   {
-    const std::array<double, 6>& e = gauge.Ends;
-    job.Gauge->AddGauge(gauge.Name.c_str(), e[0], e[1], e[2], e[3], e[4], e[5]);
+    bool isGood = true;
+    for (const double time : this->Times.Get())
+    {
+      isGood = this->TryStep(time) && isGood;
+    }
+    this->Said.TellCounts();
+    if (this->Made == 0)
+    {
+      throw std::runtime_error("no step could be measured, and so there is no table");
+    }
+    this->Write(true);
+    return isGood;
   }
-  Sentences said;
-  std::string text;
-  bool isGood = true;
-  for (const ParticleSteps::Step& step : steps)
+
+  std::size_t CountSteps() const { return this->Times.Get().size(); }
+
+private:
+  void CheckFiles() const
   {
-    const std::string label = Printable(step.Files.front());
+    std::vector<std::string> inputs = this->Options.Inputs;
+    const std::vector<std::string> stored = this->Times.ListFiles();
+    inputs.insert(inputs.end(), stored.begin(), stored.end());
+    if (!this->Options.GaugeFile.empty())
+    {
+      inputs.push_back(this->Options.GaugeFile);
+    }
+    CheckOutputs(ListFiles(inputs, this->Messages), { this->Options.Output });
+  }
+
+  std::string Label(double time) const
+  {
+    const std::string file = Printable(this->Times.ListFiles(time).front());
+    return this->Options.Times.empty() ? file : file + " (time " + TimeText(time) + ")";
+  }
+
+  bool TryStep(double time)
+  {
     std::string error = "host memory ran out";
-    vtkTable* table = nullptr;
     try
     {
-      table = MeasureStep(job, step, messages, steps.size() > 1 ? label + ": " : "");
+      this->MakeStep(time);
+      return true;
     }
     catch (const std::bad_alloc&)
     {
@@ -140,35 +139,128 @@ bool MeasureGauges(const Job& job, MessageCapture* messages)
     {
       error = failure.what();
     }
-    if (!table)
+    if (this->Times.Get().size() == 1)
     {
-      if (steps.size() == 1)
-      {
-        throw std::runtime_error(error);
-      }
-      said.Tell("", label, error);
-      isGood = false;
-      continue;
+      throw std::runtime_error(error);
     }
-    for (const std::string& warning : messages->GetWarnings())
+    if (this->Sharing.IsFirst)
     {
-      if (!isGrid || warning.find("is outside of all fluid") == std::string::npos)
+      this->Said.Tell("", this->Label(time), error);
+    }
+    this->Times.Reset();
+    return false;
+  }
+
+  void MakeStep(double time)
+  {
+    std::vector<std::string> warnings;
+    const std::string label = this->Label(time);
+    const vtkSmartPointer<vtkPointSet> particles = this->Sharing.Read
+      ? this->Sharing.Read(this->Times.ListFiles(time))
+      : this->Times.At(time, warnings);
+    vtkTable* table = nullptr;
+    this->Sharing.OnAll(
+      [&]
       {
-        said.Tell("warning: ", label, warning);
+        table = MeasureGauges(this->Options, particles, time, this->Messages,
+          this->Times.Get().size() > 1 ? label + ": " : "");
+      });
+    const std::vector<std::string> more = this->Messages->GetWarnings();
+    warnings.insert(warnings.end(), more.begin(), more.end());
+    for (const std::string& warning : warnings)
+    {
+      if (this->Sharing.IsFirst &&
+        (!this->IsGrid || warning.find("is outside of all fluid") == std::string::npos))
+      {
+        this->Said.Tell("warning: ", label, warning);
       }
     }
-    text += (text.empty() ? TableHeader(table) : "") + TableRows(table);
+    this->Text += (this->Made++ == 0 ? TableHeader(table) : "") + TableRows(table);
+    this->Write(false);
   }
-  said.TellCounts();
-  if (text.empty())
+
+  void Write(bool isLast)
   {
-    throw std::runtime_error("no step could be measured, and so there is no table");
+    this->Sharing.OnAll(
+      [&]
+      {
+        if (!this->Sharing.IsFirst)
+        {
+          return;
+        }
+        if (!this->IsGrid)
+        {
+          this->File.Write([this] { return this->Text; }, isLast);
+        }
+        else if (isLast)
+        {
+          WriteGrid(this->Options, this->Options.Gauge->GetOutput(), this->Messages);
+        }
+      });
   }
-  isGrid ? WriteGrid(job, job.Gauge->GetOutput(), messages) : WriteOutput(job.Output, text);
-  if (!job.Quiet)
+
+  const Job& Options;
+  MessageCapture* const Messages;
+  const GaugeSharing& Sharing;
+  ParticleTimes Times;
+  const bool IsGrid;
+  GrowingFile File;
+  Sentences Said;
+  std::string Text;
+  std::size_t Made = 0; ///< steps
+};
+
+}
+
+//------------------------------------------------------------------------------
+std::vector<GaugeLine> ListGauges(const Job& job)
+{
+  std::vector<GaugeLine> gauges = job.Gauges;
+  if (!job.GaugeFile.empty())
   {
-    std::cout << gauges.size() << (gauges.size() == 1 ? " gauge, " : " gauges, ") << steps.size()
-              << (steps.size() == 1 ? " step\n" : " steps\n");
+    const std::vector<GaugeLine> more = ReadGauges(job.GaugeFile);
+    gauges.insert(gauges.end(), more.begin(), more.end());
+  }
+  if (job.Grid.Counts[0] > 0)
+  {
+    gauges = LinesOf(job.Grid);
+  }
+  CheckNames(gauges);
+  return gauges;
+}
+
+//------------------------------------------------------------------------------
+void AddGauges(const Job& job, const std::vector<GaugeLine>& gauges)
+{
+  for (const GaugeLine& gauge : gauges)
+  {
+    const std::array<double, 6>& e = gauge.Ends;
+    job.Gauge->AddGauge(gauge.Name.c_str(), e[0], e[1], e[2], e[3], e[4], e[5]);
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
+  MessageCapture* messages, const std::string& progress)
+{
+  job.Gauge->SetInputData(SetUpParticles(job.Gauge, job, particles));
+  job.Gauge->SetTime(time);
+  Update(job.Gauge, job, messages, progress);
+  return job.Gauge->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+bool MakeGaugeTable(const Job& job, MessageCapture* messages, const GaugeSharing& sharing)
+{
+  const std::vector<GaugeLine> gauges = ListGauges(job);
+  AddGauges(job, gauges);
+  GaugeTable table(job, messages, sharing);
+  const bool isGood = table.Make();
+  const std::size_t steps = table.CountSteps();
+  if (!job.Quiet && sharing.IsFirst)
+  {
+    std::cout << gauges.size() << (gauges.size() == 1 ? " gauge, " : " gauges, ") << steps
+              << (steps == 1 ? " step\n" : " steps\n");
   }
   return isGood;
 }

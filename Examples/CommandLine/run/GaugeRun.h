@@ -3,12 +3,44 @@
 #ifndef GaugeRun_h
 #define GaugeRun_h
 
+#include "GaugeLine.h"
+
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
 class MessageCapture;
+class vtkPointSet;
+class vtkTable;
 struct Job;
 
-/// Measures the free surface along lines at each step of the input, and writes the table, or, of a grid
+/// What is different where processes share the run; as it is, there is one.
+struct GaugeSharing
+{
+  bool IsFirst = true; ///< the one that writes
+  /// All do this; what one throws, all throw.
+  std::function<void(const std::function<void()>&)> OnAll = [](const std::function<void()>& work)
+  { work(); };
+  /// Its part of the particles of a step that is stored.
+  std::function<vtkSmartPointer<vtkPointSet>(const std::vector<std::string>& files)> Read;
+};
+
+/// Those of the options, in their order. Throws UsageError or std::runtime_error with one sentence.
+std::vector<GaugeLine> ListGauges(const Job& job);
+
+/// To the job's filter.
+void AddGauges(const Job& job, const std::vector<GaugeLine>& gauges);
+
+/// The table of the job's gauges; shows its progress behind the words `progress`. Throws std::runtime_error.
+vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
+  MessageCapture* messages, const std::string& progress);
+
+/// Measures the free surface along lines at each time of the input, and writes the table, or, of a grid
 /// of lines, an image. False if a step failed, of which all was said; the table has the others. Throws
 /// UsageError or std::runtime_error with one sentence.
-bool MeasureGauges(const Job& job, MessageCapture* messages);
+bool MakeGaugeTable(
+  const Job& job, MessageCapture* messages, const GaugeSharing& sharing = GaugeSharing());
 
 #endif

@@ -30,7 +30,7 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
   "FlatLoops", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
-  "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume",
+  "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume", "Pieces",
   "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
   "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
   "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices",
@@ -118,7 +118,12 @@ std::string DescribeField(vtkFieldData* run)
 
 std::string DescribeMeasures(vtkFieldData* run)
 {
-  return (run->HasArray("Area") ? "; area " + Format(run, "Area") : "") +
+  const bool hasPieces = run->HasArray("Pieces");
+  return (hasPieces ? "; " + Format(run, "Pieces") +
+               (Number(run, "Pieces") == 1.0 ? " piece" : " pieces") + " of"
+             : run->HasArray("Area") ? ";"
+                                     : "") +
+    (run->HasArray("Area") ? " area " + Format(run, "Area") : "") +
     (run->HasArray("Volume") ? ", volume " + Format(run, "Volume") : "");
 }
 

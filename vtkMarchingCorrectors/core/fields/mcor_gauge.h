@@ -26,11 +26,22 @@ typedef struct mcor_gauge_parts
   int64_t count, capacity;
 } mcor_gauge_parts;
 
-/* How a line is sampled: at i / steps, for first <= i <= last; no particle reaches the rest. */
+/* How a line, or a part of one, is sampled: at i / steps, for first <= i <= last; no particle reaches the rest.
+ * This call owns samples own_first to own_last: extrema at them, and crossings from them to the next one. */
 typedef struct mcor_gauge_samples
 {
-  int64_t steps, first, last;
+  int64_t line, steps, first, last, own_first, own_last;
+  int64_t begin; /* the first one of the whole line */
 } mcor_gauge_samples;
+
+/* What was found on a line: a crossing at a place from 0 to 1, or one of these instead. */
+#define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
+#define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
+typedef struct mcor_gauge_record
+{
+  int64_t line;
+  double place;
+} mcor_gauge_record;
 
 struct mcor_gauge_job
 {
@@ -39,15 +50,33 @@ struct mcor_gauge_job
   void* data; /* of evaluate */
   double level;
   const mcor_gauge_line* lines;
-  mcor_gauge_samples* samples; /* [line count] */
-  mcor_gauges* gauges;
-  double* ends;              /* [line count]: weight sums at the lines' ends */
+  int64_t line_count;
+  const double* box;           /* [6], of the samples that this call owns; NULL: all */
+  mcor_gauge_samples* samples; /* [sample_room], sample_count of them in use */
+  int64_t sample_count, sample_room;
+  mcor_gauge_record* records; /* [record_room] */
+  int64_t record_count, record_room;
   mcor_gauge_parts changed;  /* on unlike sides of the level at their ends */
   mcor_gauge_parts suspects; /* with an extremum inside that may be beyond the level */
 };
 
-/* mcor_gauge_solve.c. Samples lines [first, last), and appends their crossings to the results. */
-mcor_status mcor_gauge_lines(mcor_gauge_job* job, int64_t first, int64_t last);
+/* mcor_gauge_line.c */
+double mcor_gauge_length(const mcor_gauge_line* line);
+mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
+/* How far apart samples are at most, L. */
+double mcor_gauge_step(double h_scale, double smoothing_length_min);
+/* Appends the samples of a line, those in the box, if there is one; the lattice is known. */
+mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
+/* What all lines read, from the records of all. */
+mcor_status mcor_read_lines(
+  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count, mcor_gauges* gauges);
+
+/* Room for one more element of an array. */
+bool mcor_gauge_room(
+  mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
+
+/* mcor_gauge_solve.c. Evaluates samples [first, last) of the job's, and appends what is found to its records. */
+mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);
 void mcor_free_gauge_parts(mcor_gauge_job* job);
 
 #endif

@@ -23,8 +23,12 @@
 
 void mcor_free_gauge_parts(mcor_gauge_job* job)
 {
+  free(job->samples);
+  free(job->records);
   free(job->changed.parts);
   free(job->suspects.parts);
+  job->samples = NULL;
+  job->records = NULL;
   job->changed = job->suspects = (mcor_gauge_parts){ 0 };
 }
 
@@ -48,13 +52,15 @@ static mcor_status mcor_append_part(
 typedef struct mcor_gauge_row
 {
   int64_t line, count;
-  double first, step;
-  const double* weight; /* [count] */
+  int64_t own_first, own_last; /* see mcor_gauge_samples; of this row */
+  int64_t before;              /* places of the line before this row */
+  double first, step;          /* of the line */
+  const double* weight;        /* [count] */
 } mcor_gauge_row;
 
 static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
 {
-  return row->first + (double)i * row->step;
+  return row->first + (double)(row->before + i) * row->step;
 }
 
 /* How far sample i is from the level. */
@@ -108,7 +114,7 @@ static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects, bool* found)
 {
   *found = false;
-  for (int64_t i = 0; i + 1 < row->count; ++i)
+  for (int64_t i = row->own_first; i <= row->own_last && i + 1 < row->count; ++i)
   {
     if (mcor_row_above(job, row, i) != mcor_row_above(job, row, i + 1))
     {
@@ -116,7 +122,7 @@ static mcor_status mcor_scan_row(
       MCOR_TRY(mcor_append_row_part(job, &job->changed, row, i, i + 1));
     }
   }
-  for (int64_t i = 0; i < row->count && suspects; ++i)
+  for (int64_t i = row->own_first; i <= row->own_last && suspects; ++i)
   {
     if (mcor_row_suspect(job, row, i))
     {
@@ -141,16 +147,22 @@ static void mcor_free_inner(mcor_gauge_inner* inner)
   free(inner->line);
 }
 
-static mcor_status mcor_evaluate_inner(
-  mcor_gauge_job* job, const mcor_gauge_parts* parts, int count, mcor_gauge_inner* inner)
+static mcor_status mcor_make_inner(const mcor_gauge_job* job, int64_t n, mcor_gauge_inner* inner)
 {
-  const int64_t n = parts->count * (count - 1);
   inner->place = malloc((size_t)(n + 1) * sizeof *inner->place);
   inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
   inner->line = malloc((size_t)(n + 1) * sizeof *inner->line);
   MCOR_RETURN_IF(!inner->place || !inner->weight || !inner->line, job->context,
     MCOR_OUT_OF_CAPACITY, "Host memory for %lld points of gauges could not be allocated.",
     (long long)n);
+  return MCOR_OK;
+}
+
+static mcor_status mcor_evaluate_inner(
+  mcor_gauge_job* job, const mcor_gauge_parts* parts, int count, mcor_gauge_inner* inner)
+{
+  const int64_t n = parts->count * (count - 1);
+  MCOR_TRY(mcor_make_inner(job, n, inner));
   for (int64_t p = 0, at = 0; p < parts->count; ++p)
   {
     const mcor_gauge_part* part = &parts->parts[p];
@@ -180,8 +192,8 @@ static mcor_status mcor_refine_suspects(mcor_gauge_job* job)
       memcpy(weight + 1, inner.weight + p * (MCOR_GAUGE_FINER - 1),
         (MCOR_GAUGE_FINER - 1) * sizeof *weight);
       weight[MCOR_GAUGE_FINER] = part->high_weight;
-      const mcor_gauge_row row = { part->line, MCOR_GAUGE_FINER + 1, part->low,
-        (part->high - part->low) / MCOR_GAUGE_FINER, weight };
+      const mcor_gauge_row row = { part->line, MCOR_GAUGE_FINER + 1, 0, MCOR_GAUGE_FINER, 0,
+        part->low, (part->high - part->low) / MCOR_GAUGE_FINER, weight };
       const int64_t before = finer.count;
       bool found = false;
       status = mcor_scan_row(job, &row, &finer, &found);
@@ -253,8 +265,8 @@ static mcor_status mcor_narrow_parts(mcor_gauge_job* job)
   return MCOR_OK;
 }
 
-/* Weight sums at samples of lines, those of one line after the other. */
-static mcor_status mcor_sample_lines(
+/* Weight sums at samples of lines, those of one after the other. */
+static mcor_status mcor_evaluate_samples(
   mcor_gauge_job* job, int64_t first, int64_t last, mcor_gauge_inner* inner)
 {
   int64_t n = 0;
@@ -262,58 +274,53 @@ static mcor_status mcor_sample_lines(
   {
     n += job->samples[l].last - job->samples[l].first + 1;
   }
-  inner->place = malloc((size_t)(n + 1) * sizeof *inner->place);
-  inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
-  inner->line = malloc((size_t)(n + 1) * sizeof *inner->line);
-  MCOR_RETURN_IF(!inner->place || !inner->weight || !inner->line, job->context,
-    MCOR_OUT_OF_CAPACITY, "Host memory for %lld points of gauges could not be allocated.",
-    (long long)n);
+  MCOR_TRY(mcor_make_inner(job, n, inner));
   n = 0;
   for (int64_t l = first; l < last; ++l)
   {
     const mcor_gauge_samples* samples = &job->samples[l];
     for (int64_t i = samples->first; i <= samples->last; ++i, ++n)
     {
-      inner->line[n] = l;
+      inner->line[n] = samples->line;
       inner->place[n] = (double)i / (double)samples->steps;
     }
   }
   return job->evaluate(job, n, inner->line, inner->place, inner->weight);
 }
 
-static mcor_status mcor_scan_lines(
+static mcor_status mcor_append_record(mcor_gauge_job* job, int64_t line, double place)
+{
+  if (!mcor_gauge_room(job->context, (void**)&job->records, job->record_count, &job->record_room,
+        sizeof *job->records))
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  job->records[job->record_count++] = (mcor_gauge_record){ line, place };
+  return MCOR_OK;
+}
+
+static mcor_status mcor_scan_samples(
   mcor_gauge_job* job, int64_t first, int64_t last, const mcor_gauge_inner* inner)
 {
   int64_t at = 0;
   for (int64_t l = first; l < last; ++l)
   {
-    const mcor_gauge_samples* samples = &job->samples[l];
-    const mcor_gauge_row row = { l, samples->last - samples->first + 1,
-      (double)samples->first / (double)samples->steps, 1 / (double)samples->steps,
-      inner->weight + at };
-    bool found;
-    if (row.count > 0)
+    const mcor_gauge_samples* s = &job->samples[l];
+    const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
+      s->own_last - s->first, s->first - s->begin, (double)s->begin / (double)s->steps,
+      1 / (double)s->steps, inner->weight + at };
+    bool found, reached = false;
+    MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
+    for (int64_t i = row.own_first; i <= row.own_last; ++i)
     {
-      MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
+      reached = reached || row.weight[i] != 0;
     }
-    bool outside = true;
-    for (int64_t i = 0; i < row.count; ++i)
-    {
-      outside = outside && row.weight[i] == 0;
-    }
-    job->gauges->readings[l].outside = outside;
-    job->ends[l] = samples->last == samples->steps && row.count > 0 ? row.weight[row.count - 1] : 0;
+    MCOR_TRY(reached ? mcor_append_record(job, s->line, MCOR_GAUGE_REACHED) : MCOR_OK);
+    const bool ends_in = s->own_last == s->steps && mcor_row_above(job, &row, row.own_last);
+    MCOR_TRY(ends_in ? mcor_append_record(job, s->line, MCOR_GAUGE_ENDS_IN) : MCOR_OK);
     at += row.count;
   }
   return MCOR_OK;
-}
-
-static int mcor_compare_parts(const void* a, const void* b)
-{
-  const mcor_gauge_part *left = a, *right = b;
-  return left->line != right->line ? (left->line < right->line ? -1 : 1)
-    : left->low != right->low      ? (left->low < right->low ? -1 : 1)
-                                   : 0;
 }
 
 /* Where on the last, short part of the line the weight sum is the level. */
@@ -324,37 +331,20 @@ static double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part*
   return part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
 }
 
-static mcor_status mcor_append_crossings(mcor_gauge_job* job)
-{
-  mcor_gauges* gauges = job->gauges;
-  const int64_t count = gauges->crossing_count + job->changed.count;
-  double* grown = realloc(gauges->crossings, (size_t)(count + 1) * sizeof *grown);
-  MCOR_RETURN_IF(!grown, job->context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld crossings of gauges could not be allocated.", (long long)count);
-  gauges->crossings = grown;
-  for (int64_t p = 0; p < job->changed.count; ++p)
-  {
-    const mcor_gauge_part* part = &job->changed.parts[p];
-    mcor_gauge_reading* reading = &gauges->readings[part->line];
-    reading->first_crossing =
-      reading->crossing_count == 0 ? gauges->crossing_count : reading->first_crossing;
-    reading->crossing_count++;
-    grown[gauges->crossing_count++] = mcor_crossing_of(job, part);
-  }
-  return MCOR_OK;
-}
-
-mcor_status mcor_gauge_lines(mcor_gauge_job* job, int64_t first, int64_t last)
+mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last)
 {
   mcor_gauge_inner inner = { 0 };
   job->changed.count = job->suspects.count = 0;
-  mcor_status status = mcor_sample_lines(job, first, last, &inner);
-  status = status == MCOR_OK ? mcor_scan_lines(job, first, last, &inner) : status;
+  mcor_status status = mcor_evaluate_samples(job, first, last, &inner);
+  status = status == MCOR_OK ? mcor_scan_samples(job, first, last, &inner) : status;
   mcor_free_inner(&inner);
   MCOR_TRY(status);
   MCOR_TRY(mcor_refine_suspects(job));
   MCOR_TRY(mcor_narrow_parts(job));
-  qsort(
-    job->changed.parts, (size_t)job->changed.count, sizeof *job->changed.parts, mcor_compare_parts);
-  return mcor_append_crossings(job);
+  for (int64_t p = 0; p < job->changed.count; ++p)
+  {
+    const mcor_gauge_part* part = &job->changed.parts[p];
+    MCOR_TRY(mcor_append_record(job, part->line, mcor_crossing_of(job, part)));
+  }
+  return MCOR_OK;
 }

@@ -91,8 +91,7 @@ static void mcor_place_halves(
   }
 }
 
-/* Of a box the cells along an axis, [side[0], side[1]). */
-static void mcor_place_sides(
+void mcor_place_sides(
   const mcor_lattice* lattice, int axis, const double* sides, double side[2])
 {
   const double first = side[0], last = side[1];

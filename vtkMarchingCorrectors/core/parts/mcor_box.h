@@ -14,6 +14,9 @@
 mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
 mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double* cube);
 
+/* Of a box the cells along an axis, [side[0], side[1]); before, those that there are. */
+void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
+
 /* The cells that the call owns; the lattice is known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 

@@ -80,6 +80,9 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     lattice->period[a] = 0;
     axis = length[a] > 0 ? a : axis;
   }
+  /* Large cubes stick out of periods and boxes: no flat side would be left to close. */
+  lattice->top =
+    options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX) ? 0 : lattice->top;
   if (axis < 0)
   {
     return MCOR_OK;
@@ -90,8 +93,6 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     "larger cube size, or a shorter period.",
     *cube, least, 'x' + axis, MCOR_LATTICE_LIMIT);
   const int64_t fewest = (int64_t)least;
-  /* Large cubes stick out of the period: no flat side would be left to close. */
-  lattice->top = options->capping ? 0 : lattice->top;
   int64_t count = mcor_count_adaptive_cubes(length, axis, fewest, &lattice->top);
   count = count == 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
   MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,

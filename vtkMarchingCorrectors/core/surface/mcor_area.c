@@ -1,53 +1,110 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Area and volume of the whole surface. */
+/* Area and volume of the whole surface, or of parts of it that are added up. Terms are rounded to a unit in which their
+ * sums are exact: so whatever the order is, and whoever has which triangle, sums are the same to the last bit. */
 
 #include "mcor_internal.h"
+#include "mcor_parts.h"
 
 #include <math.h>
 
-/* A number of an edge that looks as if it were random: of edges that are not run through both ways, the sum
- * with signs is 0 by chance once in 2^64. */
-static uint64_t mcor_edge_number(int32_t low, int32_t high)
+static uint64_t mcor_mix(uint64_t x)
 {
-  uint64_t x = ((uint64_t)low << 32 | (uint32_t)high) + 0x9E3779B97F4A7C15u;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
   return x ^ (x >> 31);
 }
 
-/* One triangle after the other, so that sums have one order; about one of the points, as coordinates may be
- * large. */
-void mcor_measure_surface(mcor_surface* surface)
+/* A number of an edge that looks as if it were random: of edges that are not run through both ways, the sum
+ * with signs is 0 by chance once in 2^64. */
+static uint64_t mcor_edge_number(int64_t low, int64_t high)
 {
-  mcor_statistics* s = &surface->statistics;
-  uint64_t open = 0;
-  s->area = s->volume = 0;
-  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  return mcor_mix(mcor_mix((uint64_t)low + 0x9E3779B97F4A7C15u) + (uint64_t)high);
+}
+
+/* What a triangle adds; volumes are about the origin. */
+static void mcor_measure_triangle(
+  const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
+{
+  double c[3][3], u[3], v[3];
+  for (int i = 0; i < 3; ++i)
   {
-    const int32_t* triangle = surface->triangles + 3 * t;
-    double c[3][3], u[3], v[3];
-    for (int i = 0; i < 3; ++i)
-    {
-      const int32_t a = triangle[i], b = triangle[(i + 1) % 3];
-      const uint64_t number = a < b ? mcor_edge_number(a, b) : mcor_edge_number(b, a);
-      open += a < b ? number : 0 - number;
-      for (int d = 0; d < 3; ++d)
-      {
-        c[i][d] = surface->points[3 * (int64_t)a + d] - surface->points[d];
-      }
-    }
+    const double* point = surface->points + 3 * (int64_t)surface->triangles[3 * t + i];
     for (int d = 0; d < 3; ++d)
     {
-      u[d] = c[1][d] - c[0][d];
-      v[d] = c[2][d] - c[0][d];
+      c[i][d] = point[d] - origin[d];
     }
-    const double n[3] = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-      u[0] * v[1] - u[1] * v[0] };
-    s->area += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    s->volume += (c[0][0] * n[0] + c[0][1] * n[1] + c[0][2] * n[2]) / 6;
   }
-  s->is_closed = open == 0 && surface->triangle_count > 0;
-  s->volume = s->is_closed ? s->volume : 0;
+  for (int d = 0; d < 3; ++d)
+  {
+    u[d] = c[1][d] - c[0][d];
+    v[d] = c[2][d] - c[0][d];
+  }
+  const double n[3] = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+    u[0] * v[1] - u[1] * v[0] };
+  *area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  *volume = (c[0][0] * n[0] + c[0][1] * n[1] + c[0][2] * n[2]) / 6;
+}
+
+/* A power of two; sums of so many terms have 53 bits above it. */
+static double mcor_exact_unit(double most, int64_t count)
+{
+  const double bound = most * (double)count;
+  return bound > 0 && isfinite(bound) ? ldexp(1, ilogb(bound) + 1 - 53) : 1;
+}
+
+void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
+{
+  measures->triangle_count = surface->triangle_count;
+  measures->area_most = measures->volume_most = 0;
+  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  {
+    double area, volume;
+    mcor_measure_triangle(surface, measures->origin, t, &area, &volume);
+    measures->area_most = fmax(measures->area_most, area);
+    measures->volume_most = fmax(measures->volume_most, fabs(volume));
+  }
+}
+
+void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
+{
+  const double area_unit = mcor_exact_unit(measures->area_most, measures->triangle_count);
+  const double volume_unit = mcor_exact_unit(measures->volume_most, measures->triangle_count);
+  uint64_t open = 0;
+  measures->area = measures->volume = 0;
+  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  {
+    double area, volume;
+    mcor_measure_triangle(surface, measures->origin, t, &area, &volume);
+    measures->area += nearbyint(area / area_unit) * area_unit;
+    measures->volume += nearbyint(volume / volume_unit) * volume_unit;
+    for (int i = 0; i < 3; ++i)
+    {
+      const int64_t p = surface->triangles[3 * t + i], q = surface->triangles[3 * t + (i + 1) % 3];
+      const int64_t a = numbers ? numbers[p] : p, b = numbers ? numbers[q] : q;
+      open += a < b ? mcor_edge_number(a, b) : 0 - mcor_edge_number(b, a);
+    }
+  }
+  measures->open = (int64_t)open;
+}
+
+void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics)
+{
+  statistics->is_closed = measures->open == 0 && measures->triangle_count > 0;
+  statistics->area = measures->area;
+  statistics->volume = statistics->is_closed ? measures->volume : 0;
+}
+
+/* About one of the points, as coordinates may be large. */
+void mcor_measure_surface(mcor_surface* surface)
+{
+  mcor_measures measures = { .open = 0 };
+  for (int d = 0; d < 3 && surface->point_count > 0; ++d)
+  {
+    measures.origin[d] = surface->points[d];
+  }
+  mcor_measure_terms(surface, &measures);
+  mcor_measure_sums(surface, NULL, &measures);
+  mcor_keep_measures(&measures, &surface->statistics);
 }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps close the surface at the sides of a period, around what is above the iso value. Each square of
+/* Caps close the surface at the sides of a period, and of a box, where that is asked for, around what is above the iso value. Each square of
  * a side is cut as marching cuts it: along the lines between the surface's own vertices there, which
  * the cap shares. The other vertices are nodes. Where the surface is trimmed the cap is, too: at the
  * surface's own cut vertices, and linearly within the side. A square is capped where the cell beside
@@ -30,10 +30,33 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
+int mcor_cap_plane(const mcor_context* context, int axis, int upper)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const mcor_options* options = context->options;
+  const bool periodic = lattice->period[axis] > 0;
+  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
+  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
+  const int *lower_side = options->ranks ? box->whole_first : box->first,
+            *upper_side = options->ranks ? box->whole_last : box->last;
+  const int side = upper ? upper_side[axis] : lower_side[axis];
+  const int last = (int)(upper ? end : begin);
+  if (options->capping == MCOR_CAP_BOX && side != last)
+  {
+    return side;
+  }
+  return options->capping && periodic ? last : -1;
+}
+
 bool mcor_makes_caps(const mcor_context* context)
 {
-  const int* period = context->lattice.period;
-  return context->options->capping && (period[0] > 0 || period[1] > 0 || period[2] > 0);
+  bool makes = false;
+  for (int i = 0; i < 6; ++i)
+  {
+    makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
+  }
+  return makes;
 }
 
 /* Of a node; the virtual grid has not more than 2^20 + 64 along an axis. */
@@ -298,12 +321,16 @@ static mcor_status mcor_cap_square(mcor_cap_job* job, const mcor_cap_face* face,
 
 /* ---- the mesh -------------------------------------------------------------------------------- */
 
-/* The surface's vertices on the sides of the period. */
+/* The surface's vertices on the sides. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
 {
   const mcor_context* context = job->context;
-  const mcor_lattice* lattice = &context->lattice;
   const cl_int* nodes = job->node;
+  int plane[6];
+  for (int i = 0; i < 6; ++i)
+  {
+    plane[i] = mcor_cap_plane(context, i / 2, i % 2);
+  }
   for (int32_t v = 0; v < context->mesh.march_count; ++v)
   {
     const cl_int* node = nodes + 4 * (size_t)v;
@@ -311,9 +338,7 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
     bool on_side = false;
     for (int a = 0; a < 3; ++a)
     {
-      const int at = node[a] - lattice->period_first[a];
-      on_side =
-        on_side || (a != axis && lattice->period[a] > 0 && (at == 0 || at == lattice->period[a]));
+      on_side = on_side || (a != axis && (node[a] == plane[2 * a] || node[a] == plane[2 * a + 1]));
     }
     if (on_side && mcor_cap_number(&job->edges[axis], mcor_cap_key(node), v) < 0)
     {
@@ -358,10 +383,10 @@ static mcor_status mcor_cap_squares(mcor_cap_job* job, const mcor_cap_face* face
 static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis, double iso, mcor_cap_points* points)
 {
   mcor_context* context = job->context;
-  const mcor_lattice* lattice = &context->lattice;
-  const int first = lattice->period_first[axis], last = first + lattice->period[axis];
-  const bool has_lower = context->box.first[axis] == first,
-             has_upper = context->box.last[axis] == last;
+  const int first = mcor_cap_plane(context, axis, 0), last = mcor_cap_plane(context, axis, 1);
+  const bool has_lower = first >= 0 && context->box.first[axis] == first,
+             has_upper = last >= 0 && context->box.last[axis] == last,
+             are_one = has_lower && last - first == context->lattice.period[axis];
   mcor_cap_face lower = { 0 }, upper = { 0 };
   mcor_status status = MCOR_OK;
   if (has_lower)
@@ -371,7 +396,7 @@ static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis, double iso, mcor_
   }
   if (has_upper && status == MCOR_OK)
   {
-    status = mcor_load_cap_face(context, axis, 1, has_lower ? &lower : NULL, iso, points, &upper);
+    status = mcor_load_cap_face(context, axis, 1, are_one ? &lower : NULL, iso, points, &upper);
     status = status == MCOR_OK ? mcor_cap_squares(job, &upper) : status;
   }
   mcor_free_cap_face(&lower);
@@ -403,7 +428,7 @@ static mcor_status mcor_make_caps(mcor_cap_job* job, double iso, mcor_cap_points
   }
   for (int axis = 0; axis < 3; ++axis)
   {
-    MCOR_TRY(context->lattice.period[axis] > 0 ? mcor_cap_sides(job, axis, iso, points) : MCOR_OK);
+    MCOR_TRY(mcor_cap_sides(job, axis, iso, points));
   }
   return MCOR_OK;
 }

@@ -3,7 +3,7 @@
 #ifndef mcor_cap_h
 #define mcor_cap_h
 
-/* Caps: what closes the surface at the sides of a period. See mcor_cap.c. */
+/* Caps: what closes the surface at the sides of a period or a box. See mcor_cap.c. */
 
 #include "mcor_internal.h"
 
@@ -13,6 +13,8 @@
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
 mcor_status mcor_cap(mcor_context* context, double iso);
 
+/* The nodes along an axis of its lower or upper side that is closed; of ranks, of the whole box; -1: there is none. */
+int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 /* Whether they are asked for. */
 bool mcor_makes_caps(const mcor_context* context);
 

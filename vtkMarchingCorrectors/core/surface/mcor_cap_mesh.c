@@ -22,12 +22,12 @@ bool mcor_is_cap(const mcor_context* context, int64_t v)
 
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
 {
-  const mcor_lattice* lattice = &context->lattice;
   double n[3], square = 0;
   for (int a = 0; a < 3; ++a)
   {
-    const int at = node[a] - lattice->period_first[a];
-    n[a] = lattice->period[a] == 0 ? 0 : at == 0 ? -1 : at == lattice->period[a] ? 1 : 0;
+    n[a] = node[a] == mcor_cap_plane(context, a, 0) ? -1
+      : node[a] == mcor_cap_plane(context, a, 1)    ? 1
+                                                    : 0;
     square += n[a] * n[a];
   }
   for (int a = 0; a < 3; ++a)

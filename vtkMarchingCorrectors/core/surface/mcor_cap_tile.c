@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* One side of a period, and its tiles: squares of nodes that some particle reaches. Where none does there is
+/* One side of a period or a box, and its tiles: squares of nodes that some particle reaches. Where none does there is
  * nothing to close, so that a side takes memory and time as far as there is something at it. */
 
 #include "mcor_box.h"
@@ -28,10 +28,9 @@ static void mcor_set_cap_extent(
 {
   const mcor_lattice* lattice = &context->lattice;
   const mcor_box* box = &context->box;
-  const int side = upper ? lattice->period[axis] : 0;
   *face = (mcor_cap_face){ .axis = axis,
     .upper = upper,
-    .plane = lattice->period_first[axis] + side,
+    .plane = mcor_cap_plane(context, axis, upper),
     .across = { (axis + 1) % 3, (axis + 2) % 3 } };
   face->inner = face->plane + (upper ? -1 : 1);
   face->cell = face->plane - upper;
@@ -39,8 +38,9 @@ static void mcor_set_cap_extent(
   {
     const int a = face->across[i], low = box->first[a] - MCOR_BOX_RING,
               high = box->last[a] + MCOR_BOX_RING;
-    const int first = lattice->period[a] > 0 ? lattice->period_first[a] : (int)lattice->first[a];
-    const int last = lattice->period[a] > 0 ? first + lattice->period[a] : (int)lattice->last[a];
+    const int lower = mcor_cap_plane(context, a, 0), higher = mcor_cap_plane(context, a, 1);
+    const int first = lower >= 0 ? lower : (int)lattice->first[a];
+    const int last = higher >= 0 ? higher : (int)lattice->last[a];
     face->first[i] = low > first ? low : first;
     face->count[i] = (high < last ? high : last) - face->first[i] + 1;
     face->owned[i] = box->first[a] - face->first[i];
@@ -70,7 +70,7 @@ static mcor_status mcor_note_tiles(
     }
   }
   MCOR_RETURN_IF(face->tile_count > MCOR_CAP_TILE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "More than %d nodes of a periodic side along %c are within reach of particles, with cube size "
+    "More than %d nodes of a side along %c are within reach of particles, with cube size "
     "%g: too many for a cap. Use a larger cube size, or no caps.",
     MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, 'x' + face->axis, context->lattice.cube);
   return MCOR_OK;
@@ -148,7 +148,7 @@ static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_
   const double low[2] = { 0, 0 }, high[2] = { face->count[0], face->count[1] };
   const size_t places = (size_t)face->tiles[0] * (size_t)face->tiles[1];
   MCOR_RETURN_IF(places > MCOR_CAP_PLACE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "A periodic side has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
+    "A side has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
     "caps.",
     (long long)face->count[0], (long long)face->count[1]);
   face->tile = calloc(places, sizeof *face->tile);
@@ -193,7 +193,6 @@ mcor_status mcor_make_cap_face(
 mcor_status mcor_check_caps(mcor_context* context)
 {
   const mcor_options* options = context->options;
-  const mcor_lattice* lattice = &context->lattice;
   const mcor_box* box = &context->box;
   double least = INFINITY;
   for (int i = 0; i < options->iso_count; ++i)
@@ -203,10 +202,10 @@ mcor_status mcor_check_caps(mcor_context* context)
   mcor_status status = MCOR_OK;
   for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
   {
-    const int first = lattice->period_first[a];
-    const bool has_lower = box->first[a] == first,
-               has_upper = box->last[a] == first + lattice->period[a];
-    if (lattice->period[a] > 0 && !box->is_empty && (has_lower || has_upper))
+    const int first = mcor_cap_plane(context, a, 0), last = mcor_cap_plane(context, a, 1);
+    const bool has_lower = first >= 0 && box->first[a] == first,
+               has_upper = last >= 0 && box->last[a] == last;
+    if (!box->is_empty && (has_lower || has_upper))
     {
       mcor_cap_face face;
       mcor_set_cap_extent(context, a, !has_lower, &face);

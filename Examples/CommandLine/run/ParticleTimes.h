@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ParticleTimes_h
+#define ParticleTimes_h
+
+#include "ParticleSteps.h"
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class MessageCapture;
+class vtkPointSet;
+class vtkSPHTemporalInterpolator;
+struct Job;
+
+/// A number of a time, with the digits that it was given with.
+std::string TimeText(double time);
+
+/// The particles of a series at the times that it stores, or those that are asked for, between two steps.
+class ParticleTimes
+{
+public:
+  using Steps = std::vector<ParticleSteps::Step>;
+
+  /// Throws UsageError or std::runtime_error with one sentence.
+  ParticleTimes(const Job& job, MessageCapture* messages);
+  ~ParticleTimes();
+  ParticleTimes(const ParticleTimes&) = delete;
+  void operator=(const ParticleTimes&) = delete;
+
+  const std::vector<double>& Get() const { return this->Times; }
+
+  /// All that are read.
+  std::vector<std::string> ListFiles() const;
+
+  /// Those that a time is made of.
+  std::vector<std::string> ListFiles(double time) const;
+
+  /// Throws std::runtime_error; Reset() then, so that nothing is left of what failed halfway.
+  vtkSmartPointer<vtkPointSet> At(double time, std::vector<std::string>& warnings);
+  void Reset();
+
+private:
+  MessageCapture* const Messages;
+  const Steps Stored;
+  const std::vector<double> Times;
+  vtkSmartPointer<ParticleSteps> Source;
+  vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
+};
+
+#endif

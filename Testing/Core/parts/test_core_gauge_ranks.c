@@ -1,0 +1,222 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Gauges of ranks, in threads: to the last bit what one process reads, whoever owns which part of a line. */
+
+#include "core_fixture.h"
+#include "core_ranks.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LINES 90
+
+/* A block of particles in no order, with holes. */
+static core_set make_sparse(void)
+{
+  core_set set = core_make_random(2500, 12, 0.6, 1.0, 5);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.volume[i] = 0.4;
+  }
+  return set;
+}
+
+typedef struct gauge_job
+{
+  const core_set* set;
+  const mcor_gauge_line* lines;
+  int axis, periodic, volumes; /* volumes: computed */
+  mcor_globals globals;
+  mcor_status status[CORE_MOST_RANKS];
+  mcor_gauges gauges[CORE_MOST_RANKS];
+  char error[CORE_MOST_RANKS][400];
+} gauge_job;
+
+static mcor_options gauge_options(const gauge_job* job)
+{
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.field = MCOR_WEIGHT_SUM;
+  options.level_limit = 0;
+  if (job->periodic)
+  {
+    options.periodic[2 * job->axis] = -6;
+    options.periodic[2 * job->axis + 1] = 6;
+  }
+  return options;
+}
+
+static mcor_input gauge_input(const gauge_job* job, const core_set* set)
+{
+  mcor_input input = core_input(set);
+  if (job->volumes)
+  {
+    input.volume = (mcor_array){ 0 };
+  }
+  return input;
+}
+
+/* Those that the box between two sides needs: nearer than `reach` to it, or to its image a period away. */
+static core_set take_near(const gauge_job* job, double low, double high, double reach)
+{
+  core_set part = core_make_set(job->set->count);
+  part.count = 0;
+  for (int64_t i = 0; i < job->set->count; ++i)
+  {
+    int is_near = 0;
+    for (int image = -1; image <= 1; ++image)
+    {
+      const double at = job->set->position[3 * i + job->axis] + (job->periodic ? 12 * image : 0);
+      is_near = is_near || (at > low - reach && at < high + reach);
+    }
+    if (is_near)
+    {
+      memcpy(part.position + 3 * part.count, job->set->position + 3 * i, 3 * sizeof(double));
+      part.smoothing_length[part.count] = job->set->smoothing_length[i];
+      part.volume[part.count++] = job->set->volume[i];
+    }
+  }
+  return part;
+}
+
+/* Slabs that are not alike, whose sides are nowhere near the lattice's nodes; the outer ones go on without
+ * end. */
+static void gauge_part(core_rank* rank, void* data)
+{
+  gauge_job* job = data;
+  const int r = rank->number, count = rank->world->count;
+  mcor_options options = gauge_options(job);
+  double sides[2];
+  for (int s = 0; s < 2; ++s)
+  {
+    const int cut = r + s;
+    sides[s] = cut == 0 ? -INFINITY
+      : cut == count    ? INFINITY
+                        : -6.1 + 12.2 * pow((double)cut / count, 1.5);
+  }
+  for (int side = 0; side < 6; ++side)
+  {
+    options.box[side] = side % 2 ? INFINITY : -INFINITY;
+    options.box[side] = side / 2 == job->axis ? sides[side % 2] : options.box[side];
+  }
+  options.globals = &job->globals;
+  options.ranks = &rank->ranks;
+  const double reach = job->globals.measured.support_max * (job->volumes ? 3 : 1) +
+    mcor_reach_margin(&options, &job->globals, 0);
+  core_set part = take_near(job, sides[0], sides[1], reach);
+  const mcor_input input = gauge_input(job, &part);
+  mcor_context* context = NULL;
+  job->status[r] = mcor_create_context(NULL, &context);
+  if (job->status[r] == MCOR_OK)
+  {
+    job->status[r] = mcor_gauge(context, &input, &options, job->lines, LINES, &job->gauges[r]);
+  }
+  snprintf(job->error[r], sizeof job->error[r], "%s", mcor_last_error(context));
+  if (job->status[r] != MCOR_OK)
+  {
+    core_leave(rank);
+  }
+  mcor_free_context(context);
+  core_free_set(&part);
+}
+
+static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
+{
+  int same = a->count == b->count && a->crossing_count == b->crossing_count &&
+    memcmp(a->crossings, b->crossings, (size_t)a->crossing_count * sizeof(double)) == 0;
+  for (int64_t i = 0; i < a->count && same; ++i)
+  {
+    const mcor_gauge_reading *x = &a->readings[i], *y = &b->readings[i];
+    same = x->state == y->state && !x->outside == !y->outside &&
+      memcmp(&x->first, &y->first, 6 * sizeof(double)) == 0 &&
+      x->first_crossing == y->first_crossing && x->crossing_count == y->crossing_count;
+  }
+  return same;
+}
+
+/* Some along the axis that is cut, through all boxes; one that runs through several periods; one outside. */
+static void make_lines(mcor_gauge_line* lines, int axis)
+{
+  uint64_t seed = 11;
+  for (int i = 0; i < LINES; ++i)
+  {
+    lines[i] = (mcor_gauge_line){ .name = NULL };
+    for (int a = 0; a < 3; ++a)
+    {
+      lines[i].from[a] = 16 * random_unit(&seed) - 8;
+      lines[i].to[a] = i % 3 ? 16 * random_unit(&seed) - 8 : lines[i].from[a];
+    }
+    if (i % 3 == 0)
+    {
+      lines[i].from[axis] = -7;
+      lines[i].to[axis] = 7.5;
+    }
+  }
+  lines[1].to[axis] = 43;
+  lines[2] = (mcor_gauge_line){ .from = { 100, 100, 100 }, .to = { 101, 102, 103 } };
+}
+
+static void test_same_bits(void** state)
+{
+  core_set set = make_sparse();
+  for (int kind = 0; kind < 6; ++kind)
+  {
+    mcor_gauge_line lines[LINES];
+    gauge_job job = { .set = &set,
+      .lines = lines,
+      .axis = kind % 3,
+      .periodic = kind >= 3,
+      .volumes = kind == 1 || kind == 5 };
+    make_lines(lines, job.axis);
+    const mcor_input input = gauge_input(&job, &set);
+    mcor_options options = gauge_options(&job);
+    mcor_gauges alone;
+    CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, LINES, &alone));
+    CORE_CHECK(alone.crossing_count > 80, "%lld crossings", (long long)alone.crossing_count);
+    assert_true(alone.readings[2].outside && !alone.readings[0].outside);
+    CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
+    for (int count = 1; count <= CORE_MOST_RANKS; ++count)
+    {
+      core_world world;
+      core_run_ranks(count, gauge_part, &job, &world);
+      for (int r = 0; r < count; ++r)
+      {
+        CORE_CHECK(job.status[r] == MCOR_OK && same_gauges(&job.gauges[r], &alone),
+          "case %d: rank %d of %d differs: %s", kind, r, count, job.error[r]);
+        mcor_free_gauges(&job.gauges[r]);
+      }
+    }
+    mcor_free_globals(&job.globals);
+    mcor_free_gauges(&alone);
+  }
+  core_free_set(&set);
+}
+
+/* Cubes so small that a box lacks the particles around it. */
+static void test_small_cubes(void** state)
+{
+  core_set set = make_sparse();
+  mcor_gauge_line line = { .from = { 0, 0, -7 }, .to = { 0, 0, 7 } };
+  gauge_job job = { .set = &set, .lines = &line };
+  const mcor_input input = gauge_input(&job, &set);
+  mcor_options options = gauge_options(&job);
+  options.cube_size = 0.05;
+  CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
+  options.globals = &job.globals;
+  options.box[1] = options.box[3] = options.box[5] = 3;
+  mcor_gauges gauges;
+  assert_int_equal(mcor_gauge(*state, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(*state), "Leave the cube size"));
+  mcor_free_globals(&job.globals);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_same_bits),
+    cmocka_unit_test(test_small_cubes) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,284 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Lines of gauges: where they are sampled, and what they read of what was found there.
+ *
+ * Ranks share lines sample by sample: one owns those in cells of its box. It looks at two more on either side,
+ * so that it finds what one process finds there. */
+
+#include "mcor_box.h"
+#include "mcor_gauge.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_GAUGE_STEP 0.25 /* of the smallest scaled smoothing length */
+#define MCOR_GAUGE_LEAST_STEPS 4
+/* Samples of one line at most. */
+#define MCOR_GAUGE_MOST (1 << 26)
+
+/* ---- lines -------------------------------------------------------------------------------- */
+
+double mcor_gauge_length(const mcor_gauge_line* line)
+{
+  return hypot(
+    hypot(line->to[0] - line->from[0], line->to[1] - line->from[1]), line->to[2] - line->from[2]);
+}
+
+mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number)
+{
+  char name[64];
+  snprintf(name, sizeof name, "number %lld", (long long)number);
+  const char* which = line->name ? line->name : name;
+  for (int a = 0; a < 3; ++a)
+  {
+    MCOR_RETURN_IF(!isfinite(line->from[a]) || !isfinite(line->to[a]), context,
+      MCOR_INVALID_ARGUMENT,
+      "Gauge %s has an end that is not finite, (%g, %g, %g) or (%g, %g, %g). Give it two points.",
+      which, line->from[0], line->from[1], line->from[2], line->to[0], line->to[1], line->to[2]);
+  }
+  const double length = mcor_gauge_length(line);
+  MCOR_RETURN_IF(!(length > 0) || !isfinite(length), context, MCOR_INVALID_ARGUMENT,
+    "Gauge %s has no length: both its ends are at (%g, %g, %g). Give it two points.", which,
+    line->from[0], line->from[1], line->from[2]);
+  return MCOR_OK;
+}
+
+/* The part of a line that particles may reach, as places on it; along periods they are everywhere. */
+static void mcor_clip_line(const mcor_context* context, const mcor_gauge_line* line, double clip[2])
+{
+  const mcor_measure* m = &context->measure;
+  clip[0] = 0;
+  clip[1] = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double way = line->to[a] - line->from[a];
+    if (context->lattice.period[a] > 0)
+    {
+      continue;
+    }
+    const double margin = context->lattice.cube;
+    const double low = m->low[a] - margin - line->from[a];
+    const double high = m->high[a] + margin - line->from[a];
+    if (way == 0)
+    {
+      clip[1] = low <= 0 && high >= 0 ? clip[1] : -1;
+    }
+    else
+    {
+      clip[0] = fmax(clip[0], fmin(low / way, high / way));
+      clip[1] = fmin(clip[1], fmax(low / way, high / way));
+    }
+  }
+}
+
+/* ---- samples ------------------------------------------------------------------------------ */
+
+double mcor_gauge_step(double h_scale, double smoothing_length_min)
+{
+  return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
+}
+
+bool mcor_gauge_room(
+  mcor_context* context, void** array, int64_t count, int64_t* room, size_t width)
+{
+  if (count < *room)
+  {
+    return true;
+  }
+  const int64_t more = 2 * *room + 1024;
+  void* grown = realloc(*array, (size_t)more * width);
+  *array = grown ? grown : *array;
+  *room = grown ? more : *room;
+  if (!grown)
+  {
+    mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld %s could not be allocated.",
+      (long long)more, "parts of gauges");
+  }
+  return grown != NULL;
+}
+
+/* Parts with their neighbours, as far as the whole has some. */
+static mcor_status mcor_append_samples(
+  mcor_gauge_job* job, const mcor_gauge_samples* whole, int64_t own_first, int64_t own_last)
+{
+  if (!mcor_gauge_room(job->context, (void**)&job->samples, job->sample_count, &job->sample_room,
+        sizeof *job->samples))
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  mcor_gauge_samples* samples = &job->samples[job->sample_count++];
+  *samples = *whole;
+  samples->begin = whole->first;
+  samples->own_first = own_first;
+  samples->own_last = own_last;
+  samples->first = own_first - 2 > whole->first ? own_first - 2 : whole->first;
+  samples->last = own_last + 2 < whole->last ? own_last + 2 : whole->last;
+  return MCOR_OK;
+}
+
+/* Whether a place of the line is in one of the cells along the axes. */
+static bool mcor_is_owned(
+  const mcor_context* context, const mcor_gauge_line* line, double place, double cells[3][2])
+{
+  const mcor_lattice* lattice = &context->lattice;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double at = line->from[a] + place * (line->to[a] - line->from[a]);
+    double cell = floor(at / lattice->cube - (double)lattice->origin[a]);
+    if (lattice->period[a] > 0)
+    {
+      cell -= floor((cell - lattice->period_first[a]) / lattice->period[a]) * lattice->period[a];
+    }
+    else
+    {
+      cell = fmin(fmax(cell, (double)lattice->first[a]), (double)lattice->last[a] - 1);
+    }
+    if (cell < cells[a][0] || cell >= cells[a][1])
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+static mcor_status mcor_append_owned(mcor_gauge_job* job, const mcor_gauge_samples* whole)
+{
+  const mcor_context* context = job->context;
+  const mcor_lattice* lattice = &context->lattice;
+  double cells[3][2];
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool periodic = lattice->period[a] > 0;
+    cells[a][0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
+    cells[a][1] = periodic ? cells[a][0] + lattice->period[a] : (double)lattice->last[a];
+    mcor_place_sides(lattice, a, job->box, cells[a]);
+  }
+  const mcor_gauge_line* line = &job->lines[whole->line];
+  int64_t begin = -1;
+  for (int64_t i = whole->first; i <= whole->last + 1; ++i)
+  {
+    const bool owned =
+      i <= whole->last && mcor_is_owned(context, line, (double)i / (double)whole->steps, cells);
+    if (owned && begin < 0)
+    {
+      begin = i;
+    }
+    else if (!owned && begin >= 0)
+    {
+      MCOR_TRY(mcor_append_samples(job, whole, begin, i - 1));
+      begin = -1;
+    }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
+{
+  mcor_context* context = job->context;
+  const mcor_gauge_line* line = &job->lines[number];
+  const double step = mcor_gauge_step(context->options->h_scale, context->measure.h_min);
+  const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
+  double clip[2];
+  mcor_clip_line(context, line, clip);
+  if (clip[0] > clip[1])
+  {
+    return MCOR_OK;
+  }
+  const double first = fmax(floor(clip[0] * steps) - 1, 0);
+  const double last = fmin(ceil(clip[1] * steps) + 1, steps);
+  MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !(steps < 4e15), context, MCOR_OUT_OF_CAPACITY,
+    "Gauge number %lld is to be sampled at %.3g points, a quarter of the smallest smoothing "
+    "length, %g, apart; at most %d are possible. Shorten it.",
+    (long long)number, last - first + 1, context->measure.h_min, MCOR_GAUGE_MOST);
+  mcor_gauge_samples whole = {
+    .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last
+  };
+  if (whole.last - whole.first < 2) /* a row of three, for parabolas */
+  {
+    whole.first = whole.first >= 2 ? whole.last - 2 : 0;
+    whole.last = whole.first + 2;
+  }
+  return job->box ? mcor_append_owned(job, &whole)
+                  : mcor_append_samples(job, &whole, whole.first, whole.last);
+}
+
+/* ---- readings ----------------------------------------------------------------------------- */
+
+/* From its crossings, still places on the line, what a line reads. */
+static void mcor_read_line(
+  const mcor_gauge_line* line, bool full, mcor_gauge_reading* r, double* crossings)
+{
+  double* at = crossings + r->first_crossing;
+  const int64_t n = r->crossing_count;
+  const double length = mcor_gauge_length(line);
+  r->state = full ? MCOR_GAUGE_FULL : n > 0 ? MCOR_GAUGE_WET : MCOR_GAUGE_DRY;
+  r->first = r->last = NAN;
+  r->depth = 0;
+  /* Crossings alternate, and the line's end tells whether the last one led into the fluid. */
+  for (int64_t i = n - (full ? 0 : 1); i >= 0; i -= 2)
+  {
+    const double end = i < n ? at[i] : 1, begin = i > 0 ? at[i - 1] : 0;
+    r->depth += (end - begin) * length;
+    r->first = end;
+    r->last = isnan(r->last) ? end : r->last;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    r->place[a] = line->from[a] + r->last * (line->to[a] - line->from[a]);
+  }
+  r->first *= length;
+  r->last *= length;
+  for (int64_t i = 0; i < n; ++i)
+  {
+    at[i] *= length;
+  }
+}
+
+static int mcor_compare_records(const void* a, const void* b)
+{
+  const mcor_gauge_record *left = a, *right = b;
+  return left->line != right->line ? (left->line < right->line ? -1 : 1)
+    : left->place != right->place  ? (left->place < right->place ? -1 : 1)
+                                   : 0;
+}
+
+mcor_status mcor_read_lines(
+  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count, mcor_gauges* gauges)
+{
+  mcor_gauge_record* sorted = malloc((size_t)(count + 1) * sizeof *sorted);
+  gauges->readings = calloc((size_t)job->line_count + 1, sizeof *gauges->readings);
+  gauges->crossings = calloc((size_t)count + 1, sizeof *gauges->crossings);
+  if (!sorted || !gauges->readings || !gauges->crossings)
+  {
+    free(sorted);
+    return mcor_fail(job->context, MCOR_OUT_OF_CAPACITY,
+      "Host memory for %lld gauges could not be allocated.", (long long)job->line_count);
+  }
+  memcpy(sorted, records, (size_t)count * sizeof *sorted);
+  qsort(sorted, (size_t)count, sizeof *sorted, mcor_compare_records);
+  gauges->count = job->line_count;
+  for (int64_t l = 0, i = 0; l < gauges->count; ++l)
+  {
+    mcor_gauge_reading* reading = &gauges->readings[l];
+    bool full = false;
+    *reading = (mcor_gauge_reading){ .outside = 1 };
+    for (; i < count && sorted[i].line == l; ++i)
+    {
+      full = full || sorted[i].place == MCOR_GAUGE_ENDS_IN;
+      reading->outside = reading->outside && sorted[i].place != MCOR_GAUGE_REACHED;
+      if (sorted[i].place >= 0)
+      {
+        reading->first_crossing =
+          reading->crossing_count == 0 ? gauges->crossing_count : reading->first_crossing;
+        reading->crossing_count++;
+        gauges->crossings[gauges->crossing_count++] = sorted[i].place;
+      }
+    }
+    mcor_read_line(&job->lines[l], full, reading, gauges->crossings);
+  }
+  free(sorted);
+  return MCOR_OK;
+}

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Gauges that many processes measure. Space around the lines is divided among them, particles go to where they
+// reach, and each measures the parts of all lines that are in its box; the core puts these together.
+#include "vtkSPHGauge.h"
+
+#include "mcor.h"
+#include "mcor_parts.h"
+#include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHParticles.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksBytes.h"
+#include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksRoute.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <utility>
+
+namespace
+{
+/** Around the lines, in cubes: so that one alone, too, has a box, and bricks to be cut at. */
+constexpr double MarginCubes = 4.0;
+
+/** Around the lines, as far as there are particles; along periods, everywhere. */
+void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& globals,
+  const double periodic[6], double box[6])
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
+  {
+    double low = infinity, high = -infinity;
+    for (const mcor_gauge_line& line : lines)
+    {
+      low = std::min({ low, line.from[a], line.to[a] });
+      high = std::max({ high, line.from[a], line.to[a] });
+    }
+    const auto clamp = [&](double x)
+    { return std::min(std::max(x, globals.measured.low[a]), globals.measured.high[a]); };
+    const bool isPeriodic = periodic[2 * a] < periodic[2 * a + 1];
+    const double margin = MarginCubes * globals.measured.cube;
+    box[2 * a] = isPeriodic ? -infinity : clamp(low) - margin;
+    box[2 * a + 1] = isPeriodic ? infinity : clamp(high) + margin;
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+// Those of all processes, each once.
+std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
+  vtkSPHRanks& ranks, const std::vector<Gauge>& mine)
+{
+  vtkSPHRanks::Bytes bytes;
+  vtkSPHPutNumber(bytes, static_cast<std::int64_t>(mine.size()));
+  for (const Gauge& gauge : mine)
+  {
+    vtkSPHPutText(bytes, gauge.Name);
+    vtkSPHPutBytes(bytes, gauge.Ends.data(), sizeof(gauge.Ends));
+  }
+  std::vector<Gauge> all;
+  std::set<std::pair<std::string, std::string>>
+    known; // names and bytes of ends, which may be no numbers
+  for (const vtkSPHRanks::Bytes& theirs : ranks.Gather(bytes))
+  {
+    std::set<std::pair<std::string, std::string>> before = known;
+    vtkSPHRanksReader reader(theirs);
+    for (std::int64_t count = reader.GetNumber(); count > 0; --count)
+    {
+      Gauge gauge;
+      gauge.Name = reader.GetText();
+      reader.GetBytes(gauge.Ends.data(), sizeof(gauge.Ends));
+      const std::string ends(reinterpret_cast<const char*>(gauge.Ends.data()), sizeof(gauge.Ends));
+      if (before.count({ gauge.Name, ends }) == 0) // two of one process are for CheckNames()
+      {
+        known.insert({ gauge.Name, ends });
+        all.push_back(gauge);
+      }
+    }
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
+// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
+{
+  vtkSPHRanks ranks(this->Controller);
+  const std::vector<Gauge> gauges = Merge(ranks, this->ListGauges());
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
+  std::int64_t counts[2] = { own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
+  ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
+  if (counts[1] > 0 || !this->CheckNames(gauges))
+  {
+    return;
+  }
+  vtkSPHParticlesChoice choice;
+  this->FillChoice(choice);
+  this->FindFluidDistributed(ranks, choice, own);
+  vtkSPHParticles mine(choice, own);
+  std::string message = counts[0] == 0 || mine.CollectParticles() ? "" : mine.Error;
+  this->SetUsedNames(counts[0] > 0 ? &mine : nullptr);
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return;
+  }
+  std::int64_t fluid = mine.FluidCount;
+  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
+  if (counts[0] > 0 && ranks.GetRank() == 0)
+  {
+    fluid == 0 ? this->WarnOfNoFluid(choice, "all gauges are dry")
+               : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
+  }
+  if (fluid > 0)
+  {
+    this->MeasureDistributed(ranks, own, mine, gauges, output);
+  }
+  else
+  {
+    this->Measure(mine, own, gauges, output); // nothing, on all of them
+  }
+  if (ranks.GetRank() > 0)
+  {
+    output->SetNumberOfRows(0);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHGauge::MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
+  const std::vector<Gauge>& gauges, vtkTable* output)
+{
+  mcor_options options;
+  this->FillOptions(options);
+  if (!this->SetPeriodDistributed(ranks, own, options))
+  {
+    return;
+  }
+  options.field = MCOR_WEIGHT_SUM;
+  options.level_limit = 0;
+  options.iso_values = &this->Level;
+  options.iso_count = 1;
+  mcor_globals globals = {};
+  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
+    &globals, mcor_free_globals);
+  if (!this->CallCoreDistributed(ranks, mine, options,
+        [&](mcor_context* context)
+        { return mcor_measure_globals(context, &mine.Core, &options, &globals); }))
+  {
+    return;
+  }
+  const std::vector<mcor_gauge_line> lines = ListLines(gauges);
+  FindBox(lines, globals, options.periodic, options.box);
+  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals);
+  const vtkSmartPointer<vtkPolyData> near =
+    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
+  vtkSPHParticles input(mine.Description, near);
+  std::string message = input.CollectParticles() ? "" : input.Error;
+  if (!ranks.Agree(message))
+  {
+    this->Fail(message);
+    return;
+  }
+  options.globals = &globals;
+  std::copy(route.Box, route.Box + 6, options.box);
+  mcor_gauges found = {};
+  const std::unique_ptr<mcor_gauges, decltype(&mcor_free_gauges)> freeGauges(
+    &found, mcor_free_gauges);
+  const auto count = static_cast<std::int64_t>(lines.size());
+  if (!this->CallCoreDistributed(ranks, input, options,
+        [&](mcor_context* context)
+        { return mcor_gauge(context, &input.Core, &options, lines.data(), count, &found); }))
+  {
+    return;
+  }
+  vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
+  if (ranks.GetRank() > 0)
+  {
+    mcor_free_gauges(&found); // the first one has the table, and says what there is to say
+  }
+  this->Fill(output, gauges, found, true);
+}

@@ -304,10 +304,10 @@ extern "C"
      * one (0: there is none); share of the support that these particles fill if all are as large as the
      * particle itself (0 where volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
-    double wall_share;      /* in use; 0: the surface does not end at solids */
-    double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
-    double cube_size;       /* unit L; the shortest of: */
-    double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
+    double wall_share;             /* in use; 0: the surface does not end at solids */
+    double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
+    double cube_size;              /* unit L; the shortest of: */
+    double cube_edges[3]; /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
     /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; a
      * vertex that several ranks have is counted by one of them. Counts of bricks, nodes, faces and
@@ -565,19 +565,19 @@ extern "C"
   typedef struct mcor_gauge_reading
   {
     mcor_gauge_state state;
-    int outside;        /* 1: no particle's support reaches the line */
-    double first, last; /* where fluid first, and last, ends: at the line's end if it ends nowhere
+    int outside;             /* 1: no particle's support reaches the line */
+    double first, last;      /* where fluid first, and last, ends: at the line's end if it ends nowhere
                               * before; NaN where dry */
-    double depth;       /* length of the line in fluid; 0 where dry */
-    double place[3];    /* of `last`; NaN where dry */
-    int64_t first_crossing; /* of this line, among all */
-    int64_t crossing_count; /* whichever way the line goes through the surface */
+    double depth;            /* length of the line in fluid; 0 where dry */
+    double place[3];         /* of `last`; NaN where dry */
+    int64_t first_crossing;  /* of this line, among all */
+    int64_t crossing_count;  /* whichever way the line goes through the surface */
   } mcor_gauge_reading;
 
   /* Owned; free with mcor_free_gauges. */
   typedef struct mcor_gauges
   {
-    int64_t count;                /* of lines */
+    int64_t count; /* of lines */
     mcor_gauge_reading* readings; /* [count] */
     int64_t crossing_count;
     double* crossings; /* [crossing_count], ascending for each line, unit L */

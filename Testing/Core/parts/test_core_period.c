@@ -125,7 +125,7 @@ static int has_partner(mcor_surface* s, const double period[6], int64_t point)
     const double length = period[2 * a + 1] - period[2 * a];
     for (int upper = 0; upper < 2 && length > 0; ++upper)
     {
-      const double side = s->statistics.cube_size *
+      const double side = s->statistics.cube_edges[a] *
         (double)(s->statistics.lattice_origin[a] + (upper ? s->statistics.lattice_cells[a] : 0));
       double x[3];
       memcpy(x, s->points + 3 * point, sizeof x);
@@ -374,17 +374,19 @@ static void lengths(void** state)
 {
   const struct
   {
-    double period[6], cube;
+    double period[6], edge[3];
     const char* sentence;
-  } cases[] = { { { 0, 8, 0, 8, 0, 8 }, 8.0 / 13, NULL }, { { 0, 8, 0, 6, 0, 0 }, 8.0 / 16, NULL },
-    { { -4, 4, 0, 10, -1, 11 }, 8.0 / 16, NULL },
-    { { 0, 8, 0, 8.123456, 0, 0 }, 0, "not whole multiples of any cube size" },
-    { { 0, 1e12, 0, 8, 0, 0 }, 0, "cubes in the period along x; the limit is 1048576" },
-    { { -1.7e308, 1.7e308, 0, 8, 0, 0 }, 0, "inf cubes in the period along x" },
-    { { 0, 5e-324, 0, 0, 0, 0 }, 0, "too short for support radii" },
-    { { 0, 0.5, 0, 8, 0, 8 }, 0, "period along x is 0.5, too short" },
-    { { 0, 8, 0, -1, 0, 8 }, 0, "period along y goes from 0 to -1" },
-    { { 0, NAN, 0, 8, 0, 8 }, 0, "period along x goes from 0 to nan" } };
+  } cases[] = { { { 0, 8, 0, 8, 0, 8 }, { 8.0 / 13, 8.0 / 13, 8.0 / 13 }, NULL },
+    { { 0, 8, 0, 6, 0, 0 }, { 0.5, 0.5, 0.5 }, NULL },
+    { { -4, 4, 0, 10, -1, 11 }, { 0.5, 0.5, 0.5 }, NULL },
+    { { 0, 8, 0, 8.123456, 0, 0 }, { 8.0 / 13, 8.123456 / 13, 8.123456 / 13 }, NULL },
+    { { 0.1, 8.1, -3, 6.000001, 0, 8.123456 }, { 8.0 / 13, 9.000001 / 14, 8.123456 / 13 }, NULL },
+    { { 0, 1e12, 0, 8, 0, 0 }, { 0 }, "cubes in the period along x; the limit is 1048576" },
+    { { -1.7e308, 1.7e308, 0, 8, 0, 0 }, { 0 }, "inf cubes in the period along x" },
+    { { 0, 5e-324, 0, 0, 0, 0 }, { 0 }, "too short for support radii" },
+    { { 0, 0.5, 0, 8, 0, 8 }, { 0 }, "period along x is 0.5, too short" },
+    { { 0, 8, 0, -1, 0, 8 }, { 0 }, "period along y goes from 0 to -1" },
+    { { 0, NAN, 0, 8, 0, 8 }, { 0 }, "period along x goes from 0 to nan" } };
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
   core_set set = make_period(cube, 5);
@@ -404,12 +406,14 @@ static void lengths(void** state)
       continue;
     }
     CORE_OK(*state, status);
-    assert_true(fabs(surface.statistics.cube_size - cases[i].cube) < 1e-12);
+    const double* edge = cases[i].edge;
+    assert_true(fabs(surface.statistics.cube_size - fmin(edge[0], fmin(edge[1], edge[2]))) < 1e-12);
     for (int a = 0; a < 3; ++a)
     {
       const double period = cases[i].period[2 * a + 1] - cases[i].period[2 * a];
-      assert_true(period == 0 ||
-        fabs((double)surface.statistics.lattice_cells[a] * cases[i].cube - period) < 1e-9);
+      assert_true(fabs(surface.statistics.cube_edges[a] - edge[a]) < 1e-12);
+      assert_true(
+        period == 0 || fabs((double)surface.statistics.lattice_cells[a] * edge[a] - period) < 1e-9);
     }
     mcor_free_surface(&surface);
   }

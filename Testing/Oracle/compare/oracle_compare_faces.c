@@ -195,11 +195,11 @@ static int compare_face_joined(const compare_state* state, int64_t node, int axi
     return 0;
   }
   oracle_node_position(lattice, node, point);
-  point[u] += lattice->cube * (f00 - f01) / sum;
-  point[v] += lattice->cube * (f00 - f10) / sum;
+  point[u] += lattice->edge[u] * (f00 - f01) / sum;
+  point[v] += lattice->edge[v] * (f00 - f10) / sum;
   oracle_evaluate(&r->field, NULL, point, &sample);
   /* Rounding of the value, and of the node values, which moves the point. */
-  const double moved = lattice->cube * r->limits.close / fabs(sum);
+  const double moved = fmax(lattice->edge[u], lattice->edge[v]) * r->limits.close / fabs(sum);
   const double rounding = r->limits.close + oracle_rounding(&r->field, point, r->unit) +
     moved * (fabs(sample.gradient[u]) + fabs(sample.gradient[v]));
   if (fabs(sample.value - r->limits.iso) <= rounding ||

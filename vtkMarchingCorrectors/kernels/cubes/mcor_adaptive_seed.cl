@@ -135,11 +135,11 @@ bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, uint finer, real iso)
 {
   bool inside = true;
-  real at[3], half[3];
+  real at[3], finer_edge[3];
   for (int a = 0; a < 3; ++a)
   {
     at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit;
-    half[a] = (real)0.5 * grid->edge[a];
+    finer_edge[a] = (real)0.5 * grid->edge[a];
   }
   for (int a = 0; a < 3 && inside; ++a)
   {
@@ -155,7 +155,7 @@ bool mcor_sides_are_inside(
       low[a] = to[a] == 2 ? 8 : 0;
       high[a] = to[a] == 0 ? 0 : 8;
     }
-    inside = !(finer >> d & 1) || mcor_box_is_inside(tile, at, low, high, half, iso);
+    inside = !(finer >> d & 1) || mcor_box_is_inside(tile, at, low, high, finer_edge, iso);
   }
   return inside;
 }

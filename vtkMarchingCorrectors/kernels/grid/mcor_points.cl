@@ -180,7 +180,17 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
-/* Loads the group of points from begin to before end and their offsets, which are in edges. */
+/* An offset, given in edges. Where edges differ, a particle's place is a fixed-point number again: it is itself
+ * among what is evaluated there. */
+real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
+{
+  const real at = offset * grid->edge[axis], units = ldexp(at, grid->fix_bits),
+             whole = floor(units + (real)0.5);
+  const bool near = grid->edge[axis] != 1 && fabs(units - whole) < (real)0.07f;
+  return near ? ldexp(whole, -grid->fix_bits) : at;
+}
+
+/* Loads the group of points from begin to before end and their offsets. */
 void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const int4* node,
   __global const real4* offset, mcor_points* points)
 {
@@ -190,9 +200,9 @@ void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const real4 o = offset[from[lane]];
-    MCOR_SET(points->ox, lane) = o.x * grid->edge[0];
-    MCOR_SET(points->oy, lane) = o.y * grid->edge[1];
-    MCOR_SET(points->oz, lane) = o.z * grid->edge[2];
+    MCOR_SET(points->ox, lane) = mcor_offset_of(grid, 0, o.x);
+    MCOR_SET(points->oy, lane) = mcor_offset_of(grid, 1, o.y);
+    MCOR_SET(points->oz, lane) = mcor_offset_of(grid, 2, o.z);
   }
 }
 

@@ -131,6 +131,13 @@ const std::vector<Case> Cases = {
       f->SetCubeSize(0.025);
       f->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
     } },
+  { "periods that no cube divides", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->SetCubeSize(0.025);
+      f->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.4717);
+    } },
   { "walls", "dam_break_45k",
     [](vtkMarchingCorrectors* f)
     {

@@ -126,12 +126,12 @@ extern "C"
     ORACLE_NODE_MARGIN = 8 /* weight within rounding of the threshold */
   };
 
-  /* Nodes at integer multiples of `cube`, covering every point where a particle has influence. Node
-   * (i,j,k), 0 <= i < size[0], lies at (origin + (i,j,k)) * cube; index (k * size[1] + j) * size[0]
-   * + i. */
+  /* Nodes at integer multiples of `edge`, along each axis, covering every point where a particle has
+   * influence. Node (i,j,k), 0 <= i < size[0], lies at (origin + (i,j,k)) * edge; index (k * size[1] + j) *
+   * size[0] + i. */
   typedef struct oracle_lattice
   {
-    double cube;
+    double cube, edge[3]; /* the shortest of the edges */
     int64_t origin[3], size[3];
     int64_t first[3], end[3]; /* cells whose lowest node is not in between do not exist */
     double* value;
@@ -142,7 +142,7 @@ extern "C"
 
   /* Evaluates all nodes. 0 if memory ran out or there would be more than node_limit nodes. */
   int oracle_create_lattice(
-    oracle_lattice* lattice, const oracle_field* field, double cube, int64_t node_limit);
+    oracle_lattice* lattice, const oracle_field* field, const double edge[3], int64_t node_limit);
   void oracle_free_lattice(oracle_lattice* lattice);
   int64_t oracle_node_count(const oracle_lattice* lattice);
   int64_t oracle_node_index(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);

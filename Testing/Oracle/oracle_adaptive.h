@@ -102,7 +102,7 @@ extern "C"
   /* Whether the nodes above iso are joined on a face: 0 or 1, or -1 where that is within rounding. value: at
    * the corners (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: where the first one is. */
   int oracle_decide_face(const oracle_decider* decider, const double value[4],
-    const double corner[3], double cube, int u, int v);
+    const double corner[3], const double edge[3], int u, int v);
 
   /* level_limit: the highest level at most. Evaluates all nodes; 0 if there are more than
    * node_limit. */

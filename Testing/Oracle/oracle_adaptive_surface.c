@@ -99,16 +99,16 @@ static int adaptive_ring(
 }
 
 int oracle_decide_face(const oracle_decider* decider, const double value[4], const double corner[3],
-  double cube, int u, int v)
+  const double edge[3], int u, int v)
 {
   const double sum = value[0] - value[2] - value[1] + value[3];
   double point[3] = { corner[0], corner[1], corner[2] };
   oracle_sample sample;
-  point[u] += cube * (value[0] - value[2]) / sum;
-  point[v] += cube * (value[0] - value[1]) / sum;
+  point[u] += edge[u] * (value[0] - value[2]) / sum;
+  point[v] += edge[v] * (value[0] - value[1]) / sum;
   oracle_evaluate(decider->field, NULL, point, &sample);
   /* Rounding of the value, and of the node values, which moves the point. */
-  const double moved = cube * decider->limits->close / fabs(sum);
+  const double moved = fmax(edge[u], edge[v]) * decider->limits->close / fabs(sum);
   const double rounding = decider->limits->close +
     oracle_rounding(decider->field, point, decider->unit) +
     moved * (fabs(sample.gradient[u]) + fabs(sample.gradient[v]));
@@ -143,7 +143,8 @@ static int adaptive_joined(oracle_adaptive* adaptive, const adaptive_cell* cell,
       corner[a] = (double)adaptive->node_at[3 * cell->node[place] + a] * adaptive->cube;
     }
   }
-  return oracle_decide_face(adaptive->decider, value, corner, (double)size * adaptive->cube, u, v);
+  const double cube = (double)size * adaptive->cube, edge[3] = { cube, cube, cube };
+  return oracle_decide_face(adaptive->decider, value, corner, edge, u, v);
 }
 
 /* A cell's segments: next[n] follows edge[n] on its loop. */

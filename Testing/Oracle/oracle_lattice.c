@@ -29,7 +29,7 @@ void oracle_node_position(const oracle_lattice* lattice, int64_t node, double po
   oracle_node_ijk(lattice, node, ijk);
   for (int axis = 0; axis < 3; ++axis)
   {
-    position[axis] = (double)(lattice->origin[axis] + ijk[axis]) * lattice->cube;
+    position[axis] = (double)(lattice->origin[axis] + ijk[axis]) * lattice->edge[axis];
   }
 }
 
@@ -64,8 +64,8 @@ static int oracle_set_extent(oracle_lattice* lattice, const oracle_field* field,
     {
       return 0;
     }
-    lattice->origin[axis] = (int64_t)floor(low / lattice->cube) - 1;
-    lattice->size[axis] = (int64_t)ceil(high / lattice->cube) + 2 - lattice->origin[axis];
+    lattice->origin[axis] = (int64_t)floor(low / lattice->edge[axis]) - 1;
+    lattice->size[axis] = (int64_t)ceil(high / lattice->edge[axis]) + 2 - lattice->origin[axis];
     lattice->end[axis] = lattice->size[axis] - 1;
     nodes *= (double)lattice->size[axis];
   }
@@ -83,8 +83,8 @@ static void oracle_scatter(oracle_lattice* lattice, const oracle_field* field, i
   for (int axis = 0; axis < 3; ++axis)
   {
     const double x = p->position[3 * j + axis];
-    low[axis] = (int64_t)floor((x - reach) / lattice->cube) - lattice->origin[axis];
-    high[axis] = (int64_t)ceil((x + reach) / lattice->cube) - lattice->origin[axis];
+    low[axis] = (int64_t)floor((x - reach) / lattice->edge[axis]) - lattice->origin[axis];
+    high[axis] = (int64_t)ceil((x + reach) / lattice->edge[axis]) - lattice->origin[axis];
   }
   for (int64_t k = low[2]; k <= high[2]; ++k)
   {
@@ -93,10 +93,10 @@ static void oracle_scatter(oracle_lattice* lattice, const oracle_field* field, i
       for (int64_t i = low[0]; i <= high[0]; ++i)
       {
         const int64_t node = oracle_node_index(lattice, i, i_j, k);
-        const double offset[3] = { (double)(lattice->origin[0] + i) * lattice->cube -
+        const double offset[3] = { (double)(lattice->origin[0] + i) * lattice->edge[0] -
             p->position[3 * j],
-          (double)(lattice->origin[1] + i_j) * lattice->cube - p->position[3 * j + 1],
-          (double)(lattice->origin[2] + k) * lattice->cube - p->position[3 * j + 2] };
+          (double)(lattice->origin[1] + i_j) * lattice->edge[1] - p->position[3 * j + 1],
+          (double)(lattice->origin[2] + k) * lattice->edge[2] - p->position[3 * j + 2] };
         const double w = volume * oracle_kernel_value(field->kernel, h, offset, NULL);
         if (p->solid[j])
         {
@@ -146,10 +146,11 @@ static void oracle_finish_nodes(oracle_lattice* lattice, oracle_kind kind)
 }
 
 int oracle_create_lattice(
-  oracle_lattice* lattice, const oracle_field* field, double cube, int64_t node_limit)
+  oracle_lattice* lattice, const oracle_field* field, const double edge[3], int64_t node_limit)
 {
   memset(lattice, 0, sizeof(*lattice));
-  lattice->cube = cube;
+  memcpy(lattice->edge, edge, sizeof(lattice->edge));
+  lattice->cube = fmin(edge[0], fmin(edge[1], edge[2]));
   if (!oracle_set_extent(lattice, field, node_limit))
   {
     return 0;

@@ -30,7 +30,7 @@ static int period_fits(const mcor_options* options, double cube)
   return fits;
 }
 
-double oracle_fit_cube(const mcor_options* options, double cube)
+static double period_fit_cube(const mcor_options* options, double cube)
 {
   double best = 0.0;
   for (int axis = 0; axis < 3; ++axis)
@@ -46,6 +46,26 @@ double oracle_fit_cube(const mcor_options* options, double cube)
     }
   }
   return best;
+}
+
+void oracle_fit_edges(const mcor_options* options, double cube, double edge[3])
+{
+  const double fitted = oracle_is_periodic(options) ? period_fit_cube(options, cube) : cube;
+  double longest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = fmax(period_length(options, axis), 0.0);
+    edge[axis] = fitted;
+    if (fitted == 0.0 && length > 0.0)
+    {
+      edge[axis] = length / ceil(length / cube * (1.0 - 1e-9));
+    }
+    longest = fmax(longest, edge[axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    edge[axis] = edge[axis] > 0.0 ? edge[axis] : longest;
+  }
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
@@ -147,12 +167,12 @@ void oracle_own_period(oracle_lattice* lattice, const mcor_options* options)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double first = ceil(options->periodic[2 * axis] / lattice->cube - 0.5);
+    const double first = ceil(options->periodic[2 * axis] / lattice->edge[axis] - 0.5);
     if (period_length(options, axis) > 0.0)
     {
       lattice->first[axis] = (int64_t)first - lattice->origin[axis];
       lattice->end[axis] =
-        lattice->first[axis] + (int64_t)round(period_length(options, axis) / lattice->cube);
+        lattice->first[axis] + (int64_t)round(period_length(options, axis) / lattice->edge[axis]);
     }
   }
 }
@@ -200,7 +220,7 @@ static seam_point seam_place(const mcor_options* options, const oracle_lattice* 
   {
     const double low = (double)(lattice->origin[axis] + lattice->first[axis]);
     const double cubes = (double)(lattice->end[axis] - lattice->first[axis]);
-    double u = surface->points[3 * (int64_t)point + axis] / lattice->cube;
+    double u = surface->points[3 * (int64_t)point + axis] / lattice->edge[axis];
     if (period_length(options, axis) > 0.0)
     {
       u -= floor((u - low + 1e-9) / cubes) * cubes;

@@ -18,9 +18,9 @@ extern "C"
   /* Whether the particles repeat along any axis. */
   int oracle_is_periodic(const mcor_options* options);
 
-  /* The largest cube, not larger than this one, that all periods are whole numbers of; 0: there is
-   * none of more than half of it. */
-  double oracle_fit_cube(const mcor_options* options, double cube);
+  /* The largest cube, not larger than this one, that all periods are whole numbers of; where there is none of
+   * more than half of it, of each period the largest edge that it is a whole number of. */
+  void oracle_fit_edges(const mcor_options* options, double cube, double edge[3]);
 
   /* Takes the particles into the period, and adds all images whose support (h times `support`), or
    * `margin` if that is more, reaches it or what lies within two cubes of it. (*source)[i]: what

@@ -105,12 +105,13 @@ static int reference_volumes(
   return enough;
 }
 
-static double reference_cube(const oracle_particles* particles, const mcor_options* options)
+static void reference_edges(
+  const oracle_particles* particles, const mcor_options* options, double edge[3])
 {
   const double cube = options->cube_size > 0.0
     ? options->cube_size
     : options->cube_size_factor * oracle_smallest_h(particles);
-  return oracle_is_periodic(options) ? oracle_fit_cube(options, cube) : cube;
+  oracle_fit_edges(options, cube, edge);
 }
 
 /* All images of a periodic box as particles. */
@@ -118,14 +119,15 @@ static int reference_images(oracle_particles* particles, const mcor_options* opt
   oracle_kernel kernel, int own_volumes, int64_t** source)
 {
   const double support = oracle_support(kernel);
-  double largest = 0.0;
+  double largest = 0.0, edge[3];
   for (int64_t j = 0; j < particles->count; ++j)
   {
     largest = fmax(largest, particles->smoothing_length[j]);
   }
+  reference_edges(particles, options, edge);
   /* A computed volume is a sum over the whole support, not scaled. */
   return oracle_add_images(particles, options, support * options->h_scale,
-    own_volumes ? 0.0 : support * largest, reference_cube(particles, options), source);
+    own_volumes ? 0.0 : support * largest, fmax(edge[0], fmax(edge[1], edge[2])), source);
 }
 
 static int reference_particles(
@@ -201,14 +203,15 @@ static int reference_is_adaptive(const oracle_particles* particles, const mcor_o
 static int reference_lattice(
   oracle_reference* reference, const mcor_options* options, int64_t node_limit)
 {
-  const double cube = reference_cube(&reference->particles, options);
+  double edge[3];
+  reference_edges(&reference->particles, options, edge);
   const oracle_lattice* nodes =
     reference->is_adaptive ? &reference->adaptive.nodes : &reference->lattice;
   const int enough = reference->is_adaptive
     ? oracle_create_adaptive(
-        &reference->adaptive, &reference->field, cube, options->level_limit, node_limit)
-    : oracle_create_lattice(&reference->lattice, &reference->field, cube, node_limit);
-  reference->lattice.cube = cube;
+        &reference->adaptive, &reference->field, edge[0], options->level_limit, node_limit)
+    : oracle_create_lattice(&reference->lattice, &reference->field, edge, node_limit);
+  reference->lattice.cube = fmin(edge[0], fmin(edge[1], edge[2]));
   if (enough && oracle_is_periodic(options))
   {
     oracle_own_period(&reference->lattice, options);

@@ -41,12 +41,14 @@ static const period_case cases[] = {
   { "mprime4", MCOR_M_PRIME_4, MCOR_SHEPARD, 1.2, 0.9, 1.0, "y", 1, 1 },
 };
 
-static void run_case(oracle_suite* suite, const oracle_particles* particles, const period_case* one)
+/* unequal: the edges. */
+static void run_case(oracle_suite* suite, const period_case* one, int unequal)
 {
+  oracle_particles particles = particle_period_make(3);
   oracle_case at;
   double iso = one->iso;
   memset(&at, 0, sizeof(at));
-  at.input = particle_period_input(particles);
+  at.input = particle_period_input(&particles);
   at.input.volume = one->volumes ? at.input.volume : (mcor_array){ 0 };
   at.options = oracle_case_options(&iso);
   at.options.sph_kernel = one->kernel;
@@ -55,10 +57,15 @@ static void run_case(oracle_suite* suite, const oracle_particles* particles, con
   at.options.h_scale = one->h_scale;
   at.options.precision = one->precise ? MCOR_FLOAT64 : MCOR_FLOAT32;
   particle_period_set(&at.options, one->open);
+  if (unequal)
+  {
+    particle_period_stretch(&particles, &at.options);
+  }
   at.skip_pairs = one->field == MCOR_WEIGHT_SUM;
-  snprintf(
-    at.name, sizeof(at.name), "period/%s/%g%s", one->name, iso, one->precise ? "/double" : "");
+  snprintf(at.name, sizeof(at.name), "period/%s/%g%s%s", one->name, iso,
+    one->precise ? "/double" : "", unequal ? "/unequal" : "");
   oracle_run_case(suite, &at);
+  oracle_free_particles(&particles);
 }
 
 /* ---- the density ------------------------------------------------------------------------------ */
@@ -255,7 +262,10 @@ int main(int argc, char** argv)
   oracle_particles particles = particle_period_make(3);
   for (size_t n = 0; n < sizeof(cases) / sizeof(cases[0]); ++n)
   {
-    run_case(&suite, &particles, &cases[n]);
+    for (int unequal = 0; unequal < (strlen(cases[n].open) < 2 ? 2 : 1); ++unequal)
+    {
+      run_case(&suite, &cases[n], unequal);
+    }
   }
   if (!suite.filter)
   {

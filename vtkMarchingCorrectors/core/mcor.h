@@ -315,12 +315,13 @@ extern "C"
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;             /* in use; 0: the surface does not end at solids */
     double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
-    double cube_size;              /* unit L */
+    double cube_size;              /* unit L; the shortest of: */
+    double cube_edges[3]; /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
     /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; a
      * vertex that several ranks have is counted by one of them. Counts of bricks, nodes, faces and
      * evaluations include the work done around the box. */
-    int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / cube size */
+    int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / edge */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
     /* Complete seeds: of uniform cubes, cells that the bounds over 8 x 8 x 8 nodes do not exclude; of

@@ -9,6 +9,8 @@
 #include "mcor_parts.h"
 #include "mcor_shared.h"
 
+#include <math.h>
+
 #define MCOR_LEVEL_LIMIT 32
 
 /* Highest level of adaptive cubes. */
@@ -34,10 +36,13 @@
     }                                                                                              \
   } while (0)
 
-/* The virtual grid: world position = (origin + fixed / 2^fix_bits) * cube. */
+/* The virtual grid: world position = (origin + fixed / step) * edge, along each axis. Lengths on the device
+ * are in cubes, 2^fix_bits fixed-point units. An edge is a cube long, but where no cube divides all periods:
+ * then a cube, as a length, is a little longer than any edge, see mcor_fit_steps. */
 typedef struct mcor_lattice
 {
-  double cube;
+  double cube, edge[3];
+  int64_t step[3];           /* an edge in fixed-point units, at most 2^fix_bits */
   int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
   int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
   int fix_bits;
@@ -597,10 +602,20 @@ extern const char mcor_source_mcor_adaptive_pair_cl[];
   MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
     MCOR_BUFFER(&(c)->attributes.sorted), MCOR_BUFFER(means)
 
+/* An edge of the virtual grid in cubes: exactly, as a number of the device. */
+static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
+{
+  return ldexp((double)lattice->step[axis], -lattice->fix_bits);
+}
+
+#define MCOR_EDGE_ARGS(c)                                                                          \
+  MCOR_REAL(mcor_edge_of(&(c)->lattice, 0)), MCOR_REAL(mcor_edge_of(&(c)->lattice, 1)),            \
+    MCOR_REAL(mcor_edge_of(&(c)->lattice, 2))
+
 /* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
 #define MCOR_GRID_ARGS(c)                                                                          \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
-    MCOR_INT((c)->lattice.fix_bits + (c)->grid.view),                                              \
+    MCOR_INT((c)->lattice.fix_bits + (c)->grid.view), MCOR_EDGE_ARGS(c),                           \
     MCOR_BUFFER((c)->grid.view > 0 ? &(c)->grid.view_levels : &(c)->grid.level_buffer),            \
     MCOR_BUFFER(&(c)->grid.buckets), MCOR_BUFFER(&(c)->grid.cell_keys),                            \
     MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py), MCOR_BUFFER(&(c)->grid.pz),            \

@@ -34,7 +34,8 @@ extern "C"
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
     double scalar_min, scalar_max;                /* over fluid particles */
     int64_t not_finite; /* first fluid particle of which the scalar is not; INT64_MAX: none */
-    double cube;        /* cube size; not read where it is given */
+    double cube;        /* cube size, or the longest of its edges; not read where it is given */
+    double edge[3];     /* along x, y, z; the same */
     double wall_share;  /* if the options ask for it; 0: not yet measured */
   } mcor_measure;
 

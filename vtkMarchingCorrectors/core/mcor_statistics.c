@@ -42,7 +42,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
     s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
   }
   s->wall_share = m->solid_count > 0 && context->uses_solids ? mcor_wall_share(context) : 0;
-  s->cube_size = lattice->cube;
+  s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));
   s->position_error = 0.5 * sqrt(3) * ldexp(lattice->cube, -lattice->fix_bits);
   s->highest_level = lattice->top;
   s->scalar_min = m->scalar_min;
@@ -52,6 +52,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   {
     const int64_t first = box->is_part ? box->first[a] : lattice->first[a];
     const int64_t last = box->is_part ? box->last[a] : lattice->last[a];
+    s->cube_edges[a] = lattice->edge[a];
     s->lattice_origin[a] = lattice->origin[a] + first;
     s->lattice_cells[a] = last > first ? last - first : 0;
     s->virtual_cells *= s->lattice_cells[a];

@@ -237,12 +237,12 @@ public:
 //------------------------------------------------------------------------------
 vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals)
 {
-  const double cube = globals.measured.cube;
   for (int a = 0; a < 3; ++a)
   {
+    const double edge = globals.measured.edge[a];
     const double first = options.periodic[2 * a];
     this->Length[a] = std::max(0.0, options.periodic[2 * a + 1] - first);
-    this->First[a] = this->Length[a] > 0.0 ? cube * std::ceil(first / cube - 0.5) : 0.0;
+    this->First[a] = this->Length[a] > 0.0 ? edge * std::ceil(first / edge - 0.5) : 0.0;
   }
 }
 

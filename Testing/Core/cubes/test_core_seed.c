@@ -39,7 +39,7 @@ static void check_complete(
   oracle_surface expected;
   assert_true(oracle_create_field(&field, &particles, (oracle_kernel)options->sph_kernel,
     (oracle_kind)options->field, options->h_scale));
-  assert_true(oracle_create_lattice(&lattice, &field, surface.statistics.cube_size, 10000000));
+  assert_true(oracle_create_lattice(&lattice, &field, surface.statistics.cube_edges, 10000000));
   oracle_classify(&lattice, field.kind, &limits);
   assert_true(oracle_create_surface(&expected, &lattice));
   CORE_CHECK(expected.cell_count > 10, "%s, kernel %s, field %d: %lld cells say little", name,

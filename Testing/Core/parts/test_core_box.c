@@ -322,11 +322,14 @@ static core_set make_period(void)
 }
 
 /* Caps: squares of cells, whoever owns these; points on seams, where they are cut, too. */
-static void caps(void** state)
+static void check_caps(mcor_context* context, const double around[6])
 {
   const double iso[2] = { 0.2, -0.4 }, half = 0.5;
-  const double around[6] = { -4, 4, -4, 4, -4, 4 };
   core_set set = make_period();
+  for (int64_t i = 0; i < 3 * set.count; ++i)
+  {
+    set.position[i] *= around[2 * (i % 3) + 1] / 4;
+  }
   const mcor_array position = core_array(set.position, 3);
   mcor_input input = core_input(&set);
   input.attributes = &position;
@@ -335,9 +338,9 @@ static void caps(void** state)
   options.iso_count = 2;
   options.cube_size = 0.4;
   options.capping = 1;
-  memcpy(options.periodic, around, sizeof around);
+  memcpy(options.periodic, around, sizeof options.periodic);
   core_ask_for_all(&options);
-  core_check_cuts(*state, "caps, trimmed", &input, &options);
+  core_check_cuts(context, "caps, trimmed", &input, &options);
   options.topology = MCOR_TOPOLOGY_FIELD;
   options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
   options.vertex_threshold = 0.3;
@@ -346,13 +349,21 @@ static void caps(void** state)
   set.has_solids = 1;
   input = core_input(&set);
   options.wall_share = 0.4;
-  core_check_cuts(*state, "caps on four sides, eigenvalue, walls", &input, &options);
+  core_check_cuts(context, "caps on four sides, eigenvalue, walls", &input, &options);
   options.field = MCOR_WEIGHT_SUM;
   options.iso_values = &half;
   options.iso_count = 1;
   options.wall_share = 0;
-  core_check_cuts(*state, "caps of the free surface", &input, &options);
+  core_check_cuts(context, "caps of the free surface", &input, &options);
   core_free_set(&set);
+}
+
+static void caps(void** state)
+{
+  const double around[6] = { -4, 4, -4, 4, -4, 4 },
+               unequal[6] = { -4, 4, -4.13, 4.13, -3.91, 3.91 };
+  check_caps(*state, around);
+  check_caps(*state, unequal);
 }
 
 int main(void)

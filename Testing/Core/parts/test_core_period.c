@@ -125,7 +125,7 @@ static int has_partner(mcor_surface* s, const double period[6], int64_t point)
     const double length = period[2 * a + 1] - period[2 * a];
     for (int upper = 0; upper < 2 && length > 0; ++upper)
     {
-      const double side = s->statistics.cube_size *
+      const double side = s->statistics.cube_edges[a] *
         (double)(s->statistics.lattice_origin[a] + (upper ? s->statistics.lattice_cells[a] : 0));
       double x[3];
       memcpy(x, s->points + 3 * point, sizeof x);
@@ -374,17 +374,19 @@ static void lengths(void** state)
 {
   const struct
   {
-    double period[6], cube;
+    double period[6], edge[3];
     const char* sentence;
-  } cases[] = { { { 0, 8, 0, 8, 0, 8 }, 8.0 / 13, NULL }, { { 0, 8, 0, 6, 0, 0 }, 8.0 / 16, NULL },
-    { { -4, 4, 0, 10, -1, 11 }, 8.0 / 16, NULL },
-    { { 0, 8, 0, 8.123456, 0, 0 }, 0, "not whole multiples of any cube size" },
-    { { 0, 1e12, 0, 8, 0, 0 }, 0, "cubes in the period along x; the limit is 1048576" },
-    { { -1.7e308, 1.7e308, 0, 8, 0, 0 }, 0, "inf cubes in the period along x" },
-    { { 0, 5e-324, 0, 0, 0, 0 }, 0, "too short for support radii" },
-    { { 0, 0.5, 0, 8, 0, 8 }, 0, "period along x is 0.5, too short" },
-    { { 0, 8, 0, -1, 0, 8 }, 0, "period along y goes from 0 to -1" },
-    { { 0, NAN, 0, 8, 0, 8 }, 0, "period along x goes from 0 to nan" } };
+  } cases[] = { { { 0, 8, 0, 8, 0, 8 }, { 8.0 / 13, 8.0 / 13, 8.0 / 13 }, NULL },
+    { { 0, 8, 0, 6, 0, 0 }, { 0.5, 0.5, 0.5 }, NULL },
+    { { -4, 4, 0, 10, -1, 11 }, { 0.5, 0.5, 0.5 }, NULL },
+    { { 0, 8, 0, 8.123456, 0, 0 }, { 8.0 / 13, 8.123456 / 13, 8.123456 / 13 }, NULL },
+    { { 0.1, 8.1, -3, 6.000001, 0, 8.123456 }, { 8.0 / 13, 9.000001 / 14, 8.123456 / 13 }, NULL },
+    { { 0, 1e12, 0, 8, 0, 0 }, { 0 }, "cubes in the period along x; the limit is 1048576" },
+    { { -1.7e308, 1.7e308, 0, 8, 0, 0 }, { 0 }, "inf cubes in the period along x" },
+    { { 0, 5e-324, 0, 0, 0, 0 }, { 0 }, "too short for support radii" },
+    { { 0, 0.5, 0, 8, 0, 8 }, { 0 }, "period along x is 0.5, too short" },
+    { { 0, 8, 0, -1, 0, 8 }, { 0 }, "period along y goes from 0 to -1" },
+    { { 0, NAN, 0, 8, 0, 8 }, { 0 }, "period along x goes from 0 to nan" } };
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
   core_set set = make_period(cube, 5);
@@ -404,12 +406,14 @@ static void lengths(void** state)
       continue;
     }
     CORE_OK(*state, status);
-    assert_true(fabs(surface.statistics.cube_size - cases[i].cube) < 1e-12);
+    const double* edge = cases[i].edge;
+    assert_true(fabs(surface.statistics.cube_size - fmin(edge[0], fmin(edge[1], edge[2]))) < 1e-12);
     for (int a = 0; a < 3; ++a)
     {
       const double period = cases[i].period[2 * a + 1] - cases[i].period[2 * a];
-      assert_true(period == 0 ||
-        fabs((double)surface.statistics.lattice_cells[a] * cases[i].cube - period) < 1e-9);
+      assert_true(fabs(surface.statistics.cube_edges[a] - edge[a]) < 1e-12);
+      assert_true(
+        period == 0 || fabs((double)surface.statistics.lattice_cells[a] * edge[a] - period) < 1e-9);
     }
     mcor_free_surface(&surface);
   }
@@ -479,16 +483,35 @@ static void check_points(
   core_free_set(&all);
 }
 
+/* Stretches particles and periods, so that no cube divides two of these; by numbers that keep positions exact
+ * a period away. */
+static void stretch(core_set* set, double period[6])
+{
+  static const double factors[3] = { 1, 1 + 1.0 / 32, 1 - 3.0 / 128 };
+  for (int64_t i = 0; i < 3 * set->count; ++i)
+  {
+    set->position[i] *= factors[i % 3];
+  }
+  for (int side = 0; side < 6; ++side)
+  {
+    period[side] *= factors[side / 2];
+  }
+}
+
 static void points_see_images(void** state)
 {
   const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
-  for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 8; ++i)
   {
     core_set set = make_period(i % 2 ? slab : cube, 5);
     mcor_options options = period_options(NULL, i % 2 ? along : around);
     options.iso_count = 0;
-    options.precision = i < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
+    options.precision = i % 4 < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
+    if (i >= 4)
+    {
+      stretch(&set, options.periodic);
+    }
     check_points(*state, &set, &options, i == 1 ? 77 : 0);
     core_free_set(&set);
   }
@@ -496,14 +519,18 @@ static void points_see_images(void** state)
 
 /* Gradients at particles, of which some are given periods away, with images and with these as
  * particles. */
-static void derivatives_see_images(void** state)
+static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
 {
   const int cube[3] = { 8, 8, 8 };
-  const double around[6] = { 0, 8, 0, 8, 0, 8 };
+  double around[6] = { 0, 8, 0, 8, 0, 8 };
   core_set set = make_period(cube, 8);
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     set.position[i] = i % 11 == 0 ? 0 : floor(set.position[i] * 1024) / 1024;
+  }
+  if (unequal)
+  {
+    stretch(&set, around);
   }
   core_set all = add_images(&set, around);
   mcor_array attribute, images_attribute;
@@ -511,6 +538,7 @@ static void derivatives_see_images(void** state)
   const mcor_input other = attribute_input(&all, &images_attribute);
   mcor_options options = period_options(NULL, around), plain = options;
   options.iso_count = plain.iso_count = 0;
+  options.sph_kernel = plain.sph_kernel = kernel;
   memset(plain.periodic, 0, sizeof plain.periodic);
   mcor_derivatives found, expected, moved;
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &found));
@@ -519,7 +547,7 @@ static void derivatives_see_images(void** state)
   {
     const double is = found.gradients[0][i], was = expected.gradients[0][3 * 13 * set.count + i];
     CORE_CHECK(fabs(is - was) < 1e-4, "gradient %lld is %g, expected %g", (long long)i, is, was);
-    set.position[i] += 8 * (double)(i % 5 - 2);
+    set.position[i] += around[2 * (i % 3) + 1] * (double)(i % 5 - 2);
   }
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
   assert_memory_equal(
@@ -545,6 +573,81 @@ static void derivatives_see_images(void** state)
   mcor_free_derivatives(&expected);
   core_free_set(&all);
   core_free_set(&set);
+}
+
+static void derivatives_see_images(void** state)
+{
+  check_derivatives(state, 0, MCOR_CUBIC_SPLINE);
+  check_derivatives(state, 1, MCOR_CUBIC_SPLINE);
+  check_derivatives(state, 1, MCOR_QUADRATIC);
+}
+
+static double measure_area(const mcor_surface* s)
+{
+  double area = 0;
+  for (int64_t t = 0; t < s->triangle_count; ++t)
+  {
+    const int32_t* c = s->triangles + 3 * t;
+    double u[3], v[3], square = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      u[a] = s->points[3 * (int64_t)c[1] + a] - s->points[3 * (int64_t)c[0] + a];
+      v[a] = s->points[3 * (int64_t)c[2] + a] - s->points[3 * (int64_t)c[0] + a];
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const double n = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+      square += n * n;
+    }
+    area += 0.5 * sqrt(square);
+  }
+  return area;
+}
+
+/* Adaptive cubes with an edge for each axis: closed but for the sides, where all points have partners, as exact
+ * as ever, and about the surface of uniform cubes. */
+static void adaptive_unequal(void** state)
+{
+  const double iso = 0.2, half = 0.5;
+  const int length[3] = { 16, 16, 8 };
+  for (int i = 0; i < 4; ++i)
+  {
+    double around[6] = { 0, 16, 0, 16, 0, 8 };
+    core_set set = make_period(length, 5);
+    for (int64_t p = 0; p < set.count; ++p)
+    {
+      const double* x = set.position + 3 * p;
+      const double dx = fmin(x[0], 16 - x[0]), dy = fmin(x[1], 16 - x[1]);
+      const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 4) * (x[2] - 4)) / 2.5);
+      set.smoothing_length[p] = h < 3 ? h : 3;
+    }
+    stretch(&set, around);
+    around[4] = i < 2 ? around[4] : 0;
+    around[5] = i < 2 ? around[5] : 0;
+    mcor_options options = period_options(i == 1 ? &half : &iso, around);
+    options.level_limit = MCOR_CUBE_LEVELS - 1;
+    options.cube_size = 0.3;
+    options.field = i == 1 ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
+    options.precision = i == 2 ? MCOR_FLOAT64 : MCOR_FLOAT32;
+    options.seeds = i == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
+    const mcor_input input = core_input(&set);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    const double* edge = surface.statistics.cube_edges;
+    assert_true(edge[0] != edge[1] && (i >= 2 || edge[1] != edge[2]));
+    assert_true(surface.statistics.highest_level >= 1);
+    assert_true(surface.statistics.cells_of_level[0] > 100);
+    assert_true(surface.statistics.cells_of_level[1] > 100);
+    CORE_CHECK(
+      surface.statistics.residual_max < 1e-5, "residual %g", surface.statistics.residual_max);
+    check_sides("adaptive, unequal", &surface, options.periodic);
+    options.level_limit = 0;
+    mcor_surface uniform = core_extract(*state, &input, &options);
+    const double area = measure_area(&surface), expected = measure_area(&uniform);
+    CORE_CHECK(fabs(area / expected - 1) < 0.02, "area %g, expected %g", area, expected);
+    mcor_free_surface(&uniform);
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
 }
 
 /* 48 cubes, but for a digit. */
@@ -612,9 +715,9 @@ static void large_sides(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
-    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts),
-    cmocka_unit_test(boxes), cmocka_unit_test(lengths), cmocka_unit_test(rounded_length),
-    cmocka_unit_test(large_sides), cmocka_unit_test(points_see_images),
-    cmocka_unit_test(derivatives_see_images) };
+    cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_unequal),
+    cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
+    cmocka_unit_test(lengths), cmocka_unit_test(rounded_length), cmocka_unit_test(large_sides),
+    cmocka_unit_test(points_see_images), cmocka_unit_test(derivatives_see_images) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -7,8 +7,7 @@
 
 /* ---- which lattice edge does a vertex lie on? ----------------------------------------------- */
 
-/* The position alone decides: on an edge, two coordinates are integer multiples of the cube size.
- */
+/* The position alone decides: on an edge, two coordinates are integer multiples of the edges. */
 static int64_t compare_locate(const oracle_lattice* lattice, const double point[3])
 {
   double u[3];
@@ -17,7 +16,7 @@ static int64_t compare_locate(const oracle_lattice* lattice, const double point[
   double noise = 1e-12;
   for (int a = 0; a < 3; ++a)
   {
-    u[a] = point[a] / lattice->cube;
+    u[a] = point[a] / lattice->edge[a];
     off[a] = fabs(u[a] - round(u[a]));
     noise = fmax(noise, 8.0 * DBL_EPSILON * fabs(u[a]));
   }
@@ -222,7 +221,7 @@ static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
   const double start = p[edge % 3];
   for (int piece = 0; piece <= pieces; ++piece)
   {
-    p[edge % 3] = start + reference->lattice.cube * piece / pieces;
+    p[edge % 3] = start + reference->lattice.edge[edge % 3] * piece / pieces;
     oracle_evaluate(&reference->field, NULL, p, &sample);
     const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
     if (piece > 0 && (difference >= 0.0) != (previous >= 0.0) &&

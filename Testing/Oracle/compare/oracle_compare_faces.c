@@ -192,7 +192,7 @@ static int compare_face_joined(const compare_state* state, int64_t node, int axi
     return 0;
   }
   oracle_node_position(lattice, node, point);
-  return oracle_decide_face(&decider, value, point, lattice->cube, u, v);
+  return oracle_decide_face(&decider, value, point, lattice->edge, u, v);
 }
 
 /* Two crossings: connected, once for each valid cell at the face. Four: in one of two ways. */

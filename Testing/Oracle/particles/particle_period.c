@@ -93,3 +93,16 @@ void particle_period_set(mcor_options* options, const char* open)
       strchr(open, 'x' + axis) ? 0.0 : particle_period_lengths[axis];
   }
 }
+
+void particle_period_stretch(oracle_particles* particles, mcor_options* options)
+{
+  static const double factors[3] = { 1.0, 1.0331, 0.9713 };
+  for (int64_t i = 0; i < 3 * particles->count; ++i)
+  {
+    particles->position[i] *= factors[i % 3];
+  }
+  for (int side = 0; side < 6; ++side)
+  {
+    options->periodic[side] *= factors[side / 2];
+  }
+}

@@ -20,5 +20,7 @@ double particle_period_density(const double x[3]);
 mcor_input particle_period_input(const oracle_particles* particles);
 /* Sets the period along all axes but those named. */
 void particle_period_set(mcor_options* options, const char* open);
+/* Stretches particles and periods, each axis by another factor: no cube then divides two periods. */
+void particle_period_stretch(oracle_particles* particles, mcor_options* options);
 
 #endif

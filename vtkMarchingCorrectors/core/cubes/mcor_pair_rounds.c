@@ -233,7 +233,7 @@ static mcor_status mcor_tell_cells(
   for (int64_t i = 0; i < 3 * list->count; ++i)
   {
     const mcor_world_cell* cell = &list->cells[i / 3];
-    places[i] = ((double)cell->at[i % 3] + 0.5) * ldexp(lattice->cube, (int)cell->level);
+    places[i] = ((double)cell->at[i % 3] + 0.5) * ldexp(lattice->edge[i % 3], (int)cell->level);
   }
   /* Boxes' sides are rounded to cells. */
   const mcor_status status = mcor_pass(context, list->cells, list->count, sizeof *list->cells,

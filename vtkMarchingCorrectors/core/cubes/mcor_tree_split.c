@@ -103,7 +103,7 @@ typedef struct mcor_tree_job
   bool failed[MCOR_SLICES];
 } mcor_tree_job;
 
-/* Distance from x to the brick's interval along an axis, squared. */
+/* Distance from x to the brick's interval along an axis, squared; edge: of the brick. */
 static double mcor_interval_distance2(double x, int brick, double edge)
 {
   const double below = brick * edge - x, above = x - (brick + 1) * edge;
@@ -114,7 +114,7 @@ static double mcor_interval_distance2(double x, int brick, double edge)
 /* A particle in a level's bricks: those from `first` to `last` that are within its reach. */
 typedef struct mcor_reached
 {
-  double x[3], edge, reach; /* cubes from the lattice's origin */
+  double x[3], edge[3], reach; /* cubes from the lattice's origin */
   bool is_cube;
   int first[3], last[3];
 } mcor_reached;
@@ -133,7 +133,7 @@ static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int clust
     {
       square[a][i] = reached->is_cube
         ? 0
-        : mcor_interval_distance2(reached->x[a], cluster[a] + i, reached->edge);
+        : mcor_interval_distance2(reached->x[a], cluster[a] + i, reached->edge[a]);
     }
   }
   uint64_t bricks = 0;
@@ -156,14 +156,14 @@ static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int clust
 static bool mcor_split_reached(
   const mcor_tree_job* job, int level, const double x[3], double reach, mcor_brick_set* set)
 {
-  mcor_reached reached = {
-    .edge = ldexp(MCOR_BRICK, level), .reach = reach, .is_cube = job->is_cube
-  };
+  mcor_reached reached = { .reach = reach, .is_cube = job->is_cube };
   for (int a = 0; a < 3; ++a)
   {
+    const double edge = ldexp(MCOR_BRICK * mcor_edge_of(&job->context->lattice, a), level);
     reached.x[a] = x[a];
-    reached.first[a] = (int)ceil((x[a] - reach) / reached.edge) - 1;
-    reached.last[a] = (int)floor((x[a] + reach) / reached.edge);
+    reached.edge[a] = edge;
+    reached.first[a] = (int)ceil((x[a] - reach) / edge) - 1;
+    reached.last[a] = (int)floor((x[a] + reach) / edge);
   }
   const int* first = reached.first;
   int c[3];
@@ -214,10 +214,10 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
       double at[3];
       for (int a = 0; a < 3; ++a)
       {
-        at[a] = x[a][i] / lattice->cube - (double)lattice->origin[a];
+        at[a] = x[a][i] / lattice->edge[a] - (double)lattice->origin[a];
         const double from = at[a] - lattice->period_first[a], period = lattice->period[a];
         at[a] -= period > 0 ? floor(from / period) * period : 0;
-        at[a] = fmin(fmax(at[a], 0), (double)lattice->last[a]);
+        at[a] = fmin(fmax(at[a], 0), (double)lattice->last[a]) * mcor_edge_of(lattice, a);
       }
       job->failed[slice] =
         !mcor_split_reached(job, level, at, own * job->reach, &job->split[slice][level]) ||

@@ -78,18 +78,18 @@ typedef struct mcor_point_job
 static double mcor_wrap_point(const mcor_context* context, int axis, double at)
 {
   const mcor_lattice* lattice = &context->lattice;
-  const double first = ldexp(lattice->period_first[axis], lattice->fix_bits);
-  const double period = ldexp(lattice->period[axis], lattice->fix_bits);
-  const double fixed = floor(ldexp(at, lattice->fix_bits) + 0.5);
+  const double step = (double)lattice->step[axis];
+  const double first = lattice->period_first[axis] * step, period = lattice->period[axis] * step;
+  const double fixed = floor(at * step + 0.5);
   const bool beyond = !(fixed >= first && fixed <= first + period);
   const double within = beyond ? fixed - floor((fixed - first) / period) * period : fixed;
   const bool off_lower = within == first && context->box.begin[axis] > lattice->period_first[axis];
   const bool off_upper = within == first + period &&
     context->box.end[axis] < lattice->period_first[axis] + lattice->period[axis];
-  return ldexp(within + (off_lower ? period : off_upper ? -period : 0), -lattice->fix_bits);
+  return (within + (off_lower ? period : off_upper ? -period : 0)) / step;
 }
 
-/* Where points [first, first + count) of the batch are, from the lattice's origin, in cubes. */
+/* Where points [first, first + count) of the batch are, from the lattice's origin, in edges. */
 static void mcor_read_points(
   const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
 {
@@ -98,16 +98,16 @@ static void mcor_read_points(
   points.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    const double origin = (double)lattice->origin[a];
+    const double origin = (double)lattice->origin[a], step = (double)lattice->step[a];
     mcor_read_array(&points, run->first + first, count, a, at[a]);
     for (int i = 0; i < count; ++i)
     {
-      at[a][i] = at[a][i] / lattice->cube - origin;
+      at[a][i] = at[a][i] / lattice->edge[a] - origin;
     }
     /* The gradient of its kernel is 0 exactly at a particle, and near by not: points round as those do. */
     for (int i = 0; i < count && run->context->options->sph_kernel == MCOR_QUADRATIC; ++i)
     {
-      at[a][i] = ldexp(floor(ldexp(at[a][i], lattice->fix_bits) + 0.5), -lattice->fix_bits);
+      at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
     for (int i = 0; i < count && lattice->period[a] > 0; ++i)
     {

@@ -23,20 +23,21 @@
 static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell, mcor_level* level)
 {
   const int period = lattice->period[axis];
+  const double edge = mcor_edge_of(lattice, axis), length = period * edge;
   const double last = (double)lattice->last[axis];
   level->period[axis] = level->side[axis] = level->period_cells[axis] = 0;
   if (period == 0)
   {
     level->inv_cell[axis] = (cl_float)(1 / ldexp(cell, lattice->fix_bits));
-    level->cells[axis] = (cl_int)(last / cell) + 2;
+    level->cells[axis] = (cl_int)(last * edge / cell) + 2;
     return;
   }
-  const int cells = cell < period ? (int)(period / cell) : 1;
+  const int cells = cell < length ? (int)(length / cell) : 1;
   const int side = (lattice->period_first[axis] % period + period) % period;
-  level->period[axis] = (cl_long)period << lattice->fix_bits;
-  level->side[axis] = (cl_long)side << lattice->fix_bits;
+  level->period[axis] = period * lattice->step[axis];
+  level->side[axis] = side * lattice->step[axis];
   level->period_cells[axis] = cells;
-  level->inv_cell[axis] = (cl_float)(cells / ldexp(period, lattice->fix_bits));
+  level->inv_cell[axis] = (cl_float)(cells / ldexp(length, lattice->fix_bits));
   level->cells[axis] = ((int)((last - side) / period) + 2) * cells + 1;
 }
 

@@ -330,7 +330,8 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
 {
   mcor_measure* m = &context->measure;
   mcor_lattice* lattice = &context->lattice;
-  double cube = options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  const double cube =
+    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
   MCOR_RETURN_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
     "The cube size is %g; it must be between %g and %g. Use another cube size, or another unit of "
     "length.",
@@ -340,19 +341,19 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     "size, or remove particles with such a small smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   lattice->top = mcor_tree_top(m, options);
-  MCOR_TRY(mcor_fit_period(context, options, &cube));
-  lattice->cube = m->cube = cube;
+  MCOR_TRY(mcor_fit_period(context, options, cube));
   /* Whole bricks of all levels; with space around, so that finer bricks beside it have a place. */
   const int64_t unit = lattice->top > 0 ? (int64_t)MCOR_BRICK << (lattice->top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)
   {
-    const double first = floor(m->low[a] / cube) - 1, last = ceil(m->high[a] / cube) + 1;
+    const double edge = lattice->edge[a];
+    const double first = floor(m->low[a] / edge) - 1, last = ceil(m->high[a] / edge) + 1;
     MCOR_RETURN_IF(!(last - first <= MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
       "With cube size %g the virtual grid would have %.3g cells along axis %d; the limit is %d. "
       "Use a larger cube size, or remove particles that are far away from the rest.",
-      cube, last - first, a, MCOR_LATTICE_LIMIT);
-    MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], cube));
+      edge, last - first, a, MCOR_LATTICE_LIMIT);
+    MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
     if (unit > 0)
     {
@@ -362,7 +363,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     lattice->last[a] = (int64_t)last - lattice->origin[a];
     lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
     lattice->period_first[a] = lattice->period[a] > 0
-      ? (int)(ceil(options->periodic[2 * a] / cube - 0.5) - (double)lattice->origin[a])
+      ? (int)(ceil(options->periodic[2 * a] / edge - 0.5) - (double)lattice->origin[a])
       : 0;
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
@@ -373,6 +374,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   {
     --lattice->fix_bits;
   }
+  mcor_fit_steps(context, extent);
   return MCOR_OK;
 }
 

@@ -134,10 +134,12 @@ static void mcor_mark_near(const mcor_stage_job* job, int64_t first, int count)
   for (int a = 0; a < 3; ++a)
   {
     const double origin = (double)lattice->origin[a], rounding = 1 + reach->radius;
-    const double low = (reach->low[a] - rounding + origin) * lattice->cube;
-    const double high = (reach->high[a] + rounding + origin) * lattice->cube;
+    const double low = (reach->low[a] - rounding) * lattice->cube + origin * lattice->edge[a];
+    const double high = (reach->high[a] + rounding) * lattice->cube + origin * lattice->edge[a];
+    const double edge = mcor_edge_of(lattice, a);
     if (reach->period[a] > 0 ||
-      (reach->low[a] <= (double)lattice->first[a] && reach->high[a] >= (double)lattice->last[a]))
+      (reach->low[a] <= (double)lattice->first[a] * edge &&
+        reach->high[a] >= (double)lattice->last[a] * edge))
     {
       continue;
     }
@@ -212,7 +214,7 @@ static bool mcor_is_as_measured(const mcor_stage_job* job, const mcor_stage_chun
   int outside = 0;
   for (int a = 0; a < 3; ++a)
   {
-    const double high = ldexp((double)lattice->last[a], lattice->fix_bits);
+    const double high = (double)lattice->last[a] * (double)lattice->step[a];
     for (int i = 0; i < chunk->count; ++i)
     {
       outside |= !(chunk->x[a][i] >= 0 && chunk->x[a][i] <= high);

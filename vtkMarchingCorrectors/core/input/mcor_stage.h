@@ -21,4 +21,8 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input);
 mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);
 
+/* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
+ * MCOR_POINT_EXTENT; cube: as long as one is, or shorter. */
+int mcor_spared_bits(const mcor_context* context, double support, double cube, int level);
+
 #endif

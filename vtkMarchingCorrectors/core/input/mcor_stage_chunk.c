@@ -14,18 +14,17 @@ void mcor_read_stage_places(const mcor_context* context, const mcor_input* input
   const mcor_reach_box* reach, mcor_stage_chunk* chunk)
 {
   const mcor_lattice* lattice = &context->lattice;
-  const double scale = ldexp(1, lattice->fix_bits);
   const int count = chunk->count;
   mcor_array positions = input->positions;
   positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    const double origin = (double)lattice->origin[a];
+    const double origin = (double)lattice->origin[a], scale = (double)lattice->step[a];
     double* x = chunk->x[a];
     mcor_read_array(&positions, first, count, a, x);
     for (int i = 0; i < count; ++i)
     {
-      x[i] = (x[i] / lattice->cube - origin) * scale;
+      x[i] = (x[i] / lattice->edge[a] - origin) * scale;
     }
     for (int i = 0; i < count && reach && reach->period[a] > 0; ++i)
     {
@@ -96,13 +95,11 @@ int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
   return -1;
 }
 
-/* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
- * MCOR_POINT_EXTENT. */
-static int mcor_spared_bits(const mcor_context* context, double support, int level)
+int mcor_spared_bits(const mcor_context* context, double support, double cube, int level)
 {
-  const int digits = context->cl.real_size == sizeof(float) ? FLT_MANT_DIG : DBL_MANT_DIG;
+  const int digits = context->options->precision == MCOR_FLOAT64 ? DBL_MANT_DIG : FLT_MANT_DIG;
   int exponent;
-  frexp(1.0001 * support / context->lattice.cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
+  frexp(1.0001 * support / cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
   const int bits = exponent + context->lattice.fix_bits - digits;
   return bits > 0 ? bits : 0;
 }
@@ -111,10 +108,11 @@ static int mcor_spared_bits(const mcor_context* context, double support, int lev
  * lengths. */
 static void mcor_round_positions(const mcor_context* context, double reach, mcor_stage_chunk* chunk)
 {
+  const double cube = context->lattice.cube;
   for (int i = 0; i < chunk->count; ++i)
   {
     const int level = mcor_tree_level_of(chunk->h[i], context->measure.h_min, context->lattice.top);
-    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, level));
+    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, level));
     for (int a = 0; a < 3; ++a)
     {
       chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
@@ -175,7 +173,7 @@ void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input
   const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
   const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
   uint8_t* level = (uint8_t*)staging->level + to;
-  if (mcor_spared_bits(context, m->support_max, context->lattice.top) > 0)
+  if (mcor_spared_bits(context, m->support_max, context->lattice.cube, context->lattice.top) > 0)
   {
     mcor_round_positions(context, reach, chunk);
   }

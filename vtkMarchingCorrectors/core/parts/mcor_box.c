@@ -83,7 +83,7 @@ static void mcor_place_halves(
   for (int s = 0; s < 2; ++s)
   {
     const int side = s == 0 ? low : high, end = s == 0 ? first : last;
-    const double at = sides ? ceil(2 * (sides[2 * axis + s] / lattice->cube)) : 0;
+    const double at = sides ? ceil(2 * (sides[2 * axis + s] / lattice->edge[axis])) : 0;
     const double half = at - 2 * (double)lattice->origin[axis];
     const int open = periodic ? 2 * end : s == 0 ? -MCOR_NO_SIDE : MCOR_NO_SIDE;
     halves[3 * s + axis] =
@@ -97,7 +97,7 @@ void mcor_place_sides(
   const double first = side[0], last = side[1];
   for (int s = 0; s < 2; ++s)
   {
-    const double at = ceil(sides[2 * axis + s] / lattice->cube - 0.5);
+    const double at = ceil(sides[2 * axis + s] / lattice->edge[axis] - 0.5);
     side[s] = fmin(fmax(at - (double)lattice->origin[axis], first), last);
   }
 }
@@ -131,8 +131,9 @@ static void mcor_place_points(
 {
   const mcor_lattice* lattice = &context->lattice;
   const double* points = context->box.points + 2 * axis;
-  const double origin = (double)lattice->origin[axis], rounding = ldexp(0.25, -lattice->fix_bits);
-  const double low = points[0] / lattice->cube - origin, high = points[1] / lattice->cube - origin;
+  const double origin = (double)lattice->origin[axis], edge = lattice->edge[axis];
+  const double rounding = 0.25 / (double)lattice->step[axis];
+  const double low = points[0] / edge - origin, high = points[1] / edge - origin;
   if (lattice->period[axis] == 0 || (low >= first - rounding && high <= last + rounding))
   {
     side[0] = fmin(fmax(floor(low), first), last);
@@ -280,7 +281,7 @@ static bool mcor_find_images(
   const mcor_reach_box* box, int axis, double at, double reach, int* first, int* last)
 {
   const double low = box->low[axis] - reach - at, high = box->high[axis] + reach - at;
-  const int period = box->period[axis];
+  const double period = box->period[axis];
   *first = period > 0 ? (int)ceil(low / period) : 0;
   *last = period > 0 ? (int)floor(high / period) : 0;
   return period > 0 ? *first <= *last : low <= 0 && high >= 0;
@@ -341,7 +342,6 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_reach_job* job = data;
   const mcor_lattice* lattice = &job->context->lattice;
-  const double scale = ldexp(1, lattice->fix_bits);
   mcor_array positions = job->input->positions;
   positions.components = 3;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], farthest = 0;
@@ -360,8 +360,9 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
       mcor_images images;
       for (int a = 0; a < 3; ++a)
       {
-        const double fixed = (x[a][i] / lattice->cube - (double)lattice->origin[a]) * scale;
-        at[a] = mcor_wrap(job->box, a, fixed) / scale;
+        const double fixed =
+          (x[a][i] / lattice->edge[a] - (double)lattice->origin[a]) * (double)lattice->step[a];
+        at[a] = mcor_wrap(job->box, a, fixed) * job->box->unit;
       }
       if (support > farthest && mcor_list_images(job->box, at, support, &images) > 0)
       {
@@ -393,8 +394,9 @@ void mcor_find_evaluated(const mcor_context* context, double low[3], double high
   const bool limited = mcor_is_limited(context);
   for (int a = 0; a < 3; ++a)
   {
-    low[a] = limited ? box->begin[a] - margin : -1e30;
-    high[a] = limited ? box->end[a] + margin : 1e30;
+    const double edge = mcor_edge_of(&context->lattice, a);
+    low[a] = limited ? (box->begin[a] - margin) * edge : -1e30;
+    high[a] = limited ? (box->end[a] + margin) * edge : 1e30;
   }
 }
 
@@ -417,8 +419,9 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   mcor_find_evaluated(context, reach->low, reach->high);
   for (int a = 0; a < 3; ++a)
   {
-    reach->period[a] = context->lattice.period[a];
-    reach->first[a] = context->lattice.period_first[a];
+    const double edge = mcor_edge_of(&context->lattice, a);
+    reach->period[a] = context->lattice.period[a] * edge;
+    reach->first[a] = context->lattice.period_first[a] * edge;
   }
   if (mcor_needs_density(input) || context->options->nearest_particle || pairs)
   {

@@ -8,11 +8,13 @@
 
 #include "mcor_internal.h"
 
-/* mcor_period.c. Periods in cubes, which are made smaller so that these are whole numbers, and the
- * bounds of all images that may be needed. */
 /* Whether numbers have the digits for cubes so far from the origin. */
 mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
-mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double* cube);
+/* mcor_period.c. Periods in cubes, or cells with an edge for each axis, which are made smaller so that these
+ * are whole numbers, and the bounds of all images that may be needed. */
+mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double cube);
+/* The edges in fixed-point units, and a cube as a length. */
+void mcor_fit_steps(mcor_context* context, int64_t extent);
 
 /* Of a box the cells along an axis, [side[0], side[1]); before, those that there are. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
@@ -30,7 +32,8 @@ typedef struct mcor_reach_box
   double unit;            /* 2^-fix_bits */
   double h_min;           /* of adaptive cubes, with their highest level: see mcor_reach_of */
   int top;
-  int period[3], first[3], fix_bits;
+  double period[3], first[3]; /* 0: open; where one begins */
+  int fix_bits;
   bool is_empty; /* none matters */
 } mcor_reach_box;
 

@@ -4,11 +4,16 @@
 /* Periodic boxes: a region of one period, which images of the particles reach. See mcor_box.c. */
 
 #include "mcor_box.h"
+#include "mcor_stage.h"
 
+#include <float.h>
 #include <math.h>
 
 /* How far a period may be from a whole number of cubes, as a factor of it. */
 #define MCOR_PERIOD_ERROR 1e-9
+
+/* Numbers of units of an edge that are tried. */
+#define MCOR_STEP_TRIES (1 << 17)
 
 /* Adaptive cubes may become smaller by this factor to have all their levels. */
 #define MCOR_FINER_CUBES 1.3
@@ -59,6 +64,59 @@ static int64_t mcor_count_adaptive_cubes(const double length[3], int axis, int64
   return count;
 }
 
+/* Where no cube divides all periods, each has cells of its own: as few as are no longer than the cube along
+ * any axis, and whole bricks as above. */
+static void mcor_divide_periods(
+  const double length[3], const int64_t fewest[3], int* top, double edge[3])
+{
+  bool fits = false;
+  for (; !fits; *top -= !fits)
+  {
+    const int64_t unit = *top > 0 ? (int64_t)MCOR_BRICK << (*top + 1) : 1;
+    fits = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int64_t count = (fewest[a] + unit - 1) / unit * unit;
+      edge[a] = length[a] > 0 ? length[a] / (double)count : 0;
+      fits = fits && (*top == 0 || (double)count <= MCOR_FINER_CUBES * (double)fewest[a]);
+    }
+  }
+  const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
+  for (int a = 0; a < 3; ++a)
+  {
+    edge[a] = length[a] > 0 ? edge[a] : longest;
+  }
+}
+
+/* Edges that divide the periods, no longer than a cube: all the same where that is possible. */
+static mcor_status mcor_fit_edges(
+  mcor_context* context, const double length[3], int axis, double cube, double edge[3])
+{
+  int* top = &context->lattice.top;
+  int64_t fewest[3] = { 0 };
+  for (int a = 0; a < 3; ++a)
+  {
+    const double least = ceil(length[a] / cube * (1 - MCOR_PERIOD_ERROR));
+    MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
+      "With cube size %g there would be %.3g cubes in the period along %c; the limit is %d. Use a "
+      "larger cube size, or a shorter period.",
+      cube, least, 'x' + a, MCOR_LATTICE_LIMIT);
+    fewest[a] = (int64_t)least;
+  }
+  int levels = *top;
+  int64_t count = mcor_count_adaptive_cubes(length, axis, fewest[axis], top);
+  count =
+    count == 0 ? mcor_count_cubes(length, axis, fewest[axis], 2 * fewest[axis] + 7, 1) : count;
+  if (count == 0)
+  {
+    mcor_divide_periods(length, fewest, &levels, edge);
+    *top = levels;
+    return MCOR_OK;
+  }
+  edge[0] = edge[1] = edge[2] = length[axis] / (double)count;
+  return MCOR_OK;
+}
+
 /* Images that lie farther away than this from the period are not needed, L. */
 static double mcor_image_reach(
   const mcor_context* context, const mcor_options* options, double cube)
@@ -67,16 +125,16 @@ static double mcor_image_reach(
 }
 
 /* May lower lattice.top. */
-mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double* cube)
+mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double cube)
 {
   mcor_measure* m = &context->measure;
   mcor_lattice* lattice = &context->lattice;
-  const double asked = *cube;
-  double length[3];
+  double length[3], *edge = lattice->edge;
   int axis = -1;
   for (int a = 2; a >= 0; --a)
   {
-    length[a] = options->periodic[2 * a + 1] - options->periodic[2 * a];
+    length[a] = fmax(options->periodic[2 * a + 1] - options->periodic[2 * a], 0);
+    edge[a] = cube;
     lattice->period[a] = 0;
     axis = length[a] > 0 ? a : axis;
   }
@@ -87,38 +145,81 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
   {
     return MCOR_OK;
   }
-  const double least = ceil(length[axis] / *cube * (1 - MCOR_PERIOD_ERROR));
-  MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
-    "With cube size %g there would be %.3g cubes in the period along %c; the limit is %d. Use a "
-    "larger cube size, or a shorter period.",
-    *cube, least, 'x' + axis, MCOR_LATTICE_LIMIT);
-  const int64_t fewest = (int64_t)least;
-  int64_t count = mcor_count_adaptive_cubes(length, axis, fewest, &lattice->top);
-  count = count == 0 ? mcor_count_cubes(length, axis, fewest, 2 * fewest + 7, 1) : count;
-  MCOR_RETURN_IF(count == 0, context, MCOR_INVALID_ARGUMENT,
-    "The periods %g, %g and %g (0: not periodic) are not whole multiples of any cube size near %g. "
-    "Use another cube size, or give the periods with all their digits.",
-    length[0], length[1], length[2], *cube);
-  *cube = length[axis] / (double)count;
-  const double reach = mcor_image_reach(context, options, *cube);
-  const double margin = lattice->top > 0 ? ldexp(8 * *cube, lattice->top) : 0;
+  MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge));
+  const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
+  const double reach = mcor_image_reach(context, options, longest);
+  const double margin = lattice->top > 0 ? ldexp(8 * longest, lattice->top) : 0;
   for (int a = 0; a < 3; ++a)
   {
     if (length[a] > 0)
     {
       const double most = MCOR_MOST_PERIODS * length[a];
-      MCOR_RETURN_IF(reach - 8 * *cube > most, context, MCOR_INVALID_ARGUMENT,
+      MCOR_RETURN_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
         "The period along %c is %g, too short for support radii of up to %g.", 'x' + a, length[a],
         m->support_max);
       MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
         "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "
         "%.3g.",
-        asked, length[a], 'x' + a, (most - (reach - 8 * *cube)) / 8);
-      MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], *cube));
-      lattice->period[a] = (int)round(length[a] / *cube);
+        cube, length[a], 'x' + a, (most - (reach - 8 * longest)) / 8);
+      MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge[a]));
+      lattice->period[a] = (int)round(length[a] / edge[a]);
       m->low[a] = options->periodic[2 * a] - reach - margin - m->support_max;
       m->high[a] = options->periodic[2 * a + 1] + reach + margin + m->support_max;
     }
   }
   return MCOR_OK;
+}
+
+/* ---- Unequal edges ---- */
+
+/* Of a cube, edges are at least this part, or a bit less. */
+#define MCOR_STEP_RANGE 16
+
+/* Trailing zeros that an edge needs as a fixed-point number: nodes must be as round as particles with long
+ * supports are, and whole numbers of units in a double. */
+static int mcor_rounded_bits(const mcor_context* context, double longest, int64_t extent)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  int exponent;
+  frexp((double)extent + 64, &exponent);
+  const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;
+  const int spared = mcor_spared_bits(context, context->measure.support_max, longest, lattice->top);
+  return exact > spared ? exact : spared;
+}
+
+/* Particles keep their positions in units of the device, along each axis those of its edge. Distances are to
+ * be right, so that the edges must be to each other as their whole numbers of units are: of the last
+ * 1 / MCOR_STEP_RANGE of numbers of the longest one, that is taken for which they are so best, to 1e-8 or
+ * so. */
+void mcor_fit_steps(mcor_context* context, int64_t extent)
+{
+  mcor_lattice* lattice = &context->lattice;
+  const double* edge = lattice->edge;
+  const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
+  const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
+  const int spared = equal ? 0 : mcor_rounded_bits(context, longest, extent);
+  const int bits = lattice->fix_bits - spared > 1 ? lattice->fix_bits - spared : 1;
+  const int64_t most = INT64_C(1) << bits, rest = most / MCOR_STEP_RANGE;
+  const int64_t tries = equal ? 0 : rest < MCOR_STEP_TRIES ? rest : MCOR_STEP_TRIES;
+  int64_t best = most;
+  double least = INFINITY;
+  for (int64_t count = most; count >= most - tries; --count)
+  {
+    double error = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double steps = edge[a] / longest * (double)count;
+      error = fmax(error, fabs(round(steps) / steps - 1));
+    }
+    best = error < least ? count : best;
+    least = fmin(least, error);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    lattice->step[a] = (int64_t)round(edge[a] / longest * (double)best)
+      << (lattice->fix_bits - bits);
+    context->measure.edge[a] = edge[a];
+  }
+  lattice->cube = longest * ((double)most / (double)best);
+  context->measure.cube = lattice->cube;
 }

@@ -81,7 +81,8 @@ static mcor_status mcor_note_tiles(
 static mcor_status mcor_note_particle(
   mcor_context* context, mcor_cap_face* face, const double x[3], double reach)
 {
-  const double away = fabs(x[face->axis] - face->plane);
+  const mcor_lattice* lattice = &context->lattice;
+  const double away = fabs(x[face->axis] - face->plane) * mcor_edge_of(lattice, face->axis);
   const bool is_cube = context->options->sph_kernel == MCOR_M_PRIME_4;
   if (away > reach)
   {
@@ -92,8 +93,9 @@ static mcor_status mcor_note_particle(
   for (int i = 0; i < 2; ++i)
   {
     const double at = x[face->across[i]] - face->first[i];
-    low[i] = at - across - 2;
-    high[i] = at + across + 2;
+    const double nodes = across / mcor_edge_of(lattice, face->across[i]);
+    low[i] = at - nodes - 2;
+    high[i] = at + nodes + 2;
   }
   return mcor_note_tiles(context, face, low, high);
 }
@@ -123,7 +125,6 @@ static mcor_status mcor_map_particles(
 static mcor_status mcor_note_particles(
   mcor_context* context, const mcor_cap_particles* particles, mcor_cap_face* face)
 {
-  const double unit = ldexp(1, -context->lattice.fix_bits);
   const double support = mcor_support_factor(context->options->sph_kernel);
   for (int64_t i = 0; i < context->grid.count; ++i)
   {
@@ -131,9 +132,9 @@ static mcor_status mcor_note_particles(
     for (int a = 0; a < 3; ++a)
     {
       const void* view = particles->views[a];
-      x[a] = unit *
-        (context->cl.real_size == sizeof(cl_double) ? (double)((const cl_long*)view)[i]
-                                                    : (double)((const cl_int*)view)[i]);
+      x[a] = (context->cl.real_size == sizeof(cl_double) ? (double)((const cl_long*)view)[i]
+                                                         : (double)((const cl_int*)view)[i]) /
+        (double)context->lattice.step[a];
     }
     MCOR_TRY(mcor_note_particle(
       context, face, x, support / mcor_get_real(context, particles->views[3], i) * 1.001));

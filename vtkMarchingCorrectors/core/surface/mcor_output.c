@@ -164,19 +164,19 @@ static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int
   return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
 }
 
-/* What node and offset of vertex v are counted in, unit L: see mcor_adaptive.h. */
-static double mcor_cube_of(const mcor_context* context, const mcor_download* d, int64_t v)
+/* Of a length of the virtual grid that of vertex v's level: see mcor_adaptive.h. */
+static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
   const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
-  return level > 0 ? ldexp(context->lattice.cube, level) : context->lattice.cube;
+  return level > 0 ? ldexp(length, level) : length;
 }
 
 /* How far the correction moved vertex v, unit L. */
 static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
-  return v < context->mesh.march_count
-    ? fabs(mcor_get_real(context, d->linear, v)) * mcor_cube_of(context, d, v)
-    : 0;
+  return v < context->mesh.march_count ? fabs(mcor_get_real(context, d->linear, v)) *
+      mcor_length_of(d, v, context->lattice.edge[d->node[4 * v + 3] & 3])
+                                       : 0;
 }
 
 static void mcor_count_correction(
@@ -237,7 +237,7 @@ static void mcor_store_normal(const double gradient[3], float normal[3])
 static void mcor_store_point(const mcor_context* context, const mcor_download* d, int64_t v,
   double iso, mcor_surface* s, int64_t to)
 {
-  const double cube = mcor_cube_of(context, d, v);
+  const double cube = mcor_length_of(d, v, context->lattice.cube);
   const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
   double gradient[3];
   for (int a = 0; a < 3; ++a)
@@ -245,7 +245,8 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
     /* The origin is a whole number of cells of all levels. */
     const double node =
       (double)(context->lattice.origin[a] / ((int64_t)1 << level) + d->node[4 * v + a]);
-    s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) * cube;
+    s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) *
+      mcor_length_of(d, v, context->lattice.edge[a]);
     gradient[a] = mcor_get_real(context, d->gradient, 4 * v + a);
     if (s->gradients)
     {

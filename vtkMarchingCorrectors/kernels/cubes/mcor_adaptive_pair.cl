@@ -99,19 +99,20 @@ real mcor_leaf_crossing(long from, long low, long edge, int step, real gap, bool
 /* Marks cells of a level on the line between two places, fixed-point numbers. Where the line passes an edge
  * or a corner of a cell to within rounding, the cells on both sides are found. Whether smaller ones may
  * be there: those found on a finer lattice are all within these. */
-bool mcor_leaf_seed_line(MCOR_MARK_PARAMS, const long* from, const long* to, int level, int bits)
+bool mcor_leaf_seed_line(
+  MCOR_MARK_PARAMS, const long* from, const long* to, int level, const fix step_of[3])
 {
   real next[3], gap[3];
   int c[3], end[3], step[3], steps = 0;
-  const long edge = 1L << bits;
+  long edge[3];
   for (int a = 0; a < 3; ++a)
   {
-    c[a] = (int)(from[a] >> bits);
-    end[a] = (int)(to[a] >> bits);
+    edge[a] = (long)step_of[a] << level;
+    c[a] = (int)(from[a] / edge[a]);
+    end[a] = (int)(to[a] / edge[a]);
     step[a] = to[a] < from[a] ? -1 : 1;
     gap[a] = to[a] == from[a] ? 0 : 1 / (real)abs(to[a] - from[a]);
-    next[a] =
-      mcor_leaf_crossing(from[a], (long)c[a] << bits, edge, step[a], gap[a], c[a] == end[a]);
+    next[a] = mcor_leaf_crossing(from[a], c[a] * edge[a], edge[a], step[a], gap[a], c[a] == end[a]);
     steps += abs(end[a] - c[a]);
   }
   bool split = mcor_leaf_seed_cell(MCOR_MARK_ARGS, level, c[0], c[1], c[2]);
@@ -129,7 +130,7 @@ bool mcor_leaf_seed_line(MCOR_MARK_PARAMS, const long* from, const long* to, int
     }
     c[axis] += step[axis];
     next[axis] = mcor_leaf_crossing(
-      from[axis], (long)c[axis] << bits, edge, step[axis], gap[axis], c[axis] == end[axis]);
+      from[axis], c[axis] * edge[axis], edge[axis], step[axis], gap[axis], c[axis] == end[axis]);
     split |= mcor_leaf_seed_cell(MCOR_MARK_ARGS, level, c[0], c[1], c[2]);
   }
   return split;
@@ -143,7 +144,7 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
   bool split = true;
   for (int level = top; level >= 0 && split; --level)
   {
-    split = mcor_leaf_seed_line(MCOR_MARK_ARGS, from, to, level, grid->fix_bits + level);
+    split = mcor_leaf_seed_line(MCOR_MARK_ARGS, from, to, level, grid->step);
   }
 }
 

@@ -80,22 +80,23 @@ bool mcor_brick_is_inside(const mcor_grid* grid, mcor_query* query, mcor_tile* t
   return inside;
 }
 
-/* The same of 2 x 2 points, as many above each other as there are lanes, `step` apart from (x, y, z) on. The
+/* The same of 2 x 2 points, as many above each other as there are lanes, `step` apart from `at` on. The
  * order of the sum is not that of nodes: the margin covers it, too. */
-bool mcor_points_are_inside(const mcor_tile* tile, real x, real y, real z, real step, real iso)
+bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();
-  const real e = (real)0.5 * step, ez = e * (MCOR_LANES / 4 - 1);
-  const realv px = x + step * MCOR_CONVERT_REALV(lane & 1);
-  const realv py = y + step * MCOR_CONVERT_REALV(lane >> 1 & 1);
-  const realv pz = z + step * MCOR_CONVERT_REALV(lane >> 2);
+  const real ex = (real)0.5 * step[0], ey = (real)0.5 * step[1],
+             ez = (real)0.5 * step[2] * (MCOR_LANES / 4 - 1);
+  const realv px = at[0] + step[0] * MCOR_CONVERT_REALV(lane & 1);
+  const realv py = at[1] + step[1] * MCOR_CONVERT_REALV(lane >> 1 & 1);
+  const realv pz = at[2] + step[2] * MCOR_CONVERT_REALV(lane >> 2);
   realv w = 0;
   for (int begin = 0; begin < tile->count && !MCOR_ALL(w > iso * (real)1.0001f);
        begin += MCOR_LANES)
   {
     const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
-      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), x + e, y + e, z + ez, e, e, ez,
-      MCOR_INSIDE_SHARE);
+      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), at[0] + ex, at[1] + ey, at[2] + ez,
+      ex, ey, ez, MCOR_INSIDE_SHARE);
     int list[MCOR_LANES];
     const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
     for (int k = 0; k < count; ++k)
@@ -109,10 +110,9 @@ bool mcor_points_are_inside(const mcor_tile* tile, real x, real y, real z, real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether all points of a box are, `step` apart, from point (x, y, z) of the tile on: numbers
- * [low, high]. */
-bool mcor_box_is_inside(
-  const mcor_tile* tile, const real at[3], const int low[3], const int high[3], real step, real iso)
+/* Whether all points of a box are, `step` apart, from `at` in the tile on: numbers [low, high]. */
+bool mcor_box_is_inside(const mcor_tile* tile, const real at[3], const int low[3],
+  const int high[3], const real step[3], real iso)
 {
   bool inside = true;
   for (int z = low[2]; z <= high[2] && inside; z += MCOR_LANES / 4)
@@ -121,8 +121,8 @@ bool mcor_box_is_inside(
     {
       for (int x = low[0]; x <= high[0] && inside; x += 2)
       {
-        inside = mcor_points_are_inside(
-          tile, at[0] + step * x, at[1] + step * y, at[2] + step * z, step, iso);
+        const real to[3] = { at[0] + step[0] * x, at[1] + step[1] * y, at[2] + step[2] * z };
+        inside = mcor_points_are_inside(tile, to, step, iso);
       }
     }
   }
@@ -135,15 +135,16 @@ bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, uint finer, real iso)
 {
   bool inside = true;
-  real at[3];
+  real at[3], finer_edge[3];
   for (int a = 0; a < 3; ++a)
   {
     at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit;
+    finer_edge[a] = (real)0.5 * grid->edge[a];
   }
   for (int a = 0; a < 3 && inside; ++a)
   {
     const int low[3] = { a == 0 ? 4 : 0, a == 1 ? 4 : 0, a == 2 ? 4 : 0 }, high[3] = { 4, 4, 4 };
-    inside = mcor_box_is_inside(tile, at, low, high, 1, iso);
+    inside = mcor_box_is_inside(tile, at, low, high, grid->edge, iso);
   }
   for (int d = 0; d < 27 && inside; ++d)
   {
@@ -154,7 +155,7 @@ bool mcor_sides_are_inside(
       low[a] = to[a] == 2 ? 8 : 0;
       high[a] = to[a] == 0 ? 0 : 8;
     }
-    inside = !(finer >> d & 1) || mcor_box_is_inside(tile, at, low, high, (real)0.5, iso);
+    inside = !(finer >> d & 1) || mcor_box_is_inside(tile, at, low, high, finer_edge, iso);
   }
   return inside;
 }

@@ -43,34 +43,34 @@ void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Least and greatest w over cubes of half size e around (dx, dy, dz). */
+/* Least and greatest w over boxes of half size e around (dx, dy, dz). */
 void mcor_bound_weights(
-  realv dx, realv dy, realv dz, real e, realv inv_h, realv* least, realv* greatest)
+  realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
   realv xl, xh, yl, yh, zl, zh;
-  mcor_bound_interval(dx, e, inv_h, &xl, &xh);
-  mcor_bound_interval(dy, e, inv_h, &yl, &yh);
-  mcor_bound_interval(dz, e, inv_h, &zl, &zh);
+  mcor_bound_interval(dx, e[0], inv_h, &xl, &xh);
+  mcor_bound_interval(dy, e[1], inv_h, &yl, &yh);
+  mcor_bound_interval(dz, e[2], inv_h, &zl, &zh);
   const realv al = fmin(fmin(xl * yl, xl * yh), fmin(xh * yl, xh * yh));
   const realv ah = fmax(fmax(xl * yl, xl * yh), fmax(xh * yl, xh * yh));
   *least = fmin(fmin(al * zl, al * zh), fmin(ah * zl, ah * zh));
   *greatest = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* w at the point of a cube of half size e around (dx, dy, dz) that is nearest (side -1) or farthest
+/* w at the point of a box of half size e around (dx, dy, dz) that is nearest (side -1) or farthest
  * (side 1). */
-realv mcor_bound_weight(realv dx, realv dy, realv dz, real e, real side, realv inv_h)
+realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side, realv inv_h)
 {
-  const realv x = fmax(fabs(dx) + side * e, (realv)0);
-  const realv y = fmax(fabs(dy) + side * e, (realv)0);
-  const realv z = fmax(fabs(dz) + side * e, (realv)0);
+  const realv x = fmax(fabs(dx) + side * e[0], (realv)0);
+  const realv y = fmax(fabs(dy) + side * e[1], (realv)0);
+  const realv z = fmax(fabs(dz) + side * e[2], (realv)0);
   const real off = side > 0 ? MCOR_BOUND_FARTHER : MCOR_BOUND_NEARER;
   return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * (inv_h * off));
 }
 
 /* Least and greatest w there: w falls with the distance. */
 void mcor_bound_weights(
-  realv dx, realv dy, realv dz, real e, realv inv_h, realv* least, realv* greatest)
+  realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
   *least = mcor_bound_weight(dx, dy, dz, e, (real)1, inv_h);
   *greatest = mcor_bound_weight(dx, dy, dz, e, (real)-1, inv_h);
@@ -93,10 +93,11 @@ mcor_bound mcor_bound_start(void)
   return bound;
 }
 
-/* Adds the tile's particles. The box is the query's, a cube. */
+/* Adds the tile's particles. The box is the query's. */
 void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mcor_bound* bound)
 {
-  const real e = query->half_size[0] * MCOR_BOUND_LARGER;
+  const real e[3] = { query->half_size[0] * MCOR_BOUND_LARGER,
+    query->half_size[1] * MCOR_BOUND_LARGER, query->half_size[2] * MCOR_BOUND_LARGER };
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
     const realv x = MCOR_TILE(tile, x, i) - query->center[0];

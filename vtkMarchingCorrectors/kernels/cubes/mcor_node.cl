@@ -31,8 +31,8 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
 void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
 {
   const int4 first = brick / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS * MCOR_BRICK;
-  const fix origin[3] = { (fix)first.x << grid->fix_bits, (fix)first.y << grid->fix_bits,
-    (fix)first.z << grid->fix_bits };
+  const fix origin[3] = { (fix)first.x * grid->step[0], (fix)first.y * grid->step[1],
+    (fix)first.z * grid->step[2] };
   mcor_query_place(grid, query, origin);
 }
 
@@ -42,13 +42,13 @@ MCOR_ONE_COPY mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int 
 {
   const int corner[3] = { brick.x * MCOR_BRICK + (first & 3),
     brick.y * MCOR_BRICK + (first >> 2 & 3), brick.z * MCOR_BRICK + (first >> 4) };
-  const fix extent = (fix)(MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1) << grid->fix_bits;
+  const fix extent = MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1;
   mcor_query query;
   query.radius = -share;
   for (int a = 0; a < 3; ++a)
   {
-    query.low[a] = (fix)corner[a] << grid->fix_bits;
-    query.high[a] = query.low[a] + extent;
+    query.low[a] = (fix)corner[a] * grid->step[a];
+    query.high[a] = query.low[a] + extent * grid->step[a];
   }
   mcor_query_in_region(grid, brick, &query);
   return query;

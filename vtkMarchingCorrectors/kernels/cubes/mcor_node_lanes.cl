@@ -24,15 +24,16 @@ int mcor_lane_of(int n)
 }
 
 /* Places in the tile of the particles that reach a group, whose first node is (x, y, z). */
-int mcor_node_list(const mcor_tile* tile, real x, real y, real z, real share, int* list)
+int mcor_node_list(
+  const mcor_tile* tile, const real edge[3], real x, real y, real z, real share, int* list)
 {
-  const real exy = (real)0.5 * (MCOR_GROUP_XY - 1), ez = (real)0.5 * (MCOR_GROUP_Z - 1);
+  const real exy = (real)0.5 * (MCOR_GROUP_XY - 1), ex = exy * edge[0], ey = exy * edge[1],
+             ez = (real)0.5 * (MCOR_GROUP_Z - 1) * edge[2];
   int count = 0;
   for (int i = 0; i < tile->count; i += MCOR_LANES)
   {
-    const fixv near =
-      mcor_tile_near(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i), MCOR_TILE(tile, z, i),
-        MCOR_TILE(tile, inv_h, i), x + exy, y + exy, z + ez, exy, exy, ez, share);
+    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i),
+      MCOR_TILE(tile, z, i), MCOR_TILE(tile, inv_h, i), x + ex, y + ey, z + ez, ex, ey, ez, share);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, tile->count - i));
     MCOR_PACK_INDEX(mask, i, list + count);
     count += MCOR_MASK_COUNT(mask);
@@ -50,13 +51,14 @@ typedef struct
   realv at;
 } mcor_group_nodes;
 
-mcor_group_nodes mcor_group_place(real x, real y, real z)
+mcor_group_nodes mcor_group_place(const real edge[3], real x, real y, real z)
 {
+  const real ex = edge[0], ey = edge[1], ez = edge[2];
 #if MCOR_LANES == 8
-  const mcor_group_nodes nodes = { (realv)(x, x + 1, y, y + 1, z, z + 1, z, z) };
+  const mcor_group_nodes nodes = { (realv)(x, x + ex, y, y + ey, z, z + ez, z, z) };
 #else
   const mcor_group_nodes nodes = { (
-    realv)(x, x + 1, y, y + 1, z, z + 1, z + 2, z + 3, z, z, z, z, z, z, z, z) };
+    realv)(x, x + ex, y, y + ey, z, z + ez, z + 2 * ez, z + 3 * ez, z, z, z, z, z, z, z, z) };
 #endif
   return nodes;
 }
@@ -85,11 +87,11 @@ typedef struct
   realv x, y, z;
 } mcor_group_nodes;
 
-mcor_group_nodes mcor_group_place(real x, real y, real z)
+mcor_group_nodes mcor_group_place(const real edge[3], real x, real y, real z)
 {
   const fixv lane = mcor_lane_index();
-  const mcor_group_nodes nodes = { x + MCOR_CONVERT_REALV(lane & 1),
-    y + MCOR_CONVERT_REALV(lane >> 1 & 1), z + MCOR_CONVERT_REALV(lane >> 2) };
+  const mcor_group_nodes nodes = { x + MCOR_CONVERT_REALV(lane & 1) * edge[0],
+    y + MCOR_CONVERT_REALV(lane >> 1 & 1) * edge[1], z + MCOR_CONVERT_REALV(lane >> 2) * edge[2] };
   return nodes;
 }
 
@@ -103,12 +105,12 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 
 /* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's origin.
  * term: their weights times values. */
-void mcor_node_add(const mcor_tile* tile, const real* term, int g, real x, real y, real z,
-  real share, mcor_node_sums* sums)
+void mcor_node_add(const mcor_tile* tile, const real* term, int g, const real edge[3], real x,
+  real y, real z, real share, mcor_node_sums* sums)
 {
-  const mcor_group_nodes nodes = mcor_group_place(x, y, z);
+  const mcor_group_nodes nodes = mcor_group_place(edge, x, y, z);
   int list[MCOR_TILE_SIZE + 16];
-  const int count = mcor_node_list(tile, x, y, z, share, list);
+  const int count = mcor_node_list(tile, edge, x, y, z, share, list);
   realv s = sums->s[g], w = sums->w[g];
 #if MCOR_SOLIDS
   realv t = sums->t[g];
@@ -170,8 +172,9 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
       const int4 node = mcor_group_node(g);
-      mcor_node_add(tile, term, g, first[0] + (real)node.x, first[1] + (real)node.y,
-        first[2] + (real)node.z, share, sums);
+      const real* edge = grid->edge;
+      mcor_node_add(tile, term, g, edge, first[0] + (real)node.x * edge[0],
+        first[1] + (real)node.y * edge[1], first[2] + (real)node.z * edge[2], share, sums);
     }
   }
 }

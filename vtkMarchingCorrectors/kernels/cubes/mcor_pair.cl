@@ -7,7 +7,7 @@
 
 #if MCOR_OF_FIELD
 /* What marking takes, last among a kernel's parameters; mcor_adaptive_pair.cl has that of adaptive cubes. */
-#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint *cells
+#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* cells
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, cells
 
 /* Cells are found before their bricks have slots: `cells` has two words, 64 bits, for each brick
@@ -21,7 +21,7 @@ void mcor_pair_seed_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* 
   }
 }
 
-/* All cells on the line from p to q (cubes, relative to cell c), beginning in cell c. Where the
+/* All cells on the line from p to q (edges, relative to cell c), beginning in cell c. Where the
  * line passes an edge or a corner of a cell to within rounding, the cells on both sides are
  * found. */
 void mcor_pair_seed_line(
@@ -66,10 +66,10 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
   for (int c = 0; c < 3; ++c)
   {
     /* Relative to the first cell, so that single precision suffices. */
-    cell[c] = (int)(own[c] >> grid->fix_bits);
-    end[c] = (int)(other[c] >> grid->fix_bits);
-    p[c] = (real)(own[c] - ((fix)cell[c] << grid->fix_bits)) * grid->unit;
-    q[c] = p[c] + (real)(other[c] - own[c]) * grid->unit;
+    cell[c] = (int)(own[c] / grid->step[c]);
+    end[c] = (int)(other[c] / grid->step[c]);
+    p[c] = (real)(own[c] - (fix)cell[c] * grid->step[c]) / (real)grid->step[c];
+    q[c] = p[c] + (real)(other[c] - own[c]) / (real)grid->step[c];
   }
   mcor_pair_seed_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
 }

@@ -80,12 +80,12 @@ MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int 
 {
   mcor_query query;
   query.radius = -1;
-  query.low[0] = (fix)(brick.x * MCOR_BRICK) << grid->fix_bits;
-  query.low[1] = (fix)(brick.y * MCOR_BRICK) << grid->fix_bits;
-  query.low[2] = (fix)(brick.z * MCOR_BRICK) << grid->fix_bits;
+  query.low[0] = (fix)(brick.x * MCOR_BRICK) * grid->step[0];
+  query.low[1] = (fix)(brick.y * MCOR_BRICK) * grid->step[1];
+  query.low[2] = (fix)(brick.z * MCOR_BRICK) * grid->step[2];
   for (int a = 0; a < 3; ++a)
   {
-    query.high[a] = query.low[a] + ((fix)cubes << grid->fix_bits);
+    query.high[a] = query.low[a] + (fix)cubes * grid->step[a];
   }
   mcor_query_in_region(grid, brick, &query);
   return query;

@@ -9,9 +9,10 @@
 /* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset, and
  * whether it is in the box, if there is one; the node of others is -1. */
 __kernel void mcor_derive_place(const int first, const int count, const int fix_bits,
-  __global const fix* px, __global const fix* py, __global const fix* pz, const int has_box,
-  const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,
-  const int last_z, __global int4* node, __global real4* offset, __global int* flags)
+  const real edge_x, const real edge_y, const real edge_z, __global const fix* px,
+  __global const fix* py, __global const fix* pz, const int has_box, const int first_x,
+  const int first_y, const int first_z, const int last_x, const int last_y, const int last_z,
+  __global int4* node, __global real4* offset, __global int* flags)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -19,16 +20,16 @@ __kernel void mcor_derive_place(const int first, const int count, const int fix_
     return;
   }
   const fix x = px[first + i], y = py[first + i], z = pz[first + i];
-  const fix mask = ((fix)1 << fix_bits) - 1;
-  const real unit = ldexp((real)1, -fix_bits);
-  const int4 at = (int4)((int)(x >> fix_bits), (int)(y >> fix_bits), (int)(z >> fix_bits), 0);
+  const fix step_x = (fix)ldexp(edge_x, fix_bits), step_y = (fix)ldexp(edge_y, fix_bits),
+            step_z = (fix)ldexp(edge_z, fix_bits);
+  const int4 at = (int4)((int)(x / step_x), (int)(y / step_y), (int)(z / step_z), 0);
   const bool is_in = !has_box ||
     (at.x >= first_x && at.x < last_x && at.y >= first_y && at.y < last_y && at.z >= first_z &&
       at.z < last_z);
   flags[i] = is_in;
   node[i] = is_in ? at : -1;
-  offset[i] =
-    (real4)((real)(x & mask) * unit, (real)(y & mask) * unit, (real)(z & mask) * unit, 0);
+  offset[i] = (real4)((real)(x % step_x) / (real)step_x, (real)(y % step_y) / (real)step_y,
+    (real)(z % step_z) / (real)step_z, 0);
 }
 
 /* Sums over the neighbours of the particles i in the lanes; per cube. */
@@ -77,9 +78,8 @@ fixv mcor_derive_own(
   fix own[MCOR_LANES];
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
-    own[lane] = points->index[lane] < 0
-      ? 0
-      : MCOR_CAT(as_, MCOR_FIX_NAME)(array[order[points->index[lane]]]);
+    own[lane] =
+      points->index[lane] < 0 ? 0 : MCOR_CAT(as_, MCOR_FIX_NAME)(array[order[points->index[lane]]]);
   }
 #if MCOR_LANES == 1
   return own[0];

@@ -14,20 +14,22 @@ typedef struct
 
 /* The first groups of those from begin to before end that fit into one cluster: returns how many, one
  * at least, and the box around their points, in cubes from the first one's node. */
-int mcor_cluster_bound(__global const int* groups, int begin, int end, __global const int4* node,
-  __global const real4* offset, real4* least, real4* most)
+int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,
+  __global const int4* node, __global const real4* offset, real4* least, real4* most)
 {
+  const real4 edge = (real4)(grid->edge[0], grid->edge[1], grid->edge[2], 0);
   const int4 base = node[groups[begin]];
   int4 low = base, high = base;
   int g = begin;
-  *least = *most = offset[groups[begin]];
+  *least = *most = offset[groups[begin]] * edge;
   for (; g < end; ++g)
   {
     int4 group_low = low, group_high = high;
     real4 group_least = *least, group_most = *most;
     for (int i = groups[g]; i < groups[g + 1]; ++i)
     {
-      const real4 at = MCOR_CAT(convert_, MCOR_CAT(MCOR_REAL_NAME, 4))(node[i] - base) + offset[i];
+      const real4 at =
+        (MCOR_CAT(convert_, MCOR_CAT(MCOR_REAL_NAME, 4))(node[i] - base) + offset[i]) * edge;
       group_low = min(group_low, node[i]);
       group_high = max(group_high, node[i]);
       group_least = fmin(group_least, at);
@@ -51,13 +53,13 @@ void mcor_cluster_place(
   const mcor_grid* grid, int4 base, const real4 least, const real4 most, mcor_query* query)
 {
   fix origin[3];
-  const fix first[3] = { (fix)base.x << grid->fix_bits, (fix)base.y << grid->fix_bits,
-    (fix)base.z << grid->fix_bits };
+  const fix first[3] = { (fix)base.x * grid->step[0], (fix)base.y * grid->step[1],
+    (fix)base.z * grid->step[2] };
   query->radius = -1;
   for (int a = 0; a < 3; ++a)
   {
     const real low = MCOR_GET(least, a), high = MCOR_GET(most, a);
-    origin[a] = first[a] + ((fix)floor((real)0.5 * (low + high)) << grid->fix_bits);
+    origin[a] = first[a] + (fix)floor((real)0.5 * (low + high) / grid->edge[a]) * grid->step[a];
     query->low[a] = first[a] + (fix)floor(ldexp(low, grid->fix_bits)) - 1;
     query->high[a] = first[a] + (fix)ceil(ldexp(high, grid->fix_bits)) + 1;
   }
@@ -224,7 +226,7 @@ __kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global 
   for (int begin = get_global_id(0) * MCOR_CLUSTER; begin < end; begin += cluster.count)
   {
     real4 least, most;
-    cluster.count = mcor_cluster_bound(groups, begin, end, node, offset, &least, &most);
+    cluster.count = mcor_cluster_bound(&grid, groups, begin, end, node, offset, &least, &most);
     mcor_group_load(
       &grid, groups[begin], groups[begin + 1], node, offset, 0, cluster.points, &query);
     if (!mcor_reach_is_tile(&grid, &query, cluster.points))

@@ -17,7 +17,7 @@
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
 #if !MCOR_OF_LATTICE
-/* Points: lattice node plus offset in cubes. */
+/* Points: lattice node, and from there. */
 typedef struct
 {
   int index[MCOR_LANES]; /* of each lane's point; -1 where a lane repeats another one */
@@ -117,15 +117,15 @@ void mcor_points_place(
 
 /* Loads the nodes of a group's points. */
 void mcor_points_load(
-  __global const int4* node, const int from[MCOR_LANES], int fix_bits, mcor_points* points)
+  const mcor_grid* grid, __global const int4* node, const int from[MCOR_LANES], mcor_points* points)
 {
   fix n[3][MCOR_LANES];
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int4 p = node[from[lane]];
-    n[0][lane] = (fix)p.x << fix_bits;
-    n[1][lane] = (fix)p.y << fix_bits;
-    n[2][lane] = (fix)p.z << fix_bits;
+    n[0][lane] = (fix)p.x * grid->step[0];
+    n[1][lane] = (fix)p.y * grid->step[1];
+    n[2][lane] = (fix)p.z * grid->step[2];
   }
   points->x = MCOR_LOAD(0, n[0]);
   points->y = MCOR_LOAD(0, n[1]);
@@ -167,8 +167,9 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
       least = fmin(least, first);
       most = fmax(most, last);
     }
-    const real middle = floor((real)0.5 * (least + most));
-    origin[a] = some + ((fix)middle << grid->fix_bits);
+    const real nodes = floor((real)0.5 * (least + most) / grid->edge[a]);
+    const real middle = nodes * grid->edge[a];
+    origin[a] = some + (fix)nodes * grid->step[a];
     query->low[a] = some + (fix)floor(ldexp(least, grid->fix_bits)) - 1;
     query->high[a] = some + (fix)ceil(ldexp(most, grid->fix_bits)) + 1;
     for (int part = 0; part < MCOR_PARTS; ++part)
@@ -179,19 +180,29 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
+/* An offset, given in edges. Where edges differ, a particle's place is a fixed-point number again: it is itself
+ * among what is evaluated there. */
+real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
+{
+  const real at = offset * grid->edge[axis], units = ldexp(at, grid->fix_bits),
+             whole = floor(units + (real)0.5);
+  const bool near = grid->edge[axis] != 1 && fabs(units - whole) < (real)0.07f;
+  return near ? ldexp(whole, -grid->fix_bits) : at;
+}
+
 /* Loads the group of points from begin to before end and their offsets. */
 void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const int4* node,
   __global const real4* offset, mcor_points* points)
 {
   int from[MCOR_LANES];
   mcor_points_place(node, begin, end, points, from);
-  mcor_points_load(node, from, grid->fix_bits, points);
+  mcor_points_load(grid, node, from, points);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const real4 o = offset[from[lane]];
-    MCOR_SET(points->ox, lane) = o.x;
-    MCOR_SET(points->oy, lane) = o.y;
-    MCOR_SET(points->oz, lane) = o.z;
+    MCOR_SET(points->ox, lane) = mcor_offset_of(grid, 0, o.x);
+    MCOR_SET(points->oy, lane) = mcor_offset_of(grid, 1, o.y);
+    MCOR_SET(points->oz, lane) = mcor_offset_of(grid, 2, o.z);
   }
 }
 

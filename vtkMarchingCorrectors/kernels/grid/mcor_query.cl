@@ -10,16 +10,19 @@
 
 #define MCOR_GRID_PARAMS                                                                           \
   const int particle_count, const int level_count, const int bucket_shift, const int fix_bits,     \
-    __global const mcor_level *levels, __global const int *buckets,                                \
-    __global const ulong *cell_keys, __global const fix *px, __global const fix *py,               \
-    __global const fix *pz, __global const real *p_inv_h, __global const real *p_weight,           \
-    __global const real *p_trim_weight, __global const real *p_value
+    const real edge_x, const real edge_y, const real edge_z, __global const mcor_level *levels,    \
+    __global const int *buckets, __global const ulong *cell_keys, __global const fix *px,          \
+    __global const fix *py, __global const fix *pz, __global const real *p_inv_h,                  \
+    __global const real *p_weight, __global const real *p_trim_weight,                             \
+    __global const real *p_value
 
 /* Arrays are padded by MCOR_PADDING elements, so that a vector load may run over the end. */
 typedef struct
 {
   int particle_count, level_count, bucket_shift, fix_bits;
   real unit;
+  real edge[3]; /* of a cell, at most 1 */
+  fix step[3];  /* the same in fixed-point units: from node to node */
   __global const mcor_level* levels;
   __global const int* buckets;     /* first particle with cell key >= bucket << bucket_shift */
   __global const ulong* cell_keys; /* sorted */
@@ -32,8 +35,11 @@ typedef struct
 
 #define MCOR_GRID                                                                                  \
   {                                                                                                \
-    particle_count, level_count, bucket_shift, fix_bits, ldexp((real)1, -fix_bits), levels,        \
-      buckets, cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                    \
+    particle_count, level_count, bucket_shift, fix_bits, ldexp((real)1, -fix_bits),                \
+      { edge_x, edge_y, edge_z },                                                                  \
+      { (fix)ldexp(edge_x, fix_bits), (fix)ldexp(edge_y, fix_bits),                                \
+        (fix)ldexp(edge_z, fix_bits) },                                                            \
+      levels, buckets, cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value            \
   }
 
 /* Index of the first particle whose cell key is >= key. */

@@ -30,7 +30,7 @@ __kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global 
     const int v = points.index[lane];
     if (v >= 0)
     {
-      mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
+      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
     }
   }
 }

@@ -45,12 +45,12 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
 
 /* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight; where there
  * are solids, the fluid's part of the weight goes with the gradient. */
-MCOR_ONE_COPY void mcor_points_store(const mcor_points* points, const mcor_field_at* at, int lane,
-  int v, __global real4* offset, __global real* value, __global real4* gradient,
-  __global real* weight)
+MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* points,
+  const mcor_field_at* at, int lane, int v, __global real4* offset, __global real* value,
+  __global real4* gradient, __global real* weight)
 {
-  offset[v] =
-    (real4)(MCOR_GET(points->ox, lane), MCOR_GET(points->oy, lane), MCOR_GET(points->oz, lane), 0);
+  offset[v] = (real4)(MCOR_GET(points->ox, lane) / grid->edge[0],
+    MCOR_GET(points->oy, lane) / grid->edge[1], MCOR_GET(points->oz, lane) / grid->edge[2], 0);
   value[v] = MCOR_GET(at->value, lane);
 #if MCOR_SOLIDS
   const real fluid = MCOR_GET(at->fluid, lane);
@@ -73,7 +73,7 @@ MCOR_ONE_COPY void mcor_points_store(const mcor_points* points, const mcor_field
 /* A bracket of this length is not halved any more. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
-/* Edges: values at both ends, against iso, and unit vectors along the edges. */
+/* Edges: values at both ends, against iso, and vectors from end to end. */
 typedef struct
 {
   realv v0, v1, ax, ay, az;
@@ -89,15 +89,15 @@ MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* gr
 {
   int from[MCOR_LANES];
   mcor_points_place(vertex_edge, groups[group], groups[group + 1], points, from);
-  mcor_points_load(vertex_edge, from, grid->fix_bits, points);
+  mcor_points_load(grid, vertex_edge, from, points);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = from[lane], axis = vertex_edge[v].w & 3;
     MCOR_SET(edges->v0, lane) = vertex_ends[2L * v];
     MCOR_SET(edges->v1, lane) = vertex_ends[2L * v + 1];
-    MCOR_SET(edges->ax, lane) = axis == 0;
-    MCOR_SET(edges->ay, lane) = axis == 1;
-    MCOR_SET(edges->az, lane) = axis == 2;
+    MCOR_SET(edges->ax, lane) = axis == 0 ? grid->edge[0] : (real)0;
+    MCOR_SET(edges->ay, lane) = axis == 1 ? grid->edge[1] : (real)0;
+    MCOR_SET(edges->az, lane) = axis == 2 ? grid->edge[2] : (real)0;
   }
 }
 
@@ -220,7 +220,7 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     const int v = points.index[lane];
     if (v >= 0)
     {
-      mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
+      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
       linear[v] = MCOR_GET(t0, lane) - MCOR_GET(t, lane);
       evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
     }

@@ -490,9 +490,9 @@ void mcor_trim_solve_group(
   {
     const int v = points.index[lane];
     const real4 along = v >= 0 ? gradient[v] : (real4)(0, 0, 0, 0);
-    MCOR_SET(limits.inside[0], lane) = along.x;
-    MCOR_SET(limits.inside[1], lane) = along.y;
-    MCOR_SET(limits.inside[2], lane) = along.z;
+    MCOR_SET(limits.inside[0], lane) = along.x * grid->edge[0];
+    MCOR_SET(limits.inside[1], lane) = along.y * grid->edge[1];
+    MCOR_SET(limits.inside[2], lane) = along.z * grid->edge[2];
     MCOR_SET(lacks, lane) = along.w;
   }
   limits.lacking = lacks != 0;
@@ -507,7 +507,7 @@ void mcor_trim_solve_group(
     const int v = points.index[lane];
     if (v >= 0)
     {
-      mcor_points_store(&points, &at, lane, v, offset, value, gradient, weight);
+      mcor_points_store(grid, &points, &at, lane, v, offset, value, gradient, weight);
       flag[v] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
     }
   }

@@ -79,7 +79,9 @@ void SetKernel(Job& job, Text option, Text text)
   const int kernel = ToChoice(option, text,
     { { "cubic", Filter::CUBIC_SPLINE }, { "quadratic", Filter::QUADRATIC },
       { "mprime4", Filter::M_PRIME_4 }, { "quintic", Filter::QUINTIC_SPLINE },
-      { "wendland", Filter::WENDLAND_C2 } });
+      { "wendland", Filter::WENDLAND_C2 }, { "quartic", Filter::QUARTIC_SPLINE },
+      { "wendland_c4", Filter::WENDLAND_C4 }, { "wendland_c6", Filter::WENDLAND_C6 },
+      { "sinc6", Filter::SINC_6 } });
   SetAll(job, &vtkSPHAlgorithm::SetKernel, kernel);
 }
 

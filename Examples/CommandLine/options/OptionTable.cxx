@@ -202,7 +202,10 @@ const Options TheParticles = {
 
 const Options TheMethod = {
   { "", "", "The method", {} },
-  { "--kernel", "NAME", "cubic (default), quadratic, mprime4, quintic or wendland", SetKernel },
+  { "--kernel", "NAME",
+    "cubic (default), quadratic, mprime4, quintic, wendland, quartic, wendland_c4,\n"
+    "wendland_c6 or sinc6",
+    SetKernel },
   { "--h-scale", "S", "the kernel uses S times the smoothing length (default 1)",
     [](Job& j, Text n, Text v)
     { SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v)); } },

@@ -81,6 +81,10 @@ static void test_neighbours(void** state)
   SILENT(call.options.field = MCOR_WEIGHT_SUM; call.iso[0] = 0.5);
   SILENT(call.input.estimate_smoothing_length = 1);
   SILENT(call.input.smoothing_length = twice; call.input.smoothing_length_is_support_radius = 1);
+  SILENT(call.options.sph_kernel = MCOR_WENDLAND_C6; call.input.smoothing_length = twice);
+  WARNED(MCOR_WARN_NEIGHBOURS, "quartic kernel, 60 to 200|1 to 1.7 times|Or the kernel is wendland",
+         call.options.sph_kernel = MCOR_QUARTIC_SPLINE;
+         call.input.smoothing_length = twice);
   WARNED(MCOR_WARN_NEIGHBOURS,
     "smoothing length is 2.6|30 to 100|cubic|support radius (there is an option",
     call.input.smoothing_length = twice);

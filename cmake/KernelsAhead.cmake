@@ -1,7 +1,9 @@
 # The kernels of the built-in device: mcor_ahead_sources are the object files, and the C file that lists
 # them (mcor_native_programs, see mcor_native.h): none where there is no clang.
 set(MCOR_AHEAD usual CACHE STRING
-  "Kernels compiled for the built-in device: usual, all (double precision, too), or OFF")
+  "Kernels compiled for the built-in device: usual, all (all SPH kernels, double precision, too), or OFF")
+# The usual SPH kernels. All of them would take the build minutes more.
+set(mcor_ahead_usual cubic quadratic mprime4 quintic wendland)
 set_property(CACHE MCOR_AHEAD PROPERTY STRINGS usual all OFF)
 find_program(MCOR_CLANG NAMES clang clang-19 clang-18 clang-17 clang-16 clang-15 clang-14 DOC "Compiles OpenCL kernels")
 mark_as_advanced(MCOR_CLANG)
@@ -74,11 +76,14 @@ macro (mcor_compile_variants instructions flags lanes double)
   mcor_compile_program(LATTICE ${mcor_ahead_name}_lattice ${instructions} "${flags}"
     "-DMCOR_PROGRAM=0 -DMCOR_LANES=${lanes} -DMCOR_DOUBLE=${double}")
   foreach (entry IN LISTS mcor_ahead_kernels)
-    string(REGEX MATCH "ENTRY\\([A-Z0-9_]+, ([a-z0-9]+), ([0-9]+), ([0-9.]+), ([01])\\)" ignored "${entry}")
+    string(REGEX MATCH "ENTRY\\([A-Z0-9_]+, ([a-z0-9_]+), ([0-9.]+), ([0-9.]+), ([01])\\)" ignored "${entry}")
     set(w ${CMAKE_MATCH_1})
     set(support ${CMAKE_MATCH_2})
     set(norm ${CMAKE_MATCH_3})
     set(tensor ${CMAKE_MATCH_4})
+    if (NOT mcor_ahead STREQUAL "all" AND NOT w IN_LIST mcor_ahead_usual)
+      continue ()
+    endif ()
     foreach (variant IN ITEMS 0.0 0.1 1.0 1.1 2.0 2.1) # field, solids
       string(REPLACE "." ";" variant "${variant}")
       list(GET variant 0 field)
@@ -87,7 +92,7 @@ macro (mcor_compile_variants instructions flags lanes double)
         list(FIND mcor_programs ${program} number)
         string(TOLOWER "${mcor_ahead_name}_${program}_${w}_${field}_${solids}" name)
         mcor_compile_program(${program} ${name} ${instructions} "${flags}"
-          "-DMCOR_PROGRAM=${number} -DMCOR_LANES=${lanes} -DMCOR_DOUBLE=${double} -DMCOR_W=mcor_w_${w} -DMCOR_DW=mcor_dw_${w} -DMCOR_DDW=mcor_ddw_${w} -DMCOR_NORM=${norm}${suffix} -DMCOR_SUPPORT=${support}.0${suffix} -DMCOR_TENSOR=${tensor} -DMCOR_FIELD=${field} -DMCOR_SOLIDS=${solids}")
+          "-DMCOR_PROGRAM=${number} -DMCOR_LANES=${lanes} -DMCOR_DOUBLE=${double} -DMCOR_W=mcor_w_${w} -DMCOR_DW=mcor_dw_${w} -DMCOR_DDW=mcor_ddw_${w} -DMCOR_NORM=${norm}${suffix} -DMCOR_SUPPORT=${support}${suffix} -DMCOR_TENSOR=${tensor} -DMCOR_FIELD=${field} -DMCOR_SOLIDS=${solids}")
       endforeach ()
     endforeach ()
   endforeach ()

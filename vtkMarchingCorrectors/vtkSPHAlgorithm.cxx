@@ -31,7 +31,11 @@ static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLI
     static_cast<int>(vtkSPHAlgorithm::M_PRIME_4) == MCOR_M_PRIME_4 &&
     static_cast<int>(vtkSPHAlgorithm::QUINTIC_SPLINE) == MCOR_QUINTIC_SPLINE &&
     static_cast<int>(vtkSPHAlgorithm::WENDLAND_C2) == MCOR_WENDLAND_C2 &&
-    static_cast<int>(vtkSPHAlgorithm::WENDLAND_C2) + 1 == MCOR_SPH_KERNEL_COUNT,
+    static_cast<int>(vtkSPHAlgorithm::QUARTIC_SPLINE) == MCOR_QUARTIC_SPLINE &&
+    static_cast<int>(vtkSPHAlgorithm::WENDLAND_C4) == MCOR_WENDLAND_C4 &&
+    static_cast<int>(vtkSPHAlgorithm::WENDLAND_C6) == MCOR_WENDLAND_C6 &&
+    static_cast<int>(vtkSPHAlgorithm::SINC_6) == MCOR_SINC_6 &&
+    static_cast<int>(vtkSPHAlgorithm::SINC_6) + 1 == MCOR_SPH_KERNEL_COUNT,
   "the filter's numbers are the core's");
 
 //------------------------------------------------------------------------------

@@ -76,7 +76,11 @@ public:
     QUADRATIC = 1,      ///< support radius 2 h
     M_PRIME_4 = 2,      ///< M'4 as a tensor product, support 2 h along each axis
     QUINTIC_SPLINE = 3, ///< M6, support radius 3 h
-    WENDLAND_C2 = 4     ///< support radius 2 h
+    WENDLAND_C2 = 4,    ///< support radius 2 h
+    QUARTIC_SPLINE = 5, ///< M5, support radius 2.5 h
+    WENDLAND_C4 = 6,    ///< support radius 2 h
+    WENDLAND_C6 = 7,    ///< support radius 2 h
+    SINC_6 = 8          ///< (sin x / x)^6, x = pi r / (2 h), support radius 2 h
   };
 
   ///@{
@@ -190,19 +194,24 @@ public:
   /**
    * The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation.
    */
-  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, WENDLAND_C2);
+  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
   vtkGetMacro(Kernel, int);
   void SetKernelToCubicSpline() { this->SetKernel(CUBIC_SPLINE); }
   void SetKernelToQuadratic() { this->SetKernel(QUADRATIC); }
   void SetKernelToMPrime4() { this->SetKernel(M_PRIME_4); }
   void SetKernelToQuinticSpline() { this->SetKernel(QUINTIC_SPLINE); }
   void SetKernelToWendlandC2() { this->SetKernel(WENDLAND_C2); }
+  void SetKernelToQuarticSpline() { this->SetKernel(QUARTIC_SPLINE); }
+  void SetKernelToWendlandC4() { this->SetKernel(WENDLAND_C4); }
+  void SetKernelToWendlandC6() { this->SetKernel(WENDLAND_C6); }
+  void SetKernelToSinc6() { this->SetKernel(SINC_6); }
   ///@}
 
   ///@{
   /**
-   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic" or "wendland". Returns false,
-   * and changes nothing, if there is no such kernel.
+   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic",
+   * "wendland_c4", "wendland_c6" or "sinc6". Returns false, and changes nothing, if there is no such
+   * kernel.
    */
   bool SetKernelByName(const char* name);
   const char* GetKernelName() const;

@@ -17,7 +17,7 @@ WORDS = {int: "whole number", float: "number"}
 # As the header spells them.
 OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"},
                "mcor_sph_kernel": {"cubic_spline": "cubic", "m_prime_4": "mprime4", "quintic_spline": "quintic",
-                                   "wendland_c2": "wendland"}}
+                                   "wendland_c2": "wendland", "quartic_spline": "quartic", "sinc_6": "sinc6"}}
 # Numbers with a word, as mcor.h defines them.
 SPECIAL = {("scalar_component", "magnitude"): -1, ("wall_share", "measured"): -1, ("wall_share", "auto"): -2}
 _double = ctypes.POINTER(ctypes.c_double)

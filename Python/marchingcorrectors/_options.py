@@ -16,7 +16,8 @@ Function = TypeVar("Function", bound=Callable)  # type checkers see it as it is 
 class Options(TypedDict, total=False):
     """Keywords of isosurface(); the other functions take those of them that matter there."""
 
-    sph_kernel: Literal["cubic", "quadratic", "mprime4", "quintic", "wendland"]
+    sph_kernel: Literal["cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic", "wendland_c4",
+                        "wendland_c6", "sinc6"]
     field: Literal["shepard", "sum", "weight_sum"]
     seeds: Literal["complete", "pairs"]
     topology: Literal["table", "field"]
@@ -59,7 +60,8 @@ class Options(TypedDict, total=False):
 
 WORDS = {
     "sph_kernel": "the SPH kernel of the simulation: the cubic spline M4, the quadratic kernel, M'4 as a product "
-                  "over the axes, the quintic spline M6, or Wendland C2.",
+                  "over the axes, the quintic spline M6, Wendland C2, the quartic spline M5, Wendland C4 or C6, or "
+                  "the sixth power of the sinc, SPH-EXA's.",
     "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
     "seeds": "where the surface is looked for: everywhere, so that no part of it is missed, or between pairs of "

@@ -652,11 +652,13 @@ class Options(CommandLineTest):
 
     def test_kernels(self):
         counts = set()
-        for kernel in ("cubic", "quadratic", "mprime4", "quintic", "wendland"):
+        kernels = ("cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic", "wendland_c4", "wendland_c6",
+                   "sinc6")
+        for kernel in kernels:
             found = self.succeed(*ISO, "--kernel", kernel)
             self.assertEqual(found["parameters"]["kernel"], kernel)
             counts.add(found["statistics"]["correction_mean"])
-        self.assertEqual(len(counts), 5)
+        self.assertEqual(len(counts), len(kernels))
 
     def test_method_options(self):
         for arguments, name, value in [

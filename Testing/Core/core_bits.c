@@ -44,6 +44,14 @@ static const bits_case cases[] = {
     MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
   { "double eigenvalue", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
     MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
+  { "sinc6 eigenvalue", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
+  { "sinc6 double", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
+  { "quartic", MCOR_QUARTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
+  { "wendland_c6 eigenvalue", MCOR_WENDLAND_C6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
   { "topology", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.1, MCOR_TOPOLOGY_FIELD, 0, 0 },
   { "wall", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
@@ -111,8 +119,9 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   const int resolved = statistics->joined_faces > 0 && statistics->ambiguous_cells > 0;
   /* Not in a second attempt, with the driver's declarations. */
   const int built_at_once = context->cl.declares_builtins == mcor_is_pocl(&context->cl);
-  /* Without a driver, the built-in device may lack double precision. */
-  const int left_out = status == MCOR_DEVICE_ERROR && at->precision == MCOR_FLOAT64;
+  /* Without a driver, the built-in device may lack double precision and SPH kernels. */
+  const int left_out =
+    status == MCOR_DEVICE_ERROR && (at->precision == MCOR_FLOAT64 || at->kernel > MCOR_WENDLAND_C2);
   const int good = left_out ||
     (status == MCOR_OK && surface.triangle_count > 0 && built_at_once &&
       (trimmed || !(eigenvalue || at->wall_share > 0)) && (resolved || !noise));

@@ -147,7 +147,9 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   const unsigned what = fuzz_byte(bytes), modes = fuzz_byte(bytes);
   mcor_set_default_options(o);
   /* Few combinations, as each is a device program of its own. */
-  o->sph_kernel = (mcor_sph_kernel)(modes % 16 == 15 ? 7 : modes % 16 > 11 ? MCOR_M_PRIME_4 : 0);
+  o->sph_kernel = (mcor_sph_kernel)(modes % 16 == 15 ? MCOR_SPH_KERNEL_COUNT
+      : modes % 16 > 11                              ? MCOR_M_PRIME_4
+                                                     : 0);
   o->field = (mcor_field)(modes / 16 == 15 ? 3 : modes / 16 % 3);
   o->seeds = (mcor_seed_mode)(what & 1);
   o->preview = (what & 0x0e) == 2;

@@ -8,7 +8,7 @@
 
 double oracle_support(oracle_kernel kernel)
 {
-  return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : 2.0;
+  return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : kernel == ORACLE_QUARTIC_SPLINE ? 2.5 : 2.0;
 }
 
 /* Monaghan's M4 without the factor 1/h^3, and its derivative in q. */
@@ -52,6 +52,57 @@ static double oracle_wendland(double q, double* slope)
   const double u = 1.0 - 0.5 * q;
   *slope = 21.0 / (16.0 * ORACLE_PI) * (2.0 * pow(u, 4.0) - 2.0 * pow(u, 3.0) * (2.0 * q + 1.0));
   return 21.0 / (16.0 * ORACLE_PI) * pow(u, 4.0) * (2.0 * q + 1.0);
+}
+
+static double oracle_quartic(double q, double* slope)
+{
+  static const double factor[3] = { 1.0, -5.0, 10.0 };
+  double value = 0.0;
+  *slope = 0.0;
+  for (int term = 0; term < 3; ++term)
+  {
+    const double u = 2.5 - term - q;
+    if (u > 0.0)
+    {
+      value += factor[term] * pow(u, 4.0);
+      *slope -= 4.0 * factor[term] * pow(u, 3.0);
+    }
+  }
+  *slope /= 20.0 * ORACLE_PI;
+  return value / (20.0 * ORACLE_PI);
+}
+
+/* As Dehnen and Aly (2012) write them, of u = r / support radius; the product rule for the slopes. */
+static double oracle_wendland_c4(double q, double* slope)
+{
+  const double u = q / 2.0, norm = 495.0 / (32.0 * ORACLE_PI) / 8.0;
+  const double poly = 1.0 + 6.0 * u + 35.0 / 3.0 * u * u;
+  *slope =
+    norm / 2.0 * (pow(1.0 - u, 6.0) * (6.0 + 70.0 / 3.0 * u) - 6.0 * pow(1.0 - u, 5.0) * poly);
+  return norm * pow(1.0 - u, 6.0) * poly;
+}
+
+static double oracle_wendland_c6(double q, double* slope)
+{
+  const double u = q / 2.0, norm = 1365.0 / (64.0 * ORACLE_PI) / 8.0;
+  const double poly = 1.0 + 8.0 * u + 25.0 * u * u + 32.0 * u * u * u;
+  *slope = norm / 2.0 *
+    (pow(1.0 - u, 8.0) * (8.0 + 50.0 * u + 96.0 * u * u) - 8.0 * pow(1.0 - u, 7.0) * poly);
+  return norm * pow(1.0 - u, 8.0) * poly;
+}
+
+/* With the norm of an integral that was computed to 25 digits. */
+static double oracle_sinc_6(double q, double* slope)
+{
+  const double norm = 0.790449589432302897356679, x = 0.5 * ORACLE_PI * q;
+  if (x == 0.0)
+  {
+    *slope = 0.0;
+    return norm;
+  }
+  const double s = sin(x) / x;
+  *slope = norm * 6.0 * pow(s, 5.0) * 0.5 * ORACLE_PI * (cos(x) - s) / x;
+  return norm * pow(s, 6.0);
 }
 
 /* One axis of M'4: m(u) and the derivative in u, u = |dx| / h < 2. */
@@ -118,6 +169,18 @@ double oracle_kernel_value(
       break;
     case ORACLE_WENDLAND_C2:
       value = oracle_wendland(q, &slope);
+      break;
+    case ORACLE_QUARTIC_SPLINE:
+      value = oracle_quartic(q, &slope);
+      break;
+    case ORACLE_WENDLAND_C4:
+      value = oracle_wendland_c4(q, &slope);
+      break;
+    case ORACLE_WENDLAND_C6:
+      value = oracle_wendland_c6(q, &slope);
+      break;
+    case ORACLE_SINC_6:
+      value = oracle_sinc_6(q, &slope);
       break;
     default:
       value = oracle_cubic(q, &slope);

@@ -51,22 +51,8 @@ static int reference_is_given(const mcor_array* array)
   return array->data != NULL || array->constant != 0.0;
 }
 
-static oracle_kernel reference_kernel(mcor_sph_kernel kernel)
-{
-  switch (kernel)
-  {
-    case MCOR_QUADRATIC:
-      return ORACLE_QUADRATIC;
-    case MCOR_M_PRIME_4:
-      return ORACLE_M_PRIME_4;
-    case MCOR_QUINTIC_SPLINE:
-      return ORACLE_QUINTIC_SPLINE;
-    case MCOR_WENDLAND_C2:
-      return ORACLE_WENDLAND_C2;
-    default:
-      return ORACLE_CUBIC_SPLINE;
-  }
-}
+_Static_assert(
+  (int)ORACLE_KERNEL_COUNT == (int)MCOR_SPH_KERNEL_COUNT, "kernels in the core's order");
 
 static oracle_kind reference_kind(mcor_field field)
 {
@@ -133,7 +119,7 @@ static int reference_images(oracle_particles* particles, const mcor_options* opt
 static int reference_particles(
   oracle_particles* particles, const mcor_input* input, const mcor_options* options)
 {
-  const oracle_kernel kernel = reference_kernel(options->sph_kernel);
+  const oracle_kernel kernel = (oracle_kernel)options->sph_kernel;
   if (!oracle_create_particles(particles, input->count))
   {
     return 0;
@@ -241,7 +227,7 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
   reference->limits.least_at_vertices = options->sph_kernel == MCOR_M_PRIME_4 ? 0.05 : 1e-3;
   if (!reference_particles(&reference->particles, input, options) ||
     !oracle_create_field(&reference->field, &reference->particles,
-      reference_kernel(options->sph_kernel), reference_kind(options->field), options->h_scale))
+      (oracle_kernel)options->sph_kernel, reference_kind(options->field), options->h_scale))
   {
     snprintf(message, 256, "out of memory for the particles");
     oracle_free_reference(reference);

@@ -13,7 +13,7 @@
 #include <string.h>
 
 static const char* const kernel_names[ORACLE_KERNEL_COUNT] = { "cubic", "quadratic", "M'4",
-  "quintic", "Wendland" };
+  "quintic", "Wendland C2", "quartic", "Wendland C4", "Wendland C6", "sinc^6" };
 
 /* ---- kernels -------------------------------------------------------------------------------- */
 
@@ -76,9 +76,12 @@ static void test_kernel_values(void)
   const double zero[3] = { 0.0, 0.0, 0.0 };
   const double one[3] = { 2.0, 0.0, 0.0 };
   const double peak[ORACLE_KERNEL_COUNT] = { 1.0 / pi, 15.0 / (16.0 * pi), 1.0, 66.0 / (120.0 * pi),
-    21.0 / (16.0 * pi) };
+    21.0 / (16.0 * pi), 230.0 / (320.0 * pi), 495.0 / (256.0 * pi), 1365.0 / (512.0 * pi),
+    0.7904495894323029 };
   const double at_h[ORACLE_KERNEL_COUNT] = { 0.25 / pi, 15.0 / (64.0 * pi), 0.0,
-    26.0 / (120.0 * pi), 63.0 / (256.0 * pi) };
+    26.0 / (120.0 * pi), 63.0 / (256.0 * pi), 4.75 / (20.0 * pi),
+    495.0 / (256.0 * pi) * 83.0 / 768.0, 1365.0 / (512.0 * pi) * 61.0 / 1024.0,
+    0.7904495894323029 * pow(2.0 / pi, 6.0) };
   for (int kernel = 0; kernel < ORACLE_KERNEL_COUNT; ++kernel)
   {
     const double w0 = oracle_kernel_value((oracle_kernel)kernel, 2.0, zero, NULL);

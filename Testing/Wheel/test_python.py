@@ -99,6 +99,9 @@ class Signatures(unittest.TestCase):
             sphere(sph_kernel="wendlnd")
         for word in ("wendland_c2", "Wendland C2", "WENDLAND"):
             self.assertEqual(sphere(sph_kernel=word), sphere(sph_kernel="wendland"))
+        for word, same in (("Wendland C4", "wendland_c4"), ("sinc_6", "sinc6"), ("quartic spline", "quartic")):
+            self.assertEqual(sphere(sph_kernel=word), sphere(sph_kernel=same))
+            self.assertNotEqual(sphere(sph_kernel=word), sphere())
 
     def test_values_that_cannot_be(self):
         for name in ("smoothing_length", "volume", "mass", "density"):

@@ -61,6 +61,10 @@ extern "C"
     MCOR_M_PRIME_4 = 2,      /* tensor product of 1-D M'4, support 2 along each axis (a cube) */
     MCOR_QUINTIC_SPLINE = 3, /* M6, support radius 3 */
     MCOR_WENDLAND_C2 = 4,    /* support radius 2 */
+    MCOR_QUARTIC_SPLINE = 5, /* M5, support radius 2.5 */
+    MCOR_WENDLAND_C4 = 6,    /* support radius 2 */
+    MCOR_WENDLAND_C6 = 7,    /* support radius 2 */
+    MCOR_SINC_6 = 8,         /* (sin x / x)^6, x = pi q / 2, support radius 2 */
     MCOR_SPH_KERNEL_COUNT
   } mcor_sph_kernel;
 
@@ -424,8 +428,8 @@ extern "C"
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
 
-  /* Kernel by its command-line name ("cubic", "quadratic", "mprime4", "quintic", "wendland") and
-   * back; -1 or NULL where there is none. */
+  /* Kernel by its command-line name ("cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic",
+   * "wendland_c4", "wendland_c6", "sinc6") and back; -1 or NULL where there is none. */
   int mcor_find_sph_kernel(const char* name);
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */

@@ -79,7 +79,9 @@ void SetKernel(Job& job, Text option, Text text)
   const int kernel = ToChoice(option, text,
     { { "cubic", Filter::CUBIC_SPLINE }, { "quadratic", Filter::QUADRATIC },
       { "mprime4", Filter::M_PRIME_4 }, { "quintic", Filter::QUINTIC_SPLINE },
-      { "wendland", Filter::WENDLAND_C2 } });
+      { "wendland", Filter::WENDLAND_C2 }, { "quartic", Filter::QUARTIC_SPLINE },
+      { "wendland_c4", Filter::WENDLAND_C4 }, { "wendland_c6", Filter::WENDLAND_C6 },
+      { "sinc6", Filter::SINC_6 } });
   SetAll(job, &vtkSPHAlgorithm::SetKernel, kernel);
 }
 
@@ -200,7 +202,10 @@ const Options TheParticles = {
 
 const Options TheMethod = {
   { "", "", "The method", {} },
-  { "--kernel", "NAME", "cubic (default), quadratic, mprime4, quintic or wendland", SetKernel },
+  { "--kernel", "NAME",
+    "cubic (default), quadratic, mprime4, quintic, wendland, quartic, wendland_c4,\n"
+    "wendland_c6 or sinc6",
+    SetKernel },
   { "--h-scale", "S", "the kernel uses S times the smoothing length (default 1)",
     [](Job& j, Text n, Text v)
     { SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v)); } },

@@ -250,7 +250,9 @@ static void test_bound(void** state)
     { MCOR_QUADRATIC, MCOR_SHEPARD, 0 }, { MCOR_M_PRIME_4, MCOR_SHEPARD, 0 },
     { MCOR_M_PRIME_4, MCOR_SHEPARD, 1 }, { MCOR_M_PRIME_4, MCOR_SUM, 0 },
     { MCOR_M_PRIME_4, MCOR_WEIGHT_SUM, 0 }, { MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, 0 },
-    { MCOR_WENDLAND_C2, MCOR_SHEPARD, 0 } };
+    { MCOR_WENDLAND_C2, MCOR_SHEPARD, 0 }, { MCOR_QUARTIC_SPLINE, MCOR_SHEPARD, 0 },
+    { MCOR_WENDLAND_C4, MCOR_SUM, 0 }, { MCOR_WENDLAND_C6, MCOR_WEIGHT_SUM, 0 },
+    { MCOR_SINC_6, MCOR_SHEPARD, 0 }, { MCOR_SINC_6, MCOR_WEIGHT_SUM, 0 } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
     /* Few particles, which a fault in the bound of one shows; many, of mixed sizes; one. */

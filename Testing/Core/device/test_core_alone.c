@@ -7,18 +7,56 @@
 
 #include <stdlib.h>
 
-static mcor_status extract(mcor_context* context, uint64_t* hash)
+#include <string.h>
+
+static mcor_status extract_with(
+  mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, uint64_t* hash)
 {
   core_set set = core_make_block(7, 0.3, 3, core_ball);
   const double iso = 2;
   const mcor_input input = core_input(&set);
-  const mcor_options options = core_options(&iso);
+  mcor_options options = core_options(&iso);
+  options.sph_kernel = kernel;
+  options.precision = precision;
   mcor_surface surface = { 0 };
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   *hash = core_hash(&surface);
   mcor_free_surface(&surface);
   core_free_set(&set);
   return status;
+}
+
+static mcor_status extract(mcor_context* context, uint64_t* hash)
+{
+  return extract_with(context, MCOR_CUBIC_SPLINE, MCOR_FLOAT32, hash);
+}
+
+/* What was not compiled with the library is named, with the way out. */
+static void test_names_what_is_missing(void** state)
+{
+  (void)state;
+  static const struct
+  {
+    mcor_sph_kernel kernel;
+    mcor_type precision;
+    const char *words, *others;
+  } cases[] = { { MCOR_SINC_6, MCOR_FLOAT32, "SPH kernel sinc6: they were not compiled", "single" },
+    { MCOR_QUARTIC_SPLINE, MCOR_FLOAT64, "SPH kernel quartic in double precision:", "single" },
+    { MCOR_CUBIC_SPLINE, MCOR_FLOAT64, "library. Use single precision, install an", "Install" } };
+  mcor_context* context = NULL;
+  CORE_OK(context, mcor_create_context(NULL, &context));
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
+  {
+    uint64_t hash;
+    const mcor_status status = extract_with(context, cases[c].kernel, cases[c].precision, &hash);
+    assert_int_equal(status, CORE_AHEAD_ALL ? MCOR_OK : MCOR_DEVICE_ERROR);
+    const char* text = mcor_last_error(context);
+    CORE_CHECK(CORE_AHEAD_ALL ||
+        (strstr(text, cases[c].words) && strstr(text, "MCOR_AHEAD=all") &&
+          !strstr(text, cases[c].others)),
+      "%s", text);
+  }
+  mcor_free_context(context);
 }
 
 /* A call for what no device can do fails, and the next ones are as if it had not been. */
@@ -43,6 +81,7 @@ static void test_goes_on(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_goes_on) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_goes_on),
+    cmocka_unit_test(test_names_what_is_missing) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

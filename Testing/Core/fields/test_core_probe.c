@@ -112,7 +112,8 @@ static void test_against_oracle(void** state)
   const probe_case cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 3e-6 },
     { MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32, 100, 3e-6 },
     { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 1e5, 3e-6 },
-    { MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, -3, 1e-11 } };
+    { MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, -3, 1e-11 },
+    { MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT64, -3, 1e-11 } };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     probe_case_run(*state, cases + i);

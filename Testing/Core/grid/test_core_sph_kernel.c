@@ -142,6 +142,49 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
   free(w);
 }
 
+/* In single precision, whose formulas are others here and there: within 1.5e-6 of the greatest W, and of
+ * its steepest slope, and nearer the support radius within 1e-5 of W itself. */
+static void check_single(mcor_context* context, mcor_sph_kernel kernel)
+{
+  enum
+  {
+    N = 3000
+  };
+  const double support = mcor_support_factor(kernel), zero[3] = { 0, 0, 0 };
+  float offset[3 * N] = { 0 }, found[5 * N];
+  for (int i = 0; i < N; ++i)
+  {
+    offset[3 * i + i % 3] = (float)(support * (i + 0.5) / N);
+  }
+  mcor_buffer in = { 0 }, out = { 0 };
+  core_build(context, kernel, MCOR_SHEPARD, MCOR_FLOAT32);
+  core_extend_program(context, source);
+  CORE_OK(context, mcor_write(context, &in, offset, sizeof offset));
+  CORE_OK(context, mcor_reserve(context, &out, sizeof found));
+  CORE_OK(context,
+    MCOR_LAUNCH(context, "test_kernel", MCOR_LIGHT, N, MCOR_INT(N), MCOR_REAL(1), MCOR_BUFFER(&in),
+      MCOR_BUFFER(&out)));
+  CORE_OK(context, mcor_read(context, &out, 0, found, sizeof found));
+  const double greatest = oracle_kernel_value((oracle_kernel)kernel, 1, zero, NULL);
+  double error = 0, share = 0, slope = 0, steepest = 0;
+  for (int i = 0; i < N; ++i)
+  {
+    const double at[3] = { offset[3 * i], offset[3 * i + 1], offset[3 * i + 2] };
+    double gradient[3];
+    const double w = oracle_kernel_value((oracle_kernel)kernel, 1, at, gradient);
+    error = fmax(error, fabs((double)found[5 * i] - w) / greatest);
+    share = fmax(share, i < 0.95 * N && fabs(w) > 1e-6 ? fabs((double)found[5 * i] / w - 1) : 0);
+    slope = fmax(slope, fabs((double)found[5 * i + 2 + i % 3] - gradient[i % 3]));
+    steepest = fmax(steepest, fabs(gradient[i % 3]));
+  }
+  CORE_CHECK(
+    error < 1.5e-6 && slope < 3e-6 * steepest && (share < 3e-5 || kernel == MCOR_M_PRIME_4),
+    "kernel %s: W off by %.3g of the greatest, %.3g of itself; slope by %.3g of the steepest",
+    mcor_sph_kernel_name(kernel), error, share, slope / steepest);
+  mcor_release(context, &in);
+  mcor_release(context, &out);
+}
+
 static void test_kernels(void** state)
 {
   for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
@@ -149,13 +192,16 @@ static void test_kernels(void** state)
     check_integral(*state, (mcor_sph_kernel)k);
     check_values(*state, (mcor_sph_kernel)k);
     check_support(*state, (mcor_sph_kernel)k);
+    check_single(*state, (mcor_sph_kernel)k);
   }
 }
 
 static void test_names(void** state)
 {
   (void)state;
-  static const char* const names[] = { "cubic", "quadratic", "mprime4", "quintic", "wendland" };
+  static const char* const names[] = { "cubic", "quadratic", "mprime4", "quintic", "wendland",
+    "quartic", "wendland_c4", "wendland_c6", "sinc6" };
+  assert_int_equal(sizeof names / sizeof names[0], MCOR_SPH_KERNEL_COUNT);
   for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
   {
     assert_int_equal(mcor_find_sph_kernel(names[k]), k);

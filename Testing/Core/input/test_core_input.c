@@ -84,7 +84,8 @@ static void expect_good(mcor_context* context)
 
 static void test_enumerations(void** state)
 {
-  ARGUMENT("SPH kernel|5", call.options.sph_kernel = (mcor_sph_kernel)5);
+  ARGUMENT("SPH kernel|99", call.options.sph_kernel = (mcor_sph_kernel)99);
+  ARGUMENT("SPH kernel", call.options.sph_kernel = MCOR_SPH_KERNEL_COUNT);
   ARGUMENT("SPH kernel|-1", call.options.sph_kernel = (mcor_sph_kernel)-1);
   ARGUMENT("field|3", call.options.field = (mcor_field)3);
   ARGUMENT("seed mode|2", call.options.seeds = (mcor_seed_mode)2);

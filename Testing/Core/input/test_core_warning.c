@@ -71,7 +71,7 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
   } while (0)
 
 static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
-                        far_off = { .constant = 0.0013 };
+                        wide = { .constant = 2.1 }, far_off = { .constant = 0.0013 };
 
 static void test_neighbours(void** state)
 {
@@ -82,6 +82,10 @@ static void test_neighbours(void** state)
   SILENT(call.options.field = MCOR_WEIGHT_SUM; call.iso[0] = 0.5);
   SILENT(call.input.estimate_smoothing_length = 1);
   SILENT(call.input.smoothing_length = twice; call.input.smoothing_length_is_support_radius = 1);
+  SILENT(call.options.sph_kernel = MCOR_WENDLAND_C6; call.input.smoothing_length = wide);
+  WARNED(MCOR_WARN_NEIGHBOURS, "quartic kernel, 60 to 200|1 to 1.7 times|Or the kernel is wendland",
+         call.options.sph_kernel = MCOR_QUARTIC_SPLINE;
+         call.input.smoothing_length = wide);
   WARNED(MCOR_WARN_NEIGHBOURS,
     "smoothing length is 2.6|30 to 100|cubic|support radius (there is an option",
     call.input.smoothing_length = twice);

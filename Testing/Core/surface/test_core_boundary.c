@@ -352,7 +352,9 @@ static const trim_case trim_cases[] = { { .threshold = 0.3 }, { .threshold = 0.7
   { .threshold = 0.3, .solids = 1 }, { .threshold = 0.3, .solids = 1, .ignore_solids = 1 },
   { .threshold = 0.3, .field = MCOR_SUM }, { .threshold = 0.3, .preview = 1 },
   { .threshold = 0.3, .precision = MCOR_FLOAT64 }, { .threshold = 0.3, .kernel = MCOR_M_PRIME_4 },
-  { .threshold = 0.3, .kernel = MCOR_QUINTIC_SPLINE, .precision = MCOR_FLOAT64 } };
+  { .threshold = 0.3, .kernel = MCOR_QUINTIC_SPLINE, .precision = MCOR_FLOAT64 },
+  { .threshold = 0.5, .kernel = MCOR_SINC_6 },
+  { .threshold = 0.5, .kernel = MCOR_WENDLAND_C6, .precision = MCOR_FLOAT64 } };
 
 typedef struct trim_count
 {

@@ -291,16 +291,22 @@ static mcor_status mcor_start_device(
   return mcor_write(context, &context->case_table, table, sizeof table);
 }
 
-static mcor_status mcor_fail_without_device(mcor_context* context, const mcor_device_list* list)
+static mcor_status mcor_fail_without_device(
+  mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {
   const mcor_build usual = { 0 };
+  mcor_build single = *build;
+  single.precision = MCOR_FLOAT32;
+  char missing[MCOR_BUILD_NAME];
+  mcor_name_build(build, missing, sizeof missing);
   char fault[1200];
   MCOR_RETURN_IF(mcor_pocl_folder_fault(fault, sizeof fault), context, MCOR_DEVICE_ERROR,
     "No OpenCL device was found. If PoCL is installed: %s", fault);
   MCOR_RETURN_IF(mcor_choose_device(list, &usual) >= 0, context, MCOR_DEVICE_ERROR,
-    "The built-in device has no kernels for double precision: they were not compiled with this "
-    "library. Use single precision, install an OpenCL driver (PoCL, Debian package "
-    "pocl-opencl-icd, runs on the CPU), or build with MCOR_AHEAD=all.");
+    "The built-in device has no kernels for %s: they were not compiled with this library. %s "
+    "an OpenCL driver (PoCL, Debian package pocl-opencl-icd, runs on the CPU), or build with "
+    "MCOR_AHEAD=all.",
+    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install");
   return mcor_fail(context, MCOR_DEVICE_ERROR,
     "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
     "runs on the CPU.");
@@ -315,7 +321,7 @@ static mcor_status mcor_start_default(
   const int best = mcor_choose_device(list, &usual), chosen = mcor_choose_device(list, build);
   if (chosen < 0)
   {
-    return mcor_fail_without_device(context, list);
+    return mcor_fail_without_device(context, list, build);
   }
   int place = cl->place, count = cl->count;
   cl->is_replaced = chosen != best;
@@ -388,7 +394,7 @@ mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* buil
   mcor_find_devices(&list);
   const int chosen = mcor_choose_device(&list, build);
   *other = chosen >= 0 && !(is_open && list.platforms[chosen] == cl->platform);
-  return chosen < 0 ? mcor_fail_without_device(context, &list) : MCOR_OK;
+  return chosen < 0 ? mcor_fail_without_device(context, &list, build) : MCOR_OK;
 }
 
 mcor_status mcor_change_device(mcor_context* context, const mcor_build* build)

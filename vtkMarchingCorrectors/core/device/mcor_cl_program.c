@@ -58,10 +58,12 @@ static mcor_status mcor_fail_build(
   mcor_context* context, cl_program program, cl_int error, const char* options)
 {
   const mcor_cl* cl = &context->cl;
+  char missing[MCOR_BUILD_NAME];
+  mcor_name_build(&cl->build, missing, sizeof missing);
   MCOR_RETURN_IF(cl->platform == mcor_native_platform(), context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
     "another device, or build with MCOR_AHEAD=all.",
-    cl->build.precision == MCOR_FLOAT64 ? "double precision" : "these options");
+    missing);
   size_t size = 0;
   clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
   char* log = calloc(size + 1, 1);

@@ -36,13 +36,20 @@ bool mcor_program_may_have(mcor_program program, const char* kernel)
                                          : !is_probe && !is_adaptive;
 }
 
+void mcor_name_build(const mcor_build* build, char* text, size_t size)
+{
+  const bool is_double = build->precision == MCOR_FLOAT64;
+  const char* kernel = mcor_sph_kernel_name(build->sph_kernel);
+  snprintf(text, size, "the SPH kernel %s%s", kernel, is_double ? " in double precision" : "");
+}
+
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size)
 {
-#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, #norm, support, tensor },
+#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, #norm, #support, tensor },
   static const struct
   {
-    const char *name, *norm;
-    int support, tensor;
+    const char *name, *norm, *support;
+    int tensor;
   } kernels[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
   const mcor_build* build = &cl->build;
@@ -60,7 +67,7 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   }
   snprintf(text + length, size - (size_t)length,
     " -DMCOR_LANES=%d -DMCOR_DOUBLE=%d -DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s "
-    "-DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%d.0%s -DMCOR_TENSOR=%d "
+    "-DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%s%s -DMCOR_TENSOR=%d "
     "-DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
     cl->lanes, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm, f,
     kernels[k].support, f, kernels[k].tensor, (int)build->field, build->solids);

@@ -3,20 +3,28 @@
 #ifndef mcor_sph_kernel_h
 #define mcor_sph_kernel_h
 
-/* The SPH smoothing kernels. This file is both included by the C core and compiled as OpenCL C: it
- * is the one place to change when a kernel is added (besides its name in mcor_sph_kernel, mcor.h).
+/* The SPH smoothing kernels, for the C core and, as OpenCL C, for devices: a row of the table and three
+ * functions each. CONTRIBUTING.md tells where else a kernel has its name.
  *
- * A kernel is W = norm / h^3 * w(q), q = r / h, with w written in truncated powers so that one
- * branch-free expression holds for all q >= 0, 0 beyond the support. A tensor kernel is
- * W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h). */
+ * A kernel is W = norm / h^3 * w(q), q = r / h, with w written so that one branch-free expression holds
+ * for all q >= 0, 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h).
+ * All others must be positive and fall with q, for bounds rely on that, and may be off by 96 units of
+ * rounding of themselves at most (mcor_bound.cl). Only operations that each device rounds alike: no sine, no
+ * power, no exponential. */
 
-/* ENTRY(enumerator, name, support / h, norm, is a tensor product) */
+/* ENTRY(enumerator, name, support / h, norm, is a tensor product), in the order of mcor_sph_kernel.
+ * In two dimensions W = c h norm / h^3 * w(q) has the integral 1, with c = 10/7, 8/5, 1 (of two factors),
+ * 420/239, 4/3, 1920/1199, 64/55, 256/245 and 1.0635845764083532547 (0.8407099917485126203 / norm). */
 #define MCOR_SPH_KERNEL_TABLE(ENTRY)                                                               \
-  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2, 0.31830988618379067154, 0)  /* 1 / pi */                      \
-  ENTRY(MCOR_QUADRATIC, quadratic, 2, 0.07460387957432593864, 0) /* 15 / (64 pi) */                \
-  ENTRY(MCOR_M_PRIME_4, mprime4, 2, 1.0, 1)                                                        \
-  ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3, 0.00265258238486492226, 0) /* 1 / (120 pi) */             \
-  ENTRY(MCOR_WENDLAND_C2, wendland, 2, 0.41778172561622525639, 0)   /* 21 / (16 pi) */
+  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2.0, 0.31830988618379067154, 0)  /* 1 / pi */                    \
+  ENTRY(MCOR_QUADRATIC, quadratic, 2.0, 0.07460387957432593864, 0) /* 15 / (64 pi) */              \
+  ENTRY(MCOR_M_PRIME_4, mprime4, 2.0, 1.0, 1)                                                      \
+  ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3.0, 0.00265258238486492226, 0)  /* 1 / (120 pi) */          \
+  ENTRY(MCOR_WENDLAND_C2, wendland, 2.0, 0.41778172561622525639, 0)    /* 21 / (16 pi) */          \
+  ENTRY(MCOR_QUARTIC_SPLINE, quartic, 2.5, 0.01591549430918953358, 0)  /* 1 / (20 pi) */           \
+  ENTRY(MCOR_WENDLAND_C4, wendland_c4, 2.0, 0.61548200648818899379, 0) /* 495 / (256 pi) */        \
+  ENTRY(MCOR_WENDLAND_C6, wendland_c6, 2.0, 0.84861913015795755205, 0) /* 1365 / (512 pi) */       \
+  ENTRY(MCOR_SINC_6, sinc6, 2.0, 0.79044958943230289736, 0)
 
 #ifdef MCOR_W_ON_HOST
 #include <math.h>
@@ -128,6 +136,136 @@ MCOR_OF_Q mcor_ddw_wendland(realv q)
 {
   const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0);
   return (real)2.5 * a * a * ((real)3 * q - (real)2 * a);
+}
+
+MCOR_OF_Q mcor_w_quartic(realv q)
+{
+  const realv a = fmax((real)2.5 - q, (realv)0), b = fmax((real)1.5 - q, (realv)0),
+              c = fmax((real)0.5 - q, (realv)0);
+  const realv a2 = a * a, b2 = b * b, c2 = c * c;
+  return MCOR_FMA((real)10 * c2, c2, MCOR_FMA((real)-5 * b2, b2, a2 * a2));
+}
+
+MCOR_OF_Q mcor_dw_quartic(realv q)
+{
+  const realv a = fmax((real)2.5 - q, (realv)0), b = fmax((real)1.5 - q, (realv)0),
+              c = fmax((real)0.5 - q, (realv)0);
+  return (real)-4 * MCOR_FMA((real)10 * c * c, c, MCOR_FMA((real)-5 * b * b, b, a * a * a));
+}
+
+MCOR_OF_Q mcor_ddw_quartic(realv q)
+{
+  const realv a = fmax((real)2.5 - q, (realv)0), b = fmax((real)1.5 - q, (realv)0),
+              c = fmax((real)0.5 - q, (realv)0);
+  return (real)12 * MCOR_FMA((real)10 * c, c, MCOR_FMA((real)-5 * b, b, a * a));
+}
+
+MCOR_OF_Q mcor_w_wendland_c4(realv q)
+{
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a;
+  return a2 * a2 * a2 *
+    MCOR_FMA(q, MCOR_FMA((real)2.9166666666666667, q, (real)3), (real)1); /* 35 / 12 */
+}
+
+MCOR_OF_Q mcor_dw_wendland_c4(realv q)
+{
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a;
+  return (real)-4.6666666666666667 * q * a2 * a2 * a * MCOR_FMA((real)2.5, q, (real)1); /* 14/3 */
+}
+
+MCOR_OF_Q mcor_ddw_wendland_c4(realv q)
+{
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a;
+  return (real)-4.6666666666666667 * a2 * a2 *
+    MCOR_FMA(q, MCOR_FMA((real)-8.75, q, (real)2), (real)1);
+}
+
+MCOR_OF_Q mcor_w_wendland_c6(realv q)
+{
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a, a4 = a2 * a2;
+  return a4 * a4 * MCOR_FMA(q, MCOR_FMA(q, MCOR_FMA((real)4, q, (real)6.25), (real)4), (real)1);
+}
+
+MCOR_OF_Q mcor_dw_wendland_c6(realv q)
+{
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a, a4 = a2 * a2;
+  return (real)-5.5 * q * (a4 * a2 * a) * MCOR_FMA(q, MCOR_FMA((real)4, q, (real)3.5), (real)1);
+}
+
+MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
+{
+  const realv a = fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0), a2 = a * a;
+  return (real)-5.5 * (a2 * a2 * a2) *
+    MCOR_FMA(q, MCOR_FMA(q, MCOR_FMA((real)-20, q, (real)-3.75), (real)3), (real)1);
+}
+
+/* w = s^6 with s = sin(x) / x, x = pi q / 2. As s is even and 0 at q = 2, s = t p(t) with t = 1 - q^2 / 4
+ * and p(0) = 1/2, p'(0) = 3/8, where p is so smooth that a polynomial does: no two devices' sines have the same
+ * bits. Other coefficients are fitted to s / t from t = 0 to 1, for the least relative error, after those
+ * before were rounded. Of w that is below 5e-10 in single precision and 1e-16 in double; of the slopes,
+ * which are those of this polynomial, 3e-9 and 1e-15. Rounding leaves w within 1.5e-6 and 3e-15 of itself,
+ * that of the quintic spline alike. FIRST has the last two coefficients. */
+#if defined(MCOR_W_ON_HOST) || MCOR_DOUBLE
+#define MCOR_SINC(FIRST, NEXT)                                                                     \
+  FIRST(1.518996494692584e-10, 5.733052293908227e-09)                                              \
+  NEXT(1.946080165689168e-07)                                                                      \
+  NEXT(5.194313757397573e-06)                                                                      \
+  NEXT(0.00010610604804013208)                                                                     \
+  NEXT(0.0015887054461093402)                                                                      \
+  NEXT(0.01641655205516161)                                                                        \
+  NEXT(0.106883241643963)                                                                          \
+  NEXT(0.375)                                                                                      \
+  NEXT(0.5)
+#else
+#define MCOR_SINC(FIRST, NEXT)                                                                     \
+  FIRST(5.836395e-06f, 0.00010533832f)                                                             \
+  NEXT(0.001589126f)                                                                               \
+  NEXT(0.01641645f)                                                                                \
+  NEXT(0.10688325f)                                                                                \
+  NEXT(0.375f)                                                                                     \
+  NEXT(0.5f)
+#endif
+
+#define MCOR_SINC_A(q) fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0)
+#define MCOR_SINC_FIRST(last, before) realv p = MCOR_FMA((real)last, t, (real)before);
+#define MCOR_SINC_NEXT(c) p = MCOR_FMA(p, t, (real)c);
+/* With d = p', too, and with e = p'' / 2. */
+#define MCOR_SINC_FIRST_D(last, before)                                                            \
+  realv d = (realv)(real)last;                                                                     \
+  MCOR_SINC_FIRST(last, before)
+#define MCOR_SINC_NEXT_D(c)                                                                        \
+  d = MCOR_FMA(d, t, p);                                                                           \
+  MCOR_SINC_NEXT(c)
+#define MCOR_SINC_FIRST_E(last, before)                                                            \
+  realv e = (realv)0;                                                                              \
+  MCOR_SINC_FIRST_D(last, before)
+#define MCOR_SINC_NEXT_E(c)                                                                        \
+  e = MCOR_FMA(e, t, d);                                                                           \
+  MCOR_SINC_NEXT_D(c)
+
+MCOR_OF_Q mcor_w_sinc6(realv q)
+{
+  const realv a = MCOR_SINC_A(q), t = a * ((real)2 - a);
+  MCOR_SINC(MCOR_SINC_FIRST, MCOR_SINC_NEXT)
+  const realv s = t * p, s3 = s * s * s;
+  return s3 * s3;
+}
+
+MCOR_OF_Q mcor_dw_sinc6(realv q)
+{
+  const realv a = MCOR_SINC_A(q), t = a * ((real)2 - a);
+  MCOR_SINC(MCOR_SINC_FIRST_D, MCOR_SINC_NEXT_D)
+  const realv s = t * p, s2 = s * s;
+  return (real)-3 * q * (s2 * s2 * s) * MCOR_FMA(t, d, p);
+}
+
+MCOR_OF_Q mcor_ddw_sinc6(realv q)
+{
+  const realv a = MCOR_SINC_A(q), t = a * ((real)2 - a), q2 = q * q;
+  MCOR_SINC(MCOR_SINC_FIRST_E, MCOR_SINC_NEXT_E)
+  const realv s = t * p, s2 = s * s, slope = MCOR_FMA(t, d, p), bend = MCOR_FMA(t, e, d);
+  return s2 * s2 *
+    MCOR_FMA((real)7.5 * q2, slope * slope, (real)3 * s * MCOR_FMA(q2, bend, -slope));
 }
 
 /* Lowest value of w: M'4 has a negative lobe, its minimum at q = 4/3. */

@@ -53,24 +53,31 @@ mcor_say(mcor_suspicion* s, const char* format, ...)
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
 
+static bool mcor_is_wendland(mcor_sph_kernel kernel)
+{
+  return kernel == MCOR_WENDLAND_C2 || kernel == MCOR_WENDLAND_C4 || kernel == MCOR_WENDLAND_C6;
+}
+
 /* The kernel with which such particles, `ratio` smoothing lengths to the nearest one, would be usual: that
  * of many neighbours, or the one that reaches farther. */
 static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
 {
   return few && kernel != MCOR_QUINTIC_SPLINE && ratio >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
-    : !few && kernel != MCOR_WENDLAND_C2 && ratio <= MCOR_MOST_RATIO_WENDLAND      ? "wendland"
+    : !few && !mcor_is_wendland(kernel) && ratio <= MCOR_MOST_RATIO_WENDLAND       ? "wendland"
                                                                                    : "";
 }
 
 static bool mcor_warn_neighbours(mcor_suspicion* s)
 {
-  static const char* const usual[MCOR_SPH_KERNEL_COUNT] = { "30 to 100", "30 to 100", "30 to 60",
-    "100 to 250", "50 to 250" };
+  static const char* const usual[] = { "30 to 100", "30 to 100", "30 to 60", "100 to 250",
+    "50 to 250", "60 to 200", "100 to 300", "150 to 400", "60 to 200" };
+  _Static_assert(
+    sizeof usual / sizeof usual[0] == MCOR_SPH_KERNEL_COUNT, "neighbours of each kernel");
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_sph_kernel kernel = s->options->sph_kernel;
   const double h = n->smoothing_length_median, spacing = n->spacing_median;
   const double cube = pow(mcor_support_factor(kernel), 3);
-  const bool wendland = kernel == MCOR_WENDLAND_C2;
+  const bool wendland = mcor_is_wendland(kernel);
   const bool few = h < MCOR_LEAST_RATIO * spacing || spacing == 0;
   const double near = h / (spacing > 0 ? spacing : h), found = n->neighbours_median / cube;
   const bool many = near > MCOR_SHEET_RATIO

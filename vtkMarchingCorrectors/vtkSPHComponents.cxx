@@ -5,6 +5,7 @@
 #include "mcor.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDataObjectTree.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
@@ -17,6 +18,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHBlocks.h"
+#include "vtkSPHParticles.h"
 #include "vtkSPHPieces.h"
 #include "vtkTable.h"
 
@@ -136,6 +139,7 @@ int vtkSPHComponents::FillInputPortInformation(int port, vtkInformation* info)
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkPointSet");
   if (port == 1)
   {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
@@ -156,15 +160,22 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   vtkDataArray* masses =
     this->Mass > 0.0 ? nullptr : FindArray(particles, this->MassArrayName, MCOR_MASS, 1);
   vtkDataArray* velocities = FindArray(particles, this->VelocityArrayName, MCOR_VELOCITY, 3);
-  const bool all =
-    this->FluidArrayName.empty() || this->FluidArrayName == "(none)"; // of a panel's list
-  vtkDataArray* types =
-    all ? nullptr : FindArray(particles, this->FluidArrayName, MCOR_PARTICLE_TYPE, 1);
+  vtkSPHParticlesChoice fluid;
+  fluid.FluidValue = this->FluidValue;
+  if (this->FluidArrayName != "(automatic)") // of a panel's list
+  {
+    fluid.FluidArrayName = this->FluidArrayName;
+  }
+  if (this->DetectFluid)
+  {
+    vtkSPHParticles::FindFluid(fluid, particles);
+  }
+  vtkDataArray* types = particles->GetPointData()->GetArray(fluid.FluidArrayName.c_str());
   std::vector<std::array<double, 3>> places;
   std::vector<vtkIdType> numbers;
   for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
   {
-    if (!types || types->GetComponent(i, 0) == this->FluidValue)
+    if (!types || types->GetComponent(i, 0) == fluid.FluidValue)
     {
       places.emplace_back();
       particles->GetPoint(i, places.back().data());
@@ -232,7 +243,11 @@ int vtkSPHComponents::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkPolyData* mesh = vtkPolyData::GetData(inputVector[0]);
-  vtkPointSet* particles = vtkPointSet::GetData(inputVector[1]);
+  vtkSmartPointer<vtkPointSet> particles = vtkPointSet::GetData(inputVector[1]);
+  if (auto* blocks = vtkDataObjectTree::GetData(inputVector[1]))
+  {
+    particles = vtkSPHJoinBlocks(blocks);
+  }
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkTable* table = vtkTable::GetData(outputVector, 1);
   if (mesh->GetNumberOfCells() != mesh->GetNumberOfPolys() ||
@@ -308,4 +323,5 @@ void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
   os << indent << "Fluid Array Name: " << this->FluidArrayName << "\n";
   os << indent << "Fluid Value: " << this->FluidValue << "\n";
+  os << indent << "Detect Fluid: " << this->DetectFluid << "\n";
 }

@@ -55,7 +55,7 @@ public:
 
   ///@{
   /**
-   * The particles; may be nullptr.
+   * The particles; may be nullptr. Blocks of composite data are one set.
    */
   void SetParticlesConnection(vtkAlgorithmOutput* particles)
   {
@@ -111,6 +111,15 @@ public:
   vtkGetMacro(FluidValue, double);
   ///@}
 
+  ///@{
+  /**
+   * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by default.
+   */
+  vtkSetMacro(DetectFluid, vtkTypeBool);
+  vtkGetMacro(DetectFluid, vtkTypeBool);
+  vtkBooleanMacro(DetectFluid, vtkTypeBool);
+  ///@}
+
 protected:
   vtkSPHComponents();
   ~vtkSPHComponents() override;
@@ -128,6 +137,7 @@ protected:
   std::string VelocityArrayName;
   std::string FluidArrayName;
   double FluidValue = 0.0;
+  vtkTypeBool DetectFluid = 0;
 
 private:
   vtkSPHComponents(const vtkSPHComponents&) = delete;

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The plugin's XML against the wrapped filter, without ParaView: commands, defaults, values."""
 import pathlib
+import re
 import unittest
 import xml.etree.ElementTree
 
@@ -80,6 +81,11 @@ class TestPluginXml(unittest.TestCase):
             self.assertIn(word, label)
         # Of labels that begin with what was typed the first one is taken: ParaView has an SPH Dataset Interpolator.
         self.assertLess(label, "sph dataset interpolator")
+
+    def test_guide_names_it(self):
+        """As ParaView's traces do: the letters and digits of the label."""
+        guide = XML.parents[1] / "Documentation" / "Guide" / "paraview.md"
+        self.assertIn("`" + re.sub("[^A-Za-z0-9]", "", self.proxy.get("label")) + "`", guide.read_text(encoding="utf-8"))
 
     def test_everything_is_documented(self):
         for proxy in self.root.iter("SourceProxy"):

@@ -116,15 +116,9 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
 //------------------------------------------------------------------------------
 void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
 {
-  double range[2];
-  for (const std::string& name : vtkSPHParticles::ListTypes(choice, particles))
+  if (this->DetectFluid)
   {
-    if (this->DetectFluid && vtkSPHParticles::FindWholeRange(particles, name, range) &&
-      mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
-    {
-      choice.FluidArrayName = name;
-      return;
-    }
+    vtkSPHParticles::FindFluid(choice, particles);
   }
 }
 

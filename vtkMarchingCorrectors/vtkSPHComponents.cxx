@@ -5,6 +5,7 @@
 #include "mcor.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDataObjectTree.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
@@ -19,6 +20,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHBlocks.h"
+#include "vtkSPHParticles.h"
 #include "vtkSPHPieces.h"
 #include "vtkTable.h"
 
@@ -135,6 +138,7 @@ int vtkSPHComponents::FillInputPortInformation(int port, vtkInformation* info)
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkPointSet");
   if (port == 1)
   {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
@@ -150,14 +154,21 @@ int vtkSPHComponents::FillOutputPortInformation(int port, vtkInformation* info)
 //------------------------------------------------------------------------------
 std::vector<vtkIdType> vtkSPHComponents::ListFluid(vtkPointSet* particles) const
 {
-  const bool all =
-    this->FluidArrayName.empty() || this->FluidArrayName == "(none)"; // of a panel's list
-  vtkDataArray* types =
-    all ? nullptr : FindArray(particles, this->FluidArrayName, MCOR_PARTICLE_TYPE, 1);
+  vtkSPHParticlesChoice choice;
+  choice.FluidValue = this->FluidValue;
+  if (this->FluidArrayName != "(automatic)") // of a panel's list
+  {
+    choice.FluidArrayName = this->FluidArrayName;
+  }
+  if (this->DetectFluid)
+  {
+    vtkSPHParticles::FindFluid(choice, particles);
+  }
+  vtkDataArray* types = particles->GetPointData()->GetArray(choice.FluidArrayName.c_str());
   std::vector<vtkIdType> fluid;
   for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
   {
-    if (!types || types->GetComponent(i, 0) == this->FluidValue)
+    if (!types || types->GetComponent(i, 0) == choice.FluidValue)
     {
       fluid.push_back(i);
     }
@@ -354,7 +365,11 @@ int vtkSPHComponents::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkPolyData* mesh = vtkPolyData::GetData(inputVector[0]);
-  vtkPointSet* particles = vtkPointSet::GetData(inputVector[1]);
+  vtkSmartPointer<vtkPointSet> particles = vtkPointSet::GetData(inputVector[1]);
+  if (auto* blocks = vtkDataObjectTree::GetData(inputVector[1]))
+  {
+    particles = vtkSPHJoinBlocks(blocks);
+  }
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkTable* table = vtkTable::GetData(outputVector, 1);
   std::string problem;
@@ -397,5 +412,6 @@ void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
   os << indent << "Fluid Array Name: " << this->FluidArrayName << "\n";
   os << indent << "Fluid Value: " << this->FluidValue << "\n";
+  os << indent << "Detect Fluid: " << this->DetectFluid << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
 }

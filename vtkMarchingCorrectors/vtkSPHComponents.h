@@ -60,7 +60,7 @@ public:
 
   ///@{
   /**
-   * The particles; may be nullptr.
+   * The particles; may be nullptr. Blocks of composite data are one set.
    */
   void SetParticlesConnection(vtkAlgorithmOutput* particles)
   {
@@ -124,6 +124,15 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
+  ///@{
+  /**
+   * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by default.
+   */
+  vtkSetMacro(DetectFluid, vtkTypeBool);
+  vtkGetMacro(DetectFluid, vtkTypeBool);
+  vtkBooleanMacro(DetectFluid, vtkTypeBool);
+  ///@}
+
 protected:
   vtkSPHComponents();
   ~vtkSPHComponents() override;
@@ -142,6 +151,7 @@ protected:
   std::string FluidArrayName;
   double FluidValue = 0.0;
   vtkMultiProcessController* Controller = nullptr;
+  vtkTypeBool DetectFluid = 0;
 
 private:
   vtkSPHComponents(const vtkSPHComponents&) = delete;

@@ -8,7 +8,9 @@
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
 #include "vtkMassProperties.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkPlaneSource.h"
 #include "vtkPolyDataConnectivityFilter.h"
 #include "vtkReverseSense.h"
@@ -145,6 +147,44 @@ void CheckParents()
   CHECK(ids && ids->GetRange()[1] == 3.0);
 }
 
+/// Walls do not count where they are found; blocks of particles are one set.
+void CheckFluid()
+{
+  auto surface = Together({ Sphere(2.0, 0.0, 0.0), Sphere(0.5, 5.0, 0.0) });
+  auto particles =
+    Particles({ { { 0.0, 1.7, 0.0 } }, { { 0.0, -1.0, 0.1 } }, { { 5.0, 0.0, 0.0 } } });
+  test::AddArray<vtkIntArray>(
+    particles, "ParticleType", 1, [](vtkIdType i, int) { return i == 1 ? 1 : 0; });
+  auto split = Split(surface, particles);
+  split->SetFluidArrayName("(automatic)"); // of a panel's list
+  split->Update();
+  CHECK(At(split->GetTable(), 0, "particles") == 2);
+  split->DetectFluidOn();
+  split->Update();
+  CHECK(At(split->GetTable(), 0, "particles") == 1 && At(split->GetTable(), 1, "particles") == 1);
+  split->SetFluidArrayName("ParticleType");
+  split->SetFluidValue(1.0);
+  split->Update();
+  CHECK(At(split->GetTable(), 0, "particles") == 1 && At(split->GetTable(), 1, "particles") == 0);
+
+  // The same in blocks, whose names tell of walls.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, Particles({ { { 0.0, 1.7, 0.0 } } }));
+  blocks->SetBlock(1, Particles({ { { 5.0, 0.0, 0.0 } } }));
+  blocks->SetBlock(2, Particles({ { { 0.0, -1.0, 0.1 } } }));
+  blocks->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "Walls");
+  vtkNew<vtkSPHComponents> joined;
+  joined->SetInputData(surface);
+  joined->SetParticlesData(blocks);
+  for (const bool detects : { false, true })
+  {
+    joined->SetDetectFluid(detects);
+    joined->Update();
+    CHECK(joined->GetTable() && At(joined->GetTable(), 0, "particles") == (detects ? 1 : 2));
+    CHECK(joined->GetTable() && At(joined->GetTable(), 1, "particles") == 1);
+  }
+}
+
 /// Each piece of a surface of noise, with VTK's own filters.
 void CheckAgainstVtk()
 {
@@ -272,6 +312,7 @@ int TestComponents(int, char*[])
 {
   CheckWeird();
   CheckParents();
+  CheckFluid();
   CheckAgainstVtk();
   CheckPeriod();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

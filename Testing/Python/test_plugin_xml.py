@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The plugin's XML against the wrapped filter, without ParaView: commands, defaults, values."""
 import pathlib
+import re
 import unittest
 import xml.etree.ElementTree
 
@@ -78,8 +79,17 @@ class TestPluginXml(unittest.TestCase):
         label = self.proxy.get("label").lower()
         for word in ("sph", "isosurface", "free surface", "contour"):
             self.assertIn(word, label)
-        # Of labels that begin with what was typed the first one is taken: ParaView has an SPH Dataset Interpolator.
-        self.assertLess(label, "sph dataset interpolator")
+        # Of labels that begin with what was typed the first one is taken: of ParaView's SPH Dataset Interpolator,
+        # and of all that the plugin has.
+        labels = [p.get("label").lower() for file in XML.parent.glob("*.xml")
+                  for p in xml.etree.ElementTree.parse(file).iter("SourceProxy")]
+        self.assertGreater(len(labels), 8)
+        self.assertEqual(min(each for each in labels + ["sph dataset interpolator"] if each.startswith("sph")), label)
+
+    def test_guide_names_it(self):
+        """As ParaView's traces do: the letters and digits of the label."""
+        guide = XML.parents[1] / "Documentation" / "Guide" / "paraview.md"
+        self.assertIn("`" + re.sub("[^A-Za-z0-9]", "", self.proxy.get("label")) + "`", guide.read_text(encoding="utf-8"))
 
     def test_everything_is_documented(self):
         for proxy in self.root.iter("SourceProxy"):

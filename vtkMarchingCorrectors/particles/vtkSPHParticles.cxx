@@ -237,6 +237,21 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
 }
 
 //------------------------------------------------------------------------------
+void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points)
+{
+  double range[2];
+  for (const std::string& name : ListTypes(choice, points))
+  {
+    if (FindWholeRange(points, name, range) &&
+      mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
+    {
+      choice.FluidArrayName = name;
+      return;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
 {
   const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(

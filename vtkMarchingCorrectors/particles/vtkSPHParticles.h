@@ -110,6 +110,11 @@ public:
     const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
   /**
+   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such.
+   */
+  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points);
+
+  /**
    * Least and greatest value of an array of some whole numbers; false for any other, and an empty one.
    */
   static bool FindWholeRange(vtkPointSet* points, const std::string& name, double range[2]);

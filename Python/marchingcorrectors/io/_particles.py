@@ -15,6 +15,11 @@ KERNELS = {"cubic": "cubic", "quintic": "quintic", "wendlandc2": "wendland", "we
 class FileError(Error, ValueError):
     """A file is damaged, empty, or in no format that is known here."""
 
+    def __init__(self, sentence):
+        """One line, whatever names a damaged file may have in it."""
+        plain = "".join(letter if letter.isprintable() else "?" for letter in str(sentence))
+        super().__init__(plain if len(plain) <= 350 else plain[:170] + " ... " + plain[-170:])
+
 
 def find_kernel(name):
     """The word of sph_kernel for what a file calls its kernel; None where it is none of ours."""

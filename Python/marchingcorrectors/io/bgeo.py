@@ -59,6 +59,5 @@ def read_bgeo(path):
             fields[i][1].replace(">", "="))
 
     arrays = {name: column(i, size) for i, (name, _, size) in enumerate(fields) if i}
-    density = "density" if "density" in arrays else None
     return Particles(path.name, "bgeo", lambda: np.ascontiguousarray(table["0"][:, :3]).astype("=f4"), arrays,
-                     density=None, smoothing_length=None, parameters={"density_array": density})
+                     density="density" if "density" in arrays else None)

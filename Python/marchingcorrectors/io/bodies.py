@@ -16,15 +16,18 @@ def load(path):
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
     reader = {".vtp": vtkXMLPolyDataReader, ".vtu": vtkXMLUnstructuredGridReader}.get(path.suffix.lower(), vtkDataSetReader)()
+    with open(path, "rb") as file:
+        if path.suffix.lower() != ".vtk" and not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
+            raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
     complaints = []
     for kind in ("ErrorEvent", "WarningEvent"):
         reader.AddObserver(kind, lambda *_: complaints.append(1))
-        if hasattr(reader, "GetReaderErrorObserver"):
-            pass
     reader.SetFileName(str(path))
     if hasattr(reader, "ReadAllScalarsOn"):
         for what in ("Scalars", "Vectors", "Fields"):
             getattr(reader, f"ReadAll{what}On")()
+    if hasattr(reader, "ReadOutputType") and reader.ReadOutputType() < 0:  # whose Update would complain on stderr, too
+        raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
     reader.Update()
     data = reader.GetOutput()
     if complaints or data is None or not hasattr(data, "GetPoints") or not data.GetPoints() or not data.GetNumberOfPoints():
@@ -34,7 +37,7 @@ def load(path):
         array = data.GetPointData().GetArray(i)
         if array is not None and array.GetNumberOfTuples() == count and array.GetName():
             arrays[array.GetName()] = vtk_to_numpy(array)
-    if len(points) != count or not arrays and count <= 0:
+    if len(points) != count:
         raise FileError(f"{path.name} is damaged.")
     time = data.GetFieldData().GetArray("TimeValue") or data.GetFieldData().GetArray("TIME")
     return points, arrays, time.GetTuple1(0) if time and time.GetNumberOfTuples() else None

@@ -21,10 +21,18 @@ def read_pysph(path):
     sets = {name: arrays for name, arrays in sets.items() if len(arrays.get("x", ()))}
     if not sets:
         raise FileError(f"{path.name} has no particles.")
-    names = [name for name in next(iter(sets.values())) if all(name in arrays for arrays in sets.values())]
+    walls = {name for name in sets if WALL.search(name)}
+    fluids = [arrays for name, arrays in sets.items() if name not in walls] or list(sets.values())
+    names = [name for name in fluids[0] if all(name in arrays for arrays in fluids)]
     counts = [len(arrays["x"]) for arrays in sets.values()]
-    solid = np.repeat([bool(WALL.search(name)) for name in sets], counts)
-    arrays = {name: lambda n=name: join([each[n] for each in sets.values()]) for name in names}
+    solid = np.repeat([name in walls for name in sets], counts)
+
+    def array(name):
+        """Walls take no part in a field: where they have no such array, it is 0 there."""
+        kind = fluids[0][name].dtype
+        return join([each.get(name, np.zeros(len(each["x"]), kind)) for each in sets.values()])
+
+    arrays = {name: lambda n=name: array(n) for name in names}
 
     def vector(parts):
         return lambda: np.stack([arrays[part]() if part in arrays else np.zeros(sum(counts)) for part in parts], 1)

@@ -17,7 +17,7 @@ from pathlib import Path
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pyvista,vtk"
 # What users have beside it: tests alone need these.
-OTHERS = ("h5py", "sarracen", "scikit-learn", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel")
+OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel")
 SKIPPED = 77
 
 

@@ -3,6 +3,7 @@
 """marchingcorrectors.io: files made here in the layout of each solver give the surface of the arrays that went into
 them; what is damaged gives one sentence and nothing else."""
 import gzip
+import importlib.util
 import os
 import struct
 import subprocess
@@ -212,10 +213,8 @@ class Layouts(Case):
         self.assertEqual(particles.time, 7.0)
 
     def test_phantom_native(self):
-        try:
-            import sarracen  # noqa: F401
-        except ImportError:
-            self.skipTest("sarracen, which reads Phantom's native dumps, is not installed, or lacks scikit-learn")
+        if not all(importlib.util.find_spec(name) for name in ("sarracen", "sklearn")):
+            self.skipTest("sarracen and scikit-learn, which wheel.phantom installs, are not here")
         h = write_native(self.at("dump_00000"))
         particles = quietly(io.read, self.at("dump_00000"))
         self.assertEqual(particles.positions.tobytes(), X[h > 0].tobytes())
@@ -354,12 +353,30 @@ class Hostile(Case):
         write_gadget(self.at("other.hdf5"))
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file["PartType0"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
-        self.assert_refused("link to another file", self.at("snap.hdf5"))
+        self.assert_refused("is a link", self.at("snap.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # a link inside of the file to that
+            file["elsewhere"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
+            del file["PartType0"]
+            file["PartType0"] = h5py.SoftLink("/elsewhere")
+        self.assert_refused("is a link", self.at("snap.hdf5"))
+
+    def test_data_in_other_files(self):
         self.at("secret").write_bytes(bytes(800))
+        write_gadget(self.at("other.hdf5"))
+        for make in (write_gadget, write_phantom, write_pysph):
+            make(self.at("snap.hdf5"))
+            with h5py.File(self.at("snap.hdf5"), "a") as file:
+                place = {write_gadget: "PartType0", write_phantom: "particles", write_pysph: "particles/fluid/arrays"}[make]
+                file[place].create_dataset("Secret", (len(X),), "u1", external=[(str(self.at("secret")), 0, len(X))])
+            self.assert_refused("lies in other files", self.at("snap.hdf5"))
         write_gadget(self.at("snap.hdf5"))
+        source = h5py.VirtualSource(str(self.at("other.hdf5")), "PartType0/Density", (len(X),))
+        layout = h5py.VirtualLayout((len(X),), "f8")
+        layout[:] = source
         with h5py.File(self.at("snap.hdf5"), "a") as file:
-            file["PartType0"].create_dataset("Secret", (len(X),), "u1", external=[(str(self.at("secret")), 0, len(X))])
-        self.assert_refused("lies in another file", self.at("snap.hdf5"))
+            del file["PartType0/Density"]
+            file["PartType0"].create_virtual_dataset("Density", layout)
+        self.assert_refused("lies in other files", self.at("snap.hdf5"))
 
     def test_claims(self):
         """Sizes that a file cannot have."""

@@ -9,7 +9,9 @@ from .._library import Error
 from .._options import did_you_mean
 from .._warnings import warn
 
-KERNELS = {"cubic": "cubic", "quintic": "quintic", "wendlandc2": "wendland", "wendlandquintic": "wendland"}
+# What solvers call their kernels begins so, letters and digits alone; the first that fits counts.
+KERNELS = {"cubic": "cubic", "quintic": "quintic", "wendlandc2": "wendland", "wendlandquinticc": None,
+           "wendlandquintic": "wendland"}
 
 
 class FileError(Error, ValueError):

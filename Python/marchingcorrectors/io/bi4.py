@@ -20,8 +20,8 @@ class Reader:
 
     def __init__(self, data, name):
         self.data, self.at, self.name = data, 64, name
-        order = data[60]
-        if len(data) < 64 or order % 10 > 1:
+        order = data[60] if len(data) >= 64 else 9
+        if order % 10 > 1:
             raise FileError(f"{name} has a damaged head.")
         self.order, self.wide = "<>"[order % 10], data[61] == 1
 

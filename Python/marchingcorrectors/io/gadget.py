@@ -5,8 +5,8 @@ import re
 
 import numpy as np
 
-from ._particles import FileError, Particles, join
-from .hdf5 import get, is_numbers, load
+from ._particles import FileError, Particles
+from .hdf5 import Part, get, is_numbers, load, names_of
 
 TYPES = {"gas": 0, "dark_matter": 1, "disk": 2, "bulge": 3, "stars": 4, "black_holes": 5, "boundary": 5, "sinks": 3,
          "neutrinos": 6}
@@ -51,7 +51,8 @@ def numbers_of(types):
 
 
 def describe_header(file):
-    header = dict(file["Header"].attrs) if get(file, "Header") is not None else {}
+    header = get(file, "Header")
+    header = {} if header is None else dict(header.attrs)
     found = {"time": number(header, "Time"), "redshift": number(header, "Redshift"),
              "hubble_parameter": number(header, "HubbleParam"), "units": {}}
     box = np.ravel(header.get("BoxSize", []))
@@ -91,17 +92,15 @@ def read_gadget(path, types):
         kernel = text(scheme.attrs["Kernel function"]) if scheme is not None and "Kernel function" in scheme.attrs \
             else None
         dimension = number(header, "Dimension", 3)
-    counts, names = {}, None
+    parts, names = [], None
     for kind in wanted:
-        counts[kind], own = count_particles(files, f"PartType{kind}")
-        names = own if names is None or not own else [name for name in names if name in own]
-    if not any(length for each in counts.values() for _, length in each):
+        found, own = find_parts(files, f"PartType{kind}")
+        parts += found
+        names = own if names is None or not found else [name for name in names if name in own]
+    if not parts:
         raise FileError(f"{path.name} has no particles of type {', '.join(map(str, wanted))}.")
 
-    def array(name):
-        return lambda: join([load(there, f"PartType{kind}/{name}") for kind, there in counts.items() if there])
-
-    arrays = {name: array(name) for name in names if name != "Coordinates"}
+    arrays = {name: lambda n=name: load(parts, n) for name in names if name != "Coordinates"}
     h = next((name for name in ("SmoothingLengths", "SmoothingLength") if name in arrays), None)
     swift = h == "SmoothingLengths"
     if swift and gamma is None:
@@ -109,36 +108,35 @@ def read_gadget(path, types):
                         "smoothing lengths mean nothing.")
     if "Masses" not in arrays:
         table = np.ravel(header.get("MassTable", []))
-        arrays["Masses"] = lambda: masses_of(table, counts, path)
+        arrays["Masses"] = lambda: masses_of(table, parts, path)
     density = next((name for name in ("Densities", "Density") if name in arrays), None)
     parameters["types"] = wanted
     return Particles(
-        path.name, "SWIFT" if swift else "GADGET", array("Coordinates"), arrays, smoothing_length=h,
+        path.name, "SWIFT" if swift else "GADGET", lambda: load(parts, "Coordinates"), arrays, smoothing_length=h,
         support_radius=True, h_factor=gamma if swift else 1.0, mass="Masses", density=density, kernel=kernel,
         dimension=int(dimension), period=period, time=parameters["time"], parameters=parameters)
 
 
-def masses_of(table, counts, path):
-    parts = []
-    for kind, there in counts.items():
+def masses_of(table, parts, path):
+    kinds = [int(part.group[len("PartType"):]) for part in parts]
+    for kind in kinds:
         if kind >= len(table) or not table[kind] > 0:
             raise FileError(f"{path.name} has no masses of type {kind}, neither Masses nor in MassTable.")
-        parts.append(np.full(sum(length for _, length in there), float(table[kind])))
-    return join(parts)
+    return np.repeat([float(table[kind]) for kind in kinds], [part.count for part in parts])
 
 
-def count_particles(files, group):
-    """[(file, particles)] of those that have some, and the names of arrays of numbers that all of them have."""
+def find_parts(files, group):
+    """Where the particles are, and the names of arrays of numbers that all of them have."""
     import h5py
 
-    there, names = [], None
+    parts, names = [], None
     for path in files:
         with h5py.File(path, "r") as file:
             kind = get(file, group)
             positions = None if kind is None else get(kind, "Coordinates")
             if positions is None or not is_numbers(positions) or not positions.shape or not positions.shape[0]:
                 continue
-            there.append((path, positions.shape[0]))
-            own = [name for name in kind if is_numbers(get(kind, name)) and kind[name].shape[:1] == positions.shape[:1]]
+            parts.append(Part(path, group, positions.shape[0]))
+            own = names_of(kind, positions.shape[0])
             names = own if names is None else [name for name in names if name in own]
-    return there, names or []
+    return parts, names or []

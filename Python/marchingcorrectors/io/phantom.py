@@ -4,32 +4,35 @@
 import numpy as np
 
 from ._particles import FileError, Particles
-from .hdf5 import get, is_numbers, load
+from .hdf5 import Part, data_set, get, is_numbers, load, names_of
 
 
 def read_hdf5_dump(path):
     import h5py
 
     with h5py.File(path, "r") as file:
-        header, gas = file["header"], file["particles"]
-        count = gas["xyz"].shape[0]
-        names = [name for name in gas if name != "xyz" and is_numbers(get(gas, name))
-                 and gas[name].shape[:1] == (count,)]
-        values = {name: np.ravel(header[name][()]) for name in header
-                  if is_numbers(get(header, name)) and header[name].size <= 64}
-    there = [(path, count)]
-    h = load(there, "particles/h")
-    alive = h > 0
+        header, gas = get(file, "header"), get(file, "particles")
+        part = Part(path, "particles", len(data_set(gas, "xyz")))
+        names = [name for name in names_of(gas, part.count) if name != "xyz"]
+        values = {name: np.ravel(get(header, name)[()]) for name in header
+                  if is_numbers(get(header, name)) and get(header, name).size <= 64}
+    alive = load([part], "h") > 0
     if "itype" in names:
-        alive &= load(there, "particles/itype") == 1
-    return make(path, lambda name: load(there, f"particles/{name}")[alive], lambda: load(there, "particles/xyz")[alive],
-                names, values)
+        alive &= load([part], "itype") == 1
+    if not alive.any():
+        raise FileError(f"{path.name} has no gas that is alive.")
+    there = [part.where(alive)]
+    return make(path, lambda name: load(there, name), lambda: load(there, "xyz"), names, values)
+
+
+def cube(values):
+    return values * values * values
 
 
 def make(path, array, positions, names, values):
     hfact, mass = values.get("hfact", [1.2])[0], values["massoftype"][0]
     arrays = {name: lambda n=name: array(n) for name in names}
-    arrays.setdefault("density", lambda: float(mass) * (float(hfact) / array("h").astype(float)) ** 3)
+    arrays.setdefault("density", lambda: float(mass) * cube(float(hfact) / array("h").astype(float)))
     return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=float(mass),
                      density="density", time=float(values["time"][0]) if "time" in values else None,
                      parameters={name: value.tolist() for name, value in values.items()})

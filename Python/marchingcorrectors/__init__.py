@@ -20,14 +20,28 @@ from ._warnings import InputWarning
 
 __all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Gauges", "InputWarning", "InvalidArgument",
            "InvalidData", "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow",
-           "free_surface", "gauge", "isosurface", "probe"]
+           "free_surface", "gauge", "isosurface", "probe", "read_pyvista"]
 
 # The C++ filter lies in a folder of the same name, where CMake installed it.
 __path__ = _extend_path(__path__, __name__)
 
 
+def read_pyvista(path, **words):
+    """A solver's file as pyvista.PolyData, for particles.sph; words are those of io.read()."""
+    import pyvista
+
+    from .io import read
+    from .io.convert import to_vtk
+
+    return pyvista.wrap(to_vtk(read(path, **words)))
+
+
 def __getattr__(name):
-    """VTK's classes when they are asked for: NumPy users need no VTK."""
+    """VTK's classes, and io, when they are asked for: NumPy users need no VTK."""
+    if name == "io":
+        from importlib import import_module
+
+        return import_module(".io", __name__)
     if name == "vtkMarchingCorrectors" or name.startswith("vtkSPH"):
         from ._vtk import find_class
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Union
 
 import numpy as np
@@ -55,6 +56,27 @@ def _run(arguments, context, device, progress, call, free):
             context.release_memory()
 
 
+def _of_files(function):
+    """Particles of io.read() may stand in place of positions: an array's name is then an array, and what the file says
+    of h, mass, walls, kernel and period is taken, unless it is given."""
+    @functools.wraps(function)
+    def call(positions, *arguments, **words):
+        if not hasattr(positions, "words"):
+            return function(positions, *arguments, **words)
+        if function.__name__ == "derivatives":
+            if arguments:
+                words["attributes"], arguments = arguments[0], arguments[1:]
+        given = [positions.array(thing) if isinstance(thing, str) else thing for thing in arguments]
+        for name in ("scalar", "scalar_dot"):
+            if isinstance(words.get(name), str):
+                words[name] = positions.array(words[name])
+        words = positions.words(words)
+        return function(positions.positions, *given, **words)
+
+    return call
+
+
+@_of_files
 @with_options(ISOSURFACE)
 def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike], iso: Union[float, Sequence[float]], *,
                smoothing_length: Optional[ArrayLike] = None,
@@ -72,6 +94,7 @@ def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike], iso: Union[flo
 
     positions: (particles, 3), length unit L. float32 and float64 arrays in C order are used where
         they lie; so are all arrays below. Lists, data frames, and what speaks DLPack will do, too.
+        Or particles of io.read(): scalar is then an array's name, attributes a list of names.
     scalar: (particles,), or (particles, components): then its magnitude, or one component
         (scalar_component=0, 1, ...), or its dot product with scalar_dot.
     iso: the value of the scalar on the surface, or a list of values.
@@ -179,6 +202,7 @@ def _surface(surface, arguments, names, attributes, from_nearest, nearest_wanted
                    statistics=statistics(surface.statistics))
 
 
+@_of_files
 @with_options(FREE_SURFACE)
 def free_surface(positions: ArrayLike, iso: Union[float, Sequence[float]] = 0.5, *,
                  smoothing_length: Optional[ArrayLike] = None,
@@ -202,6 +226,7 @@ def free_surface(positions: ArrayLike, iso: Union[float, Sequence[float]] = 0.5,
     return _extract({**locals(), "scalar": None, "scalar_dot": None}, {**options, "field": "weight_sum"})
 
 
+@_of_files
 @with_options(PROBE)
 def probe(positions: ArrayLike, points: ArrayLike, *,
           smoothing_length: Optional[ArrayLike] = None,
@@ -255,6 +280,7 @@ def _or_zeros(array, count):
     return np.zeros(count) if array is None else array
 
 
+@_of_files
 @with_options(DERIVATIVES)
 def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Literal["corrected", "standard"] = "corrected",
                 smoothing_length: Optional[ArrayLike] = None,

@@ -27,11 +27,14 @@ void* mcor_cache_load(const mcor_cache_key* key, size_t* size);
 /* Readers see the whole file or none, also where two write it at once. */
 void mcor_cache_store(const mcor_cache_key* key, const void* data, size_t size);
 
+/* Makes a path's folders; false where one is missing then. */
+bool mcor_make_folders(const char* path);
+
 /* Where none of POCL_CACHE_DIR, XDG_CACHE_HOME and HOME is set, PoCL compiles into a folder that any user may
  * have made, and runs what is there: sets POCL_CACHE_DIR to one of this user's alone. Before drivers are
- * started. Not on Windows. */
+ * started. */
 void mcor_own_pocl_folder(void);
-/* The folder into which PoCL compiles. Not on Windows. */
+/* The folder into which PoCL compiles. */
 void mcor_pocl_folder(char* path, size_t size);
 /* What is wrong with the folder into which PoCL compiles, without which it has no device: a sentence
  * that ends in what to do. False: nothing is. */

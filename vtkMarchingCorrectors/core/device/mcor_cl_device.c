@@ -26,9 +26,7 @@ static void mcor_find_devices(mcor_device_list* list)
   cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
   cl_uint platform_count = 0;
   list->count = 0;
-#ifndef _WIN32
   mcor_own_pocl_folder();
-#endif
   if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
   {
     return;

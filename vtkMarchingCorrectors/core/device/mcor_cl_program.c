@@ -75,7 +75,6 @@ static mcor_status mcor_fail_build(
     "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
     mcor_cl_error_name(error), options, log ? log : "");
   free(log);
-#ifndef _WIN32
   if (mcor_is_pocl(cl))
   {
     char folder[1024];
@@ -86,7 +85,6 @@ static mcor_status mcor_fail_build(
       "and try again.",
       folder);
   }
-#endif
   return status;
 }
 

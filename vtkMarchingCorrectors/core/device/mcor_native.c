@@ -4,13 +4,10 @@
 /* The built-in device's objects, memory, programs and kernels. A buffer is memory of the host, and a
  * command queue has nothing in it. */
 
-#if !defined(_WIN32) && !defined(_DEFAULT_SOURCE)
-#define _DEFAULT_SOURCE /* for sysconf's names */
-#endif
-
 #include "mcor_native.h"
 #include "mcor_parallel.h"
 #include "mcor_pool.h"
+#include "mcor_system.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,8 +129,8 @@ static cl_uint mcor_units(cl_uint units)
 /* Of the machine. What other programs use, nobody can know. */
 static cl_ulong mcor_memory(void)
 {
-  const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-  return pages > 0 && page > 0 ? (cl_ulong)pages * (cl_ulong)page : (cl_ulong)1 << 32;
+  const cl_ulong bytes = mcor_system_memory();
+  return bytes > 0 ? bytes : (cl_ulong)1 << 32;
 }
 
 /* Answers a question: `size` bytes at `from`. */
@@ -347,11 +344,10 @@ static cl_mem mcor_make_buffer(
   (void)context;
   (void)flags;
   (void)host;
-  const size_t padded = (size + MCOR_BUFFER_ALIGNMENT - 1) / MCOR_BUFFER_ALIGNMENT;
   cl_mem buffer = mcor_make_object(sizeof *buffer, CL_MEM_OBJECT_ALLOCATION_FAILURE, error);
   if (buffer)
   {
-    buffer->data = aligned_alloc(MCOR_BUFFER_ALIGNMENT, padded * MCOR_BUFFER_ALIGNMENT);
+    buffer->data = mcor_system_allocate(MCOR_BUFFER_ALIGNMENT, size);
     if (!buffer->data)
     {
       free(buffer);
@@ -364,7 +360,7 @@ static cl_mem mcor_make_buffer(
 
 static cl_int mcor_release_buffer(cl_mem buffer)
 {
-  free(buffer->data);
+  mcor_system_release(buffer->data);
   free(buffer);
   return CL_SUCCESS;
 }

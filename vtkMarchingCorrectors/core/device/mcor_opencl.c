@@ -6,40 +6,12 @@
  * driver begins with a table of its functions (extension cl_khr_icd), and so do those of the built-in
  * device, which is all that calling them takes. */
 
-#if !defined(_WIN32) && !defined(_GNU_SOURCE)
-#define _GNU_SOURCE /* for RTLD_DEFAULT */
-#endif
-
 /* Without mcor_opencl.h, which gives OpenCL's functions the names that they have here. */
 #include "mcor_native.h"
-
-#ifdef _WIN32
-#include <windows.h>
-#else
-#include <dlfcn.h>
-#endif
+#include "mcor_system.h"
 
 /* clGetPlatformIDs; headers differ in the name of its type. */
 typedef cl_int(CL_API_CALL* mcor_list_platforms)(cl_uint, cl_platform_id*, cl_uint*);
-
-/* A loader stays open: drivers do not bear being closed. */
-static mcor_list_platforms mcor_open_loader(void)
-{
-  mcor_list_platforms list = NULL;
-#ifdef _WIN32
-  HMODULE loader = LoadLibraryExA("OpenCL.dll", NULL, LOAD_LIBRARY_SEARCH_SYSTEM32);
-  list = loader ? (mcor_list_platforms)(void*)GetProcAddress(loader, "clGetPlatformIDs") : NULL;
-#elif !defined(__APPLE__) /* whose platform is of another kind, and has no such tables */
-  /* The program may have one already, or a tool that is put in its place. */
-  *(void**)&list = dlsym(RTLD_DEFAULT, "clGetPlatformIDs");
-  void* loader = list ? NULL : dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (loader)
-  {
-    *(void**)&list = dlsym(loader, "clGetPlatformIDs");
-  }
-#endif
-  return list;
-}
 
 cl_int CL_API_CALL mcor_clGetPlatformIDs(cl_uint room, cl_platform_id* platforms, cl_uint* count);
 cl_int CL_API_CALL mcor_clGetPlatformIDs(cl_uint room, cl_platform_id* platforms, cl_uint* count)
@@ -50,7 +22,7 @@ cl_int CL_API_CALL mcor_clGetPlatformIDs(cl_uint room, cl_platform_id* platforms
   {
     platforms[native++] = own;
   }
-  const mcor_list_platforms list = mcor_open_loader();
+  const mcor_list_platforms list = (mcor_list_platforms)mcor_system_opencl();
   if (!list || room == native || list(room - native, platforms + native, &found) != CL_SUCCESS)
   {
     found = 0;

@@ -3,13 +3,14 @@
 
 /* Threads live for one loop: there is no pool to be shared, ended, or lost in a fork. */
 
-#if defined(__linux__) && !defined(_GNU_SOURCE)
-#define _GNU_SOURCE /* for sched_getaffinity */
-#endif
-
 #include "mcor_parallel.h"
+#include "mcor_system.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
+
+#define MCOR_LOOP_THREADS 16 /* at most, the calling one included */
 
 int mcor_limit_threads(int usable)
 {
@@ -23,33 +24,6 @@ static int mcor_slice_count(int64_t count, int64_t grain)
   const int64_t slices = count / grain;
   return slices > MCOR_SLICES ? MCOR_SLICES : slices > 0 ? (int)slices : count > 0;
 }
-
-#ifdef _WIN32
-
-int mcor_processors(int count)
-{
-  (void)count;
-  return 1 << 20; /* not known: no process keeps to a share */
-}
-
-int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
-{
-  const int slices = mcor_slice_count(count, grain);
-  for (int s = 0; s < slices; ++s)
-  {
-    body(data, s, count * s / slices, count * (s + 1) / slices);
-  }
-  return slices;
-}
-
-#else
-
-#include <pthread.h>
-#include <sched.h>
-#include <stdatomic.h>
-#include <unistd.h>
-
-#define MCOR_LOOP_THREADS 16 /* at most, the calling one included */
 
 typedef struct mcor_loop
 {
@@ -73,15 +47,10 @@ static void* mcor_run_slices(void* data)
 
 int mcor_processors(int count)
 {
-  const long all = sysconf(_SC_NPROCESSORS_ONLN);
-  long usable = 0;
-#ifdef __linux__
-  cpu_set_t set;
-  usable = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
-#endif
-  usable = usable > 0 ? usable : all;
-  const long share = all / count < usable ? all / count : usable;
-  return share < 1 ? 1 : (int)share;
+  int usable = 1;
+  const int all = mcor_system_processors(&usable);
+  const int share = all / count < usable ? all / count : usable;
+  return share < 1 ? 1 : share;
 }
 
 static int mcor_thread_limit(void)
@@ -112,5 +81,3 @@ int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* 
   }
   return loop.slices;
 }
-
-#endif

@@ -1,0 +1,140 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Particles of a file, whose arrays are read when they are asked for."""
+from collections.abc import Mapping
+
+import numpy as np
+
+from .._library import Error
+from .._options import did_you_mean
+from .._warnings import warn
+
+# What solvers call their kernels begins so, letters and digits alone; the first that fits counts.
+KERNELS = {"cubic": "cubic", "quintic": "quintic", "wendlandc2": "wendland", "wendlandquinticc": None,
+           "wendlandquintic": "wendland"}
+
+
+class FileError(Error, ValueError):
+    """A file is damaged, empty, or in no format that is known here."""
+
+    def __init__(self, sentence):
+        """One line, whatever names a damaged file may have in it."""
+        plain = "".join(letter if letter.isprintable() else "?" for letter in str(sentence))
+        super().__init__(plain if len(plain) <= 350 else plain[:170] + " ... " + plain[-170:])
+
+
+def find_kernel(name):
+    """The word of sph_kernel for what a file calls its kernel; None where it is none of ours."""
+    plain = "".join(letter for letter in str(name).lower() if letter.isalnum())
+    return next((word for start, word in KERNELS.items() if plain.startswith(start)), None)
+
+
+class Lazy(Mapping):
+    """{name: array}; an array is read at its first use, and kept. read: {name: function}."""
+
+    def __init__(self, read, file):
+        self._read, self._kept, self._file = dict(read), {}, file
+
+    def __getitem__(self, name):
+        if name not in self._kept:
+            if name not in self._read:
+                raise KeyError(name)
+            try:
+                self._kept[name] = self._read[name]()
+            except FileError:
+                raise
+            except MemoryError:
+                raise FileError(f"{self._file}: there is not enough memory for the array '{name}'.") from None
+            except Exception as error:
+                raise FileError(f"{self._file}: the array '{name}' cannot be read: "
+                                f"{' '.join(str(error).split())[:200]}") from None
+        return self._kept[name]
+
+    def __iter__(self):
+        return iter(self._read)
+
+    def __len__(self):
+        return len(self._read)
+
+    def __contains__(self, name):
+        return name in self._read
+
+
+class Particles:
+    """Positions, arrays, and what the functions of this package want to know.
+
+    smoothing_length, mass, density: the name of an array, one value, or None. support_radius: whether
+    the smoothing length is the radius at which the kernel ends. h_factor: what it is multiplied with.
+    solid: None, or for each particle whether it is a wall. parameters: all else that the file says
+    (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
+    """
+
+    def __init__(self, file, layout, positions, arrays, **more):
+        self.file, self.layout = str(file), layout
+        self._all = Lazy({"": positions, **arrays}, file)
+        self.arrays = Lazy({name: lambda n=name: self._all[n] for name in arrays}, file)
+        self.smoothing_length = self.mass = self.density = self.kernel = self.rho0 = None
+        self.support_radius, self.h_factor = False, 1.0
+        self.solid = self.period = self.time = None
+        self.dimension, self.parameters = 3, {}
+        for name, value in more.items():
+            if not hasattr(self, name):
+                raise TypeError(name)
+            setattr(self, name, value)
+
+    @property
+    def positions(self):
+        positions = self._all[""]
+        if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
+            raise FileError(f"{self.file}: positions have the shape {positions.shape} and the type {positions.dtype}.")
+        return positions
+
+    def __len__(self):
+        return len(self.positions)
+
+    def __repr__(self):
+        return f"<Particles of {self.file} ({self.layout}): arrays: {', '.join(self.arrays)}>"
+
+    def array(self, name):
+        if name not in self.arrays:
+            raise FileError(f"{self.file} has no array '{name}'.{did_you_mean(name, self.arrays)} Arrays: "
+                            f"{', '.join(self.arrays) or 'none'}.")
+        return self.arrays[name]
+
+    def quantity(self, name):
+        value = getattr(self, name)
+        value = self.array(value) if isinstance(value, str) else value
+        if name == "smoothing_length" and value is not None and self.h_factor != 1:
+            value = value * self.h_factor
+        return value
+
+    def words(self, given):
+        """Keywords of the functions for NumPy, which what is given goes before."""
+        words = dict(given)
+        if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None:
+            words["smoothing_length"] = self.quantity("smoothing_length")
+            if words["smoothing_length"] is not None:
+                words.setdefault("smoothing_length_is_support_radius", self.support_radius)
+        if all(words.get(name) is None for name in ("volume", "mass", "density")):
+            words["mass"] = self.quantity("mass")
+            words["density"] = self.quantity("density") if words["mass"] is not None else None
+        if words.get("solid") is None and self.solid is not None:
+            words["solid"] = self.solid
+        if self.period is not None:
+            words.setdefault("periodic", self.period)
+        if self.kernel and "sph_kernel" not in words:
+            known = find_kernel(self.kernel)
+            if known:
+                words["sph_kernel"] = known
+            else:
+                warn(f"The kernel of {self.file} is '{self.kernel}', which is not among those here: the cubic spline "
+                     "is taken. Give sph_kernel.")
+        names = words.get("attributes")
+        if isinstance(names, (list, tuple)):
+            words["attributes"] = {name: self.array(name) for name in names}
+        return words
+
+
+def join(parts):
+    parts = [np.asarray(part) for part in parts]
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""DualSPHysics' Part_0000.bi4. Head of 64 bytes: title (60), byte order (1: big; +10 with 64-bit sizes), sizes of 64 bits
+(0, 1). Then an item: size of its definition, "\\nITEM\\n", name, hidden, values hidden, two formats, numbers of arrays and
+items, bytes of values; "\\nVALUES", number, (name, type, value); arrays, each: size of its definition, "\\nARRAY", name,
+hidden, type, count, bytes, data; items. Text: length, letters. Arrays stay in the file until they are used."""
+import mmap
+
+import numpy as np
+
+from ._particles import FileError, Particles
+
+PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8", 10: "u8", 11: "f4", 12: "f8",
+         20: "i4", 21: "u4", 22: "f4", 23: "f8"}
+TEXT, DEPTH = 1, 8
+
+
+class Reader:
+    """All lengths are compared with what is left of the file before they are believed."""
+
+    def __init__(self, data, name):
+        self.data, self.at, self.name = data, 64, name
+        order = data[60] if len(data) >= 64 else 9
+        if order % 10 > 1:
+            raise FileError(f"{name} has a damaged head.")
+        self.order, self.wide = "<>"[order % 10], data[61] == 1
+
+    def take(self, size):
+        if size < 0 or size > len(self.data) - self.at:
+            raise FileError(f"{self.name} ends too early, or is damaged, at byte {self.at}.")
+        self.at += size
+        return self.at - size
+
+    def number(self, kind="u4", count=1):
+        kind = np.dtype(self.order + kind)
+        values = np.frombuffer(self.data, kind, count, self.take(kind.itemsize * count))
+        return values[0].item() if count == 1 else values.tolist()
+
+    def text(self):
+        size = self.number()
+        begin = self.take(size)
+        return bytes(self.data[begin:begin + size]).decode(errors="replace")
+
+    def expect(self, code):
+        if self.text() != code:
+            raise FileError(f"{self.name} is damaged before byte {self.at}.")
+
+    def value(self):
+        name, kind = self.text(), self.number()
+        if kind == TEXT:
+            return name, self.text()
+        if kind not in PLAIN:
+            raise FileError(f"{self.name} has a value of the unknown type {kind}.")
+        return name, self.number(PLAIN[kind], 3 if kind >= 20 else 1)
+
+    def array(self):
+        self.number()
+        self.expect("\nARRAY")
+        name, _, kind = self.text(), self.number(), self.number()
+        count, size = self.number("u8" if self.wide else "u4"), self.number("u8" if self.wide else "u4")
+        begin = self.take(size)
+        if kind not in PLAIN:
+            return name, None
+        dtype, columns = np.dtype(self.order + PLAIN[kind]), 3 if kind >= 20 else 1
+        if count * columns * dtype.itemsize != size:
+            raise FileError(f"{self.name}: the array '{name}' has {size} bytes for {count} values.")
+        values = np.frombuffer(self.data, dtype, count * columns, begin)
+        return name, values.reshape(count, 3) if columns == 3 else values
+
+    def item(self, depth=0):
+        """(values, arrays, [items])."""
+        if depth > DEPTH:
+            raise FileError(f"{self.name} is damaged: its parts lie too deep in each other.")
+        self.number()
+        self.expect("\nITEM\n")
+        self.text(), self.number(), self.number(), self.text(), self.text()
+        arrays, items, size = self.number(), self.number(), self.number()
+        values = {}
+        if size:
+            self.expect("\nVALUES")
+            values = dict(self.value() for _ in range(self.number()))
+        found = dict(self.array() for _ in range(arrays))
+        return values, found, [self.item(depth + 1) for _ in range(items)]
+
+
+def read_bi4(path):
+    with open(path, "rb") as file:
+        data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    values, arrays, items = Reader(data, path.name).item()
+    for more, found, _ in items:
+        values, arrays = {**values, **more}, {**arrays, **{k: v for k, v in found.items() if v is not None}}
+    positions = arrays.pop("Posd", arrays.pop("Pos", None))
+    ids = arrays.get("Idpd", arrays.get("Idp"))
+    if positions is None or not len(positions):
+        raise FileError(f"{path.name} has no positions (Pos, Posd): it is no file of particles.")
+    arrays = {name: array for name, array in arrays.items() if array is not None and len(array) == len(positions)}
+    if ids is not None and "CaseNfixed" in values and len(ids) == len(positions):
+        ends = np.cumsum([values.get(f"CaseN{kind}", 0) for kind in ("fixed", "moving", "float")])
+        arrays["Type"] = np.searchsorted(ends, ids, side="right").astype(np.uint8)
+    solid = arrays["Type"] != 3 if "Type" in arrays else None
+    density = next((name for name in ("Rhop", "Rho") if name in arrays), None)
+    h = values.get("H", 0)
+    return Particles(
+        path.name, "DualSPHysics", lambda: native(positions), {k: lambda v=v: native(v) for k, v in arrays.items()},
+        smoothing_length=h if h > 0 else None, mass=values.get("MassFluid") or None, density=density,
+        rho0=values.get("Rhop0", values.get("RhopZero")), solid=solid if solid is not None and solid.any() else None,
+        kernel="Wendland C2", dimension=2 if values.get("Data2d") else 3, period=period_of(values),
+        time=values.get("TimeStep"), parameters=values)
+
+
+def native(array):
+    """Where it lies in the file, unless its byte order is another's, or the file's text before it makes it uneven."""
+    array = array.astype(array.dtype.newbyteorder("="), copy=False)
+    return array if array.flags.aligned else array.copy()
+
+
+def period_of(values):
+    """PeriActive, or PeriMode: 1 x, 2 y, 3 xy, 4 z, 5 xz, 6 yz. Shifted periods (PeriXinc along another axis) are none."""
+    axes = {1: "x", 2: "y", 3: "xy", 4: "z", 5: "xz", 6: "yz"}.get(values.get("PeriActive", values.get("PeriMode", 0)), "")
+    low, high = values.get("MapPosMin"), values.get("MapPosMax")
+    if not axes or not low or not high:
+        return None
+    for axis in axes:
+        step = values.get(f"Peri{axis.upper()}inc", [0, 0, 0])
+        if any(step[other] for other in range(3) if other != "xyz".index(axis)):
+            return None
+    return [bound for i in range(3) for bound in ((low[i], high[i]) if "xyz"[i] in axes else (0.0, 0.0))]

@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""VTK's files (.vtp, .vtu, .vtk) of SPHinXsys, PartVTK, SPlisHSPlasH: several bodies as one set, walls marked."""
+import re
+
+import numpy as np
+
+from ._particles import FileError, Particles, join
+
+WALL = re.compile(r"wall|boundary|solid|bound|container|tank", re.I)
+
+
+def load(path):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOLegacy import vtkDataSetReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+
+    reader = {".vtp": vtkXMLPolyDataReader, ".vtu": vtkXMLUnstructuredGridReader}.get(path.suffix.lower(), vtkDataSetReader)()
+    with open(path, "rb") as file:
+        if path.suffix.lower() != ".vtk" and not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
+            raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
+    complaints = []
+    for kind in ("ErrorEvent", "WarningEvent"):
+        reader.AddObserver(kind, lambda *_: complaints.append(1))
+    reader.SetFileName(str(path))
+    if hasattr(reader, "ReadAllScalarsOn"):
+        for what in ("Scalars", "Vectors", "Fields"):
+            getattr(reader, f"ReadAll{what}On")()
+    if hasattr(reader, "ReadOutputType") and reader.ReadOutputType() < 0:  # whose Update would complain on stderr, too
+        raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
+    reader.Update()
+    data = reader.GetOutput()
+    if complaints or data is None or not hasattr(data, "GetPoints") or not data.GetPoints() or not data.GetNumberOfPoints():
+        raise FileError(f"{path.name} has no points, ends too early, or is damaged.")
+    count, points, arrays = data.GetNumberOfPoints(), vtk_to_numpy(data.GetPoints().GetData()), {}
+    for i in range(data.GetPointData().GetNumberOfArrays()):
+        array = data.GetPointData().GetArray(i)
+        if array is not None and array.GetNumberOfTuples() == count and array.GetName():
+            arrays[array.GetName()] = vtk_to_numpy(array)
+    if len(points) != count:
+        raise FileError(f"{path.name} is damaged.")
+    time = data.GetFieldData().GetArray("TimeValue") or data.GetFieldData().GetArray("TIME")
+    return points, arrays, time.GetTuple1(0) if time and time.GetNumberOfTuples() else None
+
+
+def read_bodies(paths, walls):
+    every = paths + [path for path in walls if path not in paths]
+    bodies = [load(path) for path in every]
+    marked = [path in walls or not walls and len(every) > 1 and bool(WALL.search(path.stem)) for path in every]
+    counts = [len(points) for points, _, _ in bodies]
+    common = [name for name in bodies[0][1] if all(
+        name in arrays and arrays[name].shape[1:] == bodies[0][1][name].shape[1:] for _, arrays, _ in bodies)]
+    arrays = {name: lambda n=name: join([body[1][n] for body in bodies]) for name in common}
+    lower = {name.lower(): name for name in reversed(common)}
+
+    def find(*names):
+        return next((lower[name] for name in names if name in lower), None)
+
+    solid = np.repeat(marked, counts)
+    if "Type" in common and len(every) == 1 and ("Rhop" in common or "Idp" in common):
+        solid = arrays["Type"]() != 3  # PartVTK's
+    return Particles(paths[0].name, "VTK", lambda: join([points for points, _, _ in bodies]), arrays,
+                     smoothing_length=find("smoothinglength", "hsml", "h"), mass=find("mass", "masses", "m"),
+                     density=find("density", "rho", "rhop"), solid=solid if solid.any() else None,
+                     time=bodies[0][2], parameters={"bodies": dict(zip([path.name for path in every], counts))})

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""GADGET-2/4, GIZMO, AREPO and SWIFT: PartType0, ... of HDF5, in one file or several."""
+import re
+
+import numpy as np
+
+from ._particles import FileError, Particles
+from .hdf5 import Part, get, is_numbers, load, names_of
+
+TYPES = {"gas": 0, "dark_matter": 1, "disk": 2, "bulge": 3, "stars": 4, "black_holes": 5, "boundary": 5, "sinks": 3,
+         "neutrinos": 6}
+
+
+def number(attributes, name, default=None):
+    """An attribute's first number."""
+    try:
+        value = np.ravel(attributes[name])[0]
+        return value.item() if isinstance(value, np.generic) and value.dtype.kind in "fiub" else float(value)
+    except (KeyError, IndexError, TypeError, ValueError):
+        return default
+
+
+def text(value):
+    value = np.ravel(value)[0] if np.size(value) else ""
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+
+
+def files_of(path, count):
+    """All files of a snapshot that is in several, NAME.0.hdf5, ..."""
+    found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5)", path.name)
+    if count == 1 or not found:
+        return [path]
+    if count > 65536:
+        raise FileError(f"{path.name} claims to be one of {count} files.")
+    files = [path.with_name(f"{found[1]}.{i}{found[3]}") for i in range(count)]
+    missing = [file.name for file in files if not file.is_file()]
+    if missing:
+        raise FileError(f"{path.name} is one of {count} files of a snapshot; {missing[0]} is missing.")
+    return files
+
+
+def numbers_of(types):
+    chosen = [types] if isinstance(types, (str, int)) else list(types)
+    numbers = []
+    for kind in chosen:
+        if isinstance(kind, str) and kind not in TYPES:
+            raise FileError(f"There is no type '{kind}': {', '.join(TYPES)}, or a number.")
+        numbers.append(TYPES[kind] if isinstance(kind, str) else int(kind))
+    return numbers
+
+
+def describe_header(file):
+    header = get(file, "Header")
+    header = {} if header is None else dict(header.attrs)
+    found = {"time": number(header, "Time"), "redshift": number(header, "Redshift"),
+             "hubble_parameter": number(header, "HubbleParam"), "units": {}}
+    box = np.ravel(header.get("BoxSize", []))
+    found["box_size"] = [float(side) for side in (box if len(box) == 3 else box[:1].repeat(3))] if len(box) else None
+    units = get(file, "Units")
+    for source in (header, dict(units.attrs) if units is not None else {}):
+        for name, value in source.items():
+            if name.startswith("Unit") and np.size(value) == 1:
+                found["units"][name] = number({name: value}, name)
+    cosmology = get(file, "Cosmology")
+    found["scale_factor"] = number(cosmology.attrs, "Scale-factor") if cosmology is not None else None
+    if found["scale_factor"] is None and found["redshift"]:
+        found["scale_factor"] = 1 / (1 + found["redshift"])
+    return header, found
+
+
+def period_of(file, box):
+    """Only where the file says that it is periodic: open runs have a BoxSize, too."""
+    parameters, config = get(file, "Parameters"), get(file, "Config")
+    periodic = parameters is not None and number(parameters.attrs, "InitialConditions:periodic", 0) == 1 \
+        or config is not None and "PERIODIC" in config.attrs
+    if not periodic or box is None or not all(np.isfinite(side) and side > 0 for side in box):
+        return None
+    return [bound for side in box for bound in (0.0, side)]
+
+
+def read_gadget(path, types):
+    import h5py
+
+    wanted = numbers_of(0 if types is None else types)
+    with h5py.File(path, "r") as file:
+        header, parameters = describe_header(file)
+        files = files_of(path, int(number(header, "NumFilesPerSnapshot", 1)))
+        period = period_of(file, parameters["box_size"])
+        scheme = get(file, "HydroScheme")
+        gamma = number(scheme.attrs, "Kernel gamma") if scheme is not None else None
+        kernel = text(scheme.attrs["Kernel function"]) if scheme is not None and "Kernel function" in scheme.attrs \
+            else None
+        dimension = number(header, "Dimension", 3)
+    parts, names = [], None
+    for kind in wanted:
+        found, own = find_parts(files, f"PartType{kind}")
+        parts += found
+        names = own if names is None or not found else [name for name in names if name in own]
+    if not parts:
+        raise FileError(f"{path.name} has no particles of type {', '.join(map(str, wanted))}.")
+
+    arrays = {name: lambda n=name: load(parts, n) for name in names if name != "Coordinates"}
+    h = next((name for name in ("SmoothingLengths", "SmoothingLength") if name in arrays), None)
+    swift = h == "SmoothingLengths"
+    if swift and gamma is None:
+        raise FileError(f"{path.name} is SWIFT's, but HydroScheme does not tell 'Kernel gamma', without which its "
+                        "smoothing lengths mean nothing.")
+    if "Masses" not in arrays:
+        table = np.ravel(header.get("MassTable", []))
+        arrays["Masses"] = lambda: masses_of(table, parts, path)
+    density = next((name for name in ("Densities", "Density") if name in arrays), None)
+    parameters["types"] = wanted
+    return Particles(
+        path.name, "SWIFT" if swift else "GADGET", lambda: load(parts, "Coordinates"), arrays, smoothing_length=h,
+        support_radius=True, h_factor=gamma if swift else 1.0, mass="Masses", density=density, kernel=kernel,
+        dimension=int(dimension), period=period, time=parameters["time"], parameters=parameters)
+
+
+def masses_of(table, parts, path):
+    kinds = [int(part.group[len("PartType"):]) for part in parts]
+    for kind in kinds:
+        if kind >= len(table) or not table[kind] > 0:
+            raise FileError(f"{path.name} has no masses of type {kind}, neither Masses nor in MassTable.")
+    return np.repeat([float(table[kind]) for kind in kinds], [part.count for part in parts])
+
+
+def find_parts(files, group):
+    """Where the particles are, and the names of arrays of numbers that all of them have."""
+    import h5py
+
+    parts, names = [], None
+    for path in files:
+        with h5py.File(path, "r") as file:
+            kind = get(file, group)
+            positions = None if kind is None else get(kind, "Coordinates")
+            if positions is None or not is_numbers(positions) or not positions.shape or not positions.shape[0]:
+                continue
+            parts.append(Part(path, group, positions.shape[0]))
+            own = names_of(kind, positions.shape[0])
+            names = own if names is None else [name for name in names if name in own]
+    return parts, names or []

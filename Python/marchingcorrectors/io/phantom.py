@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Phantom: HDF5, and native dumps by sarracen. Accreted (h <= 0) and inactive (itype < 0) particles are left out."""
+import numpy as np
+
+from ._particles import FileError, Particles
+from .hdf5 import Part, data_set, get, is_numbers, load, names_of
+
+
+def read_hdf5_dump(path):
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        header, gas = get(file, "header"), get(file, "particles")
+        part = Part(path, "particles", len(data_set(gas, "xyz")))
+        names = [name for name in names_of(gas, part.count) if name != "xyz"]
+        values = {name: np.ravel(get(header, name)[()]) for name in header
+                  if is_numbers(get(header, name)) and get(header, name).size <= 64}
+    alive = load([part], "h") > 0
+    if "itype" in names:
+        alive &= load([part], "itype") == 1
+    if not alive.any():
+        raise FileError(f"{path.name} has no gas that is alive.")
+    there = [part.where(alive)]
+    return make(path, lambda name: load(there, name), lambda: load(there, "xyz"), names, values)
+
+
+def cube(values):
+    return values * values * values
+
+
+def make(path, array, positions, names, values):
+    hfact, mass = values.get("hfact", [1.2])[0], values["massoftype"][0]
+    arrays = {name: lambda n=name: array(n) for name in names}
+    arrays.setdefault("density", lambda: float(mass) * cube(float(hfact) / array("h").astype(float)))
+    return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=float(mass),
+                     density="density", time=float(values["time"][0]) if "time" in values else None,
+                     parameters={name: value.tolist() for name, value in values.items()})
+
+
+def read_native(path):
+    import sarracen
+
+    frames = sarracen.read_phantom(str(path), separate_types=None)
+    frame = frames[frames["itype"] == 1] if "itype" in frames else frames
+    frame = frame[(frame["h"] > 0)].dropna(subset=["x", "y", "z"])
+    if not len(frame):
+        raise FileError(f"{path.name} has no gas that is alive.")
+    values = {name: np.ravel(value) for name, value in frames.params.items() if np.isscalar(value) or np.size(value) == 1}
+    names = [name for name in frame if name not in ("x", "y", "z", "mass") and frame[name].dtype.kind in "fiub"]
+    return make(path, lambda name: frame[name].to_numpy(),
+                lambda: np.ascontiguousarray(frame[["x", "y", "z"]].to_numpy(float)), names,
+                {name: value for name, value in values.items() if value.dtype.kind in "fiub"})

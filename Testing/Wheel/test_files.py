@@ -1,0 +1,414 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""marchingcorrectors.io: files made here in the layout of each solver give the surface of the arrays that went into
+them; what is damaged gives one sentence and nothing else."""
+import gzip
+import importlib.util
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+import marchingcorrectors as mc
+from marchingcorrectors import io
+
+SPACING, H = 0.1, 0.13
+LINE = np.arange(-9, 10) * SPACING
+X = np.stack(np.meshgrid(LINE, LINE, LINE), -1).reshape(-1, 3)
+X = X[np.linalg.norm(X, axis=1) < 0.9]
+DENSITY = 2 - np.linalg.norm(X, axis=1)
+MASS = DENSITY * SPACING ** 3
+WALL = X[:, 2] < -0.5
+
+
+def write_gadget(path, part=slice(None), files=1, table=False, swift=False, periodic=False):
+    with h5py.File(path, "w") as file:
+        header, gas = file.create_group("Header"), file.create_group("PartType0")
+        header.attrs.update({"Time": 0.25, "NumFilesPerSnapshot": files, "BoxSize": 4.0, "Redshift": 3.0,
+                             "HubbleParam": 0.7, "MassTable": [0.001 if table else 0.0, 2.0, 0, 0, 0, 0]})
+        gas["Coordinates"], gas["Densities" if swift else "Density"] = X[part], DENSITY[part]
+        gas["Velocities"], gas["ParticleIDs"] = X[part], np.arange(len(X))[part]
+        if not table:
+            gas["Masses"] = MASS[part]
+        gas["SmoothingLengths" if swift else "SmoothingLength"] = np.full(len(X[part]), 2 * H / (1.825742 if swift else 1))
+        file.create_group("PartType1")["Coordinates"] = X[part][:5]
+        if swift:
+            file.create_group("HydroScheme").attrs.update({"Kernel gamma": [1.825742],
+                                                          "Kernel function": b"Cubic spline (M4)"})
+        if periodic:
+            file.create_group("Parameters").attrs["InitialConditions:periodic"] = b"1"
+
+
+def write_phantom(path):
+    with h5py.File(path, "w") as file:
+        header, gas = file.create_group("header"), file.create_group("particles")
+        header["massoftype"], header["hfact"], header["time"] = [0.001] + [0.0] * 6, 1.2, 7.0
+        h = 1.2 * (0.001 / DENSITY) ** (1 / 3)
+        gas["xyz"], gas["h"] = X, np.where(np.arange(len(X)) == 7, -h, h)
+        gas["itype"] = np.where(X[:, 0] < 0, -1, 1).astype(np.int8)
+        gas["vxyz"] = X
+
+
+def write_native(path):
+    """Phantom's own dump, as far as sarracen reads it: blocks of Fortran."""
+    def block(data):
+        return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
+
+    h = (1.2 * (0.001 / DENSITY) ** (1 / 3))
+    h[7] = -h[7]
+    out = block(struct.pack("<idiii", 60769, 60878.0, 60878, 1, 690706)) + block(b"FT:Phantom".ljust(100))
+    numbers = {0: (b"nparttot", struct.pack("<i", len(X)))}
+    for kind in range(8):
+        if kind in numbers:
+            out += block(struct.pack("<i", 1)) + block(numbers[kind][0].ljust(16)) + block(numbers[kind][1])
+        elif kind == 5:
+            values = {b"massoftype": 0.001, b"hfact": 1.2, b"time": 7.0}
+            out += block(struct.pack("<i", 3)) + block(b"".join(name.ljust(16) for name in values))
+            out += block(struct.pack("<3d", *values.values()))
+        else:
+            out += block(struct.pack("<i", 0))
+    out += block(struct.pack("<i", 1)) + block(struct.pack("<q8i", len(X), 0, 0, 0, 0, 0, 4, 0, 0))
+    for name, values in zip((b"x", b"y", b"z", b"h"), (*X.T, h)):
+        out += block(name.ljust(16)) + block(values.astype("<f8").tobytes())
+    Path(path).write_bytes(out)
+    return h
+
+
+def write_pysph(path):
+    with h5py.File(path, "w") as file:
+        file.create_group("solver_data").attrs.update({"t": 0.5, "dt": 1e-3, "count": 9})
+        for name, chosen in (("fluid", ~WALL), ("boundary", WALL)):
+            arrays = file.create_group(f"particles/{name}/arrays")
+            for axis, letter in enumerate("xyz"):
+                arrays[letter] = X[chosen, axis]
+            arrays["h"], arrays["m"] = np.full(chosen.sum(), H), MASS[chosen]
+            arrays["rho"] = DENSITY[chosen]
+            arrays["tag"] = np.arange(chosen.sum()) == 0  # one that is another process's
+            if name == "fluid":
+                arrays["u"], arrays["v"], arrays["w"] = X[chosen].T
+
+
+def write_bi4(path, order="<", wide=False, double=True, **more):
+    """By the layout that JBinaryData.h and .cpp describe."""
+    def pack(form, *values):
+        return struct.pack(order + form, *values)
+
+    def text(word):
+        return pack("I", len(word.encode())) + word.encode()
+
+    def value(name, kind, form, *values):
+        return text(name) + pack("i", kind) + (text(values[0]) if kind == 1 else pack(form, *values))
+
+    def array(name, kind, form, values):
+        data = values.astype(order + form).tobytes()
+        base = text("\nARRAY") + text(name) + pack("ii", 0, kind) + pack("QQ" if wide else "II", len(values), len(data))
+        return pack("I", len(base)) + base + data
+
+    def item(name, values, arrays, items):
+        packed = text("\nVALUES") + pack("I", len(values)) + b"".join(values) if values else b""
+        base = text("\nITEM\n") + text(name) + pack("ii", 0, 0) + text("%.7E") + text("%.15E")
+        base += pack("III", len(arrays), len(items), len(packed))
+        return pack("I", len(base)) + base + packed + b"".join(arrays) + b"".join(items)
+
+    ids = np.empty(len(X), np.uint32)
+    ids[WALL], ids[~WALL] = np.arange(WALL.sum()), WALL.sum() + np.arange((~WALL).sum())
+    arrays = [array("Idp", 8, "u4", ids), array("Posd", 23, "f8", X) if double else array("Pos", 22, "f4", X),
+              array("Vel", 22, "f4", X), array("Rhop", 11, "f4", 1000 * DENSITY)]
+    part = item("PART_0003", [value("TimeStep", 12, "d", 0.75), value("Npok", 8, "I", len(X))], arrays, [])
+    values = [value("AppName", 1, "", "été"), value("Data2d", 2, "i", 0), value("Dp", 12, "d", SPACING),
+              value("H", 12, "d", H), value("MassFluid", 12, "d", 1.0), value("Rhop0", 12, "d", 1000.0),
+              value("CaseNfixed", 10, "Q", int(WALL.sum())), value("CaseNmoving", 10, "Q", 0),
+              value("CaseNfloat", 10, "Q", 0), value("PeriActive", 7, "i", more.get("period", 0)),
+              value("MapPosMin", 23, "3d", -2, -2, -2), value("MapPosMax", 23, "3d", 2, 2, 2)]
+    head = b"#File JPartDataBi4".ljust(60) + bytes([(order == ">") + 10 * wide, wide, 0, 0])
+    Path(path).write_bytes(head + item("JPartDataBi4", values, [], [part]))
+
+
+def write_bgeo(path, pack=bytes):
+    table = np.zeros(len(X), [("p", ">f4", 4), ("id", ">i4"), ("velocity", ">f4", 3)])
+    table["p"][:, :3], table["p"][:, 3], table["id"], table["velocity"] = X, 1, np.arange(len(X)), X
+    data = b"BgeoV" + struct.pack(">9i", 5, len(X), 0, 0, 0, 2, 0, 0, 0)
+    for name, size, kind in ((b"id", 1, 1), (b"velocity", 3, 5)):
+        data += struct.pack(">H", len(name)) + name + struct.pack(">Hi", size, kind) + bytes(4 * size)
+    Path(path).write_bytes(pack(data + table.tobytes() + b"\0\xff"))
+
+
+def quietly(function, *arguments, **words):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return function(*arguments, **words)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def at(self, name):
+        return Path(self.folder.name) / name
+
+    def assert_refused(self, words, path, **more):
+        with self.assertRaises(io.FileError) as caught:
+            particles = io.read(path, **more)
+            particles.positions, dict(particles.arrays)
+        self.assertIn(words, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+
+
+class Layouts(Case):
+    def assert_surface(self, found, positions=X, **words):
+        wanted = quietly(mc.isosurface, positions, words.pop("scalar", DENSITY), words.pop("iso", 1.5), **words)
+        self.assertGreater(len(wanted.triangles), 300)
+        self.assertEqual(found.points.tobytes(), wanted.points.tobytes())
+        self.assertEqual(found.triangles.tobytes(), wanted.triangles.tobytes())
+
+    def test_gadget(self):
+        write_gadget(self.at("snap.hdf5"))
+        particles = io.read(self.at("snap.hdf5"))
+        surface = quietly(mc.isosurface, particles, "Density", 1.5, attributes=["Velocities"])
+        self.assert_surface(surface, smoothing_length=H, mass=MASS, density=DENSITY)
+        self.assertEqual(surface.attributes["Velocities"].shape, surface.points.shape)
+        self.assertEqual((particles.time, particles.period, particles.parameters["box_size"]), (0.25, None, [4.0] * 3))
+        self.assertAlmostEqual(particles.parameters["scale_factor"], 0.25)
+        self.assertEqual(len(io.read(self.at("snap.hdf5"), types="dark_matter")), 5)
+        self.assertEqual(len(io.read(self.at("snap.hdf5"), types=[0, 1])), len(X) + 5)
+        self.assertTrue((io.read(self.at("snap.hdf5"), types=1).arrays["Masses"] == 2).all())
+        self.assert_refused("no type 'water'", self.at("snap.hdf5"), types="water")
+        with self.assertRaisesRegex(io.FileError, "Did you mean 'Density'"):
+            mc.isosurface(particles, "Densty", 1.5)
+
+    def test_gadget_in_several_files(self):
+        write_gadget(self.at("snap.0.hdf5"), slice(0, 1000), files=3)
+        write_gadget(self.at("snap.1.hdf5"), slice(1000, 1000), files=3)
+        self.assert_refused("snap.2.hdf5 is missing", self.at("snap.0.hdf5"))
+        write_gadget(self.at("snap.2.hdf5"), slice(1000, None), files=3)
+        particles = io.read(self.at("snap.1.hdf5"))
+        self.assertEqual(particles.positions.tobytes(), X.tobytes())
+        self.assertEqual(particles.arrays["ParticleIDs"].tolist(), list(range(len(X))))
+
+    def test_mass_table(self):
+        write_gadget(self.at("snap.hdf5"), table=True)
+        self.assertTrue((io.read(self.at("snap.hdf5")).quantity("mass") == 0.001).all())
+
+    def test_swift(self):
+        write_gadget(self.at("swift.hdf5"), swift=True, periodic=True)
+        particles = io.read(self.at("swift.hdf5"))
+        self.assertEqual((particles.layout, particles.kernel, particles.period),
+                         ("SWIFT", "Cubic spline (M4)", [0.0, 4.0] * 3))
+        self.assertLess(np.abs(particles.quantity("smoothing_length") - 2 * H).max(), 1e-12)
+
+    def test_phantom(self):
+        write_phantom(self.at("dump.h5"))
+        particles = io.read(self.at("dump.h5"))
+        alive = (X[:, 0] >= 0) & (np.arange(len(X)) != 7)
+        self.assertEqual(particles.positions.tobytes(), X[alive].tobytes())
+        self.assertLess(np.abs(particles.arrays["density"] / DENSITY[alive] - 1).max(), 1e-12)
+        self.assertEqual(particles.time, 7.0)
+
+    def test_phantom_native(self):
+        if not all(importlib.util.find_spec(name) for name in ("sarracen", "sklearn")):
+            self.skipTest("sarracen and scikit-learn, which wheel.phantom installs, are not here")
+        h = write_native(self.at("dump_00000"))
+        particles = quietly(io.read, self.at("dump_00000"))
+        self.assertEqual(particles.positions.tobytes(), X[h > 0].tobytes())
+        self.assertEqual(particles.quantity("smoothing_length").tobytes(), h[h > 0].tobytes())
+        self.assertLess(np.abs(particles.arrays["density"] / DENSITY[h > 0] - 1).max(), 1e-12)
+
+    def test_pysph(self):
+        write_pysph(self.at("run_9.hdf5"))
+        particles = io.read(self.at("run_9.hdf5"))
+        own = np.concatenate([X[WALL][1:], X[~WALL][1:]])  # sets by their names
+        self.assertEqual(particles.positions.tobytes(), own.tobytes())
+        self.assertEqual(particles.solid.tolist(), [True] * (WALL.sum() - 1) + [False] * ((~WALL).sum() - 1))
+        self.assertEqual((particles.time, particles.dimension), (0.5, 3))
+        velocity = particles.arrays["Velocity"]
+        self.assertEqual(velocity[~particles.solid].tobytes(), X[~WALL][1:].tobytes())
+        self.assertFalse(velocity[particles.solid].any())
+        joined = [np.concatenate([a[WALL][1:], a[~WALL][1:]]) for a in (DENSITY, MASS)]
+        self.assert_surface(quietly(mc.isosurface, particles, "rho", 1.5), own, scalar=joined[0], smoothing_length=H,
+                            mass=joined[1], density=joined[0], solid=particles.solid)
+
+    def test_bi4(self):
+        for order in "<>":
+            for wide in (False, True):
+                for double in (False, True):
+                    write_bi4(self.at("Part_0003.bi4"), order, wide, double, period=3)
+                    particles = io.read(self.at("Part_0003.bi4"))
+                    self.assertEqual(particles.positions.tobytes(),
+                                     X.astype(np.float64 if double else np.float32).tobytes())
+                    self.assertEqual(particles.solid.tolist(), WALL.tolist())
+                    self.assertEqual((particles.time, particles.smoothing_length, particles.mass, particles.rho0,
+                                      particles.support_radius), (0.75, H, 1.0, 1000.0, False))
+                    self.assertEqual(particles.period, [-2, 2, -2, 2, 0, 0])
+                    self.assertEqual(particles.parameters["AppName"], "été")
+        write_bi4(self.at("Part_0003.bi4"))
+        rho = (1000 * DENSITY).astype(np.float32)
+        self.assert_surface(quietly(mc.isosurface, io.read(self.at("Part_0003.bi4")), "Rhop", 1500.0), scalar=rho,
+                            iso=1500.0, smoothing_length=H, mass=1.0, density=rho, solid=WALL, sph_kernel="wendland")
+
+    def test_bgeo(self):
+        for pack in (bytes, gzip.compress):
+            write_bgeo(self.at("fluid.bgeo"), pack)
+            particles = io.read(self.at("fluid.bgeo"))
+            self.assertEqual(particles.positions.tobytes(), X.astype(np.float32).tobytes())
+            self.assertEqual(particles.arrays["velocity"].tobytes(), X.astype(np.float32).tobytes())
+            self.assertEqual(particles.arrays["id"].tolist(), list(range(len(X))))
+
+    def test_bodies(self):
+        import pyvista
+
+        for name, chosen in (("WaterBody_1.vtp", ~WALL), ("WallBoundary_1.vtp", WALL)):
+            body = pyvista.PolyData(X[chosen])
+            body["Density"] = DENSITY[chosen]
+            body.save(self.at(name))
+        both = [self.at("WaterBody_1.vtp"), self.at("WallBoundary_1.vtp")]
+        for particles in (io.read(both), io.read(both[0], walls=both[1:])):
+            self.assertEqual(particles.positions.tobytes(), np.concatenate([X[~WALL], X[WALL]]).tobytes())
+            self.assertEqual(particles.solid.sum(), WALL.sum())
+            self.assertTrue(particles.solid[-1])
+
+    def test_lazy(self):
+        """No array is read before it is used."""
+        write_gadget(self.at("snap.hdf5"))
+        particles = io.read(self.at("snap.hdf5"))
+        self.assertEqual(particles._all._kept, {})
+        particles.positions
+        self.assertEqual(list(particles._all._kept), [""])
+
+    def test_unknown_kernel_is_said(self):
+        write_gadget(self.at("swift.hdf5"), swift=True)
+        with h5py.File(self.at("swift.hdf5"), "a") as file:
+            file["HydroScheme"].attrs["Kernel function"] = b"Quartic spline (M5)"
+        with self.assertWarnsRegex(mc.InputWarning, "Quartic spline"):
+            mc.isosurface(io.read(self.at("swift.hdf5")), "Densities", 1.5)
+
+
+class Conversion(Case):
+    def test_pyvista(self):
+        write_bi4(self.at("Part_0003.bi4"), period=3)
+        data = mc.read_pyvista(self.at("Part_0003.bi4"))
+        self.assertAlmostEqual(float(np.ravel(data["SmoothingLength"])[0]), H)
+        self.assertEqual(data.field_data["TimeValue"][0], 0.75)
+        self.assertEqual(data.field_data["PeriodicBounds"].tolist(), [-2, 2, -2, 2, 0, 0])
+        surface = quietly(data.sph.isosurface, "Rhop", 1500.0, fluid=("Type", 3), sph_kernel="wendland")
+        direct = quietly(mc.isosurface, io.read(self.at("Part_0003.bi4")), "Rhop", 1500.0, periodic=None)
+        self.assertEqual(surface.n_cells, len(direct.triangles))
+
+    def test_support_radius(self):
+        write_gadget(self.at("swift.hdf5"), swift=True)
+        data = mc.read_pyvista(self.at("swift.hdf5"))
+        self.assertNotIn("SmoothingLengths", data.point_data)
+        self.assertLess(np.abs(data["SmoothingLength"] - H).max(), 1e-12)
+
+    def test_program(self):
+        import pyvista
+
+        for i in range(2):
+            write_gadget(self.at(f"s{i}.hdf5"))
+        with h5py.File(self.at("s1.hdf5"), "a") as file:
+            file["Header"].attrs["Time"] = 0.5
+        command = [sys.executable, "-m", "marchingcorrectors", "convert"]
+
+        def run(*arguments):
+            return subprocess.run([*command, *map(str, arguments)], stderr=subprocess.PIPE, text=True)
+
+        done = run(self.at("s0.hdf5"), self.at("s1.hdf5"), self.at("all.pvd"))  # in the order that was given
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        reader = pyvista.get_reader(self.at("all.pvd"))
+        self.assertEqual(reader.time_values, [0.25, 0.5])
+        self.assertEqual(reader.read()[0].n_points, len(X))
+        self.at("empty.hdf5").touch()
+        done = run(self.at("empty.hdf5"), self.at("o.vtp"))
+        self.assertEqual((done.returncode, done.stderr), (1, "marchingcorrectors: empty.hdf5 is empty.\n"))
+        self.assertEqual(run("convert").returncode, 2)
+        self.assertEqual(run(self.at("s0.hdf5"), self.at("s0.hdf5")).returncode, 1)
+
+
+class Hostile(Case):
+    def test_pickles(self):
+        class Canary:
+            def __reduce__(self):
+                return os.mkdir, (str(Path(tempfile.gettempdir()) / "canary"),)
+
+        np.savez(self.at("run.npz"), particles=np.array([Canary()], object))
+        self.assert_refused("pickles, which can run code", self.at("run.npz"))
+        self.assertFalse((Path(tempfile.gettempdir()) / "canary").exists())
+
+    def test_no_particles(self):
+        for name in ("a.hdf5", "a.bi4", "a.bgeo", "a.vtp", "a.vtk"):
+            self.assert_refused("There is no file", self.at(name))
+            self.at(name).touch()
+            self.assert_refused("is empty", self.at(name))
+            self.at(name).write_bytes(b"nonsense" * 20)
+            self.assert_refused("", self.at(name))
+
+    def test_links_to_other_files(self):
+        write_gadget(self.at("other.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "w") as file:
+            file["PartType0"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
+        self.assert_refused("is a link", self.at("snap.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # a link inside of the file to that
+            file["elsewhere"] = h5py.ExternalLink(str(self.at("other.hdf5")), "PartType0")
+            del file["PartType0"]
+            file["PartType0"] = h5py.SoftLink("/elsewhere")
+        self.assert_refused("is a link", self.at("snap.hdf5"))
+
+    def test_data_in_other_files(self):
+        self.at("secret").write_bytes(bytes(800))
+        write_gadget(self.at("other.hdf5"))
+        for make in (write_gadget, write_phantom, write_pysph):
+            make(self.at("snap.hdf5"))
+            with h5py.File(self.at("snap.hdf5"), "a") as file:
+                place = {write_gadget: "PartType0", write_phantom: "particles", write_pysph: "particles/fluid/arrays"}[make]
+                file[place].create_dataset("Secret", (len(X),), "u1", external=[(str(self.at("secret")), 0, len(X))])
+            self.assert_refused("lies in other files", self.at("snap.hdf5"))
+        write_gadget(self.at("snap.hdf5"))
+        source = h5py.VirtualSource(str(self.at("other.hdf5")), "PartType0/Density", (len(X),))
+        layout = h5py.VirtualLayout((len(X),), "f8")
+        layout[:] = source
+        with h5py.File(self.at("snap.hdf5"), "a") as file:
+            del file["PartType0/Density"]
+            file["PartType0"].create_virtual_dataset("Density", layout)
+        self.assert_refused("lies in other files", self.at("snap.hdf5"))
+
+    def test_claims(self):
+        """Sizes that a file cannot have."""
+        with h5py.File(self.at("snap.hdf5"), "w") as file:
+            file.create_dataset("PartType0/Coordinates", (10 ** 12, 3), "f8", chunks=(1024, 3))
+        self.assert_refused("claims", self.at("snap.hdf5"))
+        write_bgeo(self.at("bomb.bgeo"), lambda data: gzip.compress(data[:9] + b"\x7f" + data[10:]))
+        self.assert_refused("too short", self.at("bomb.bgeo"))
+
+    def test_fuzz(self):
+        """Truncated, and with bits turned: a FileError of one line, or particles."""
+        random, refused = np.random.default_rng(34), 0
+        makers = {"snap.hdf5": write_gadget, "dump.h5": write_phantom, "run.hdf5": write_pysph,
+                  "Part_0001.bi4": write_bi4, "fluid.bgeo": write_bgeo}
+        for name, make in makers.items():
+            make(self.at(name))
+            whole = self.at(name).read_bytes()
+            for i in range(120):
+                data = bytearray(whole[:random.integers(1, len(whole))] if i % 3 == 0 else whole)
+                for _ in range(0 if i % 3 == 0 else random.integers(1, 9)):
+                    at = random.integers(min(len(data), 4000 if i % 3 == 1 else len(data)))
+                    data[at] ^= 1 << random.integers(8)
+                self.at(name).write_bytes(data)
+                try:
+                    particles = quietly(io.read, self.at(name))
+                    particles.positions, dict(particles.arrays), len(particles)
+                except io.FileError as error:
+                    refused += 1
+                    self.assertNotIn("\n", str(error))
+                    self.assertLess(len(str(error)), 400)
+        self.assertGreater(refused, 150)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -23,6 +23,10 @@ void mcor_measure_surface(mcor_surface* surface)
 {
   mcor_statistics* s = &surface->statistics;
   uint64_t open = 0;
+  if (surface->line_offsets)
+  {
+    return; /* lines are measured where they are joined */
+  }
   s->area = s->volume = 0;
   for (int64_t t = 0; t < surface->triangle_count; ++t)
   {

@@ -383,9 +383,9 @@ extern "C"
      * line_offsets[l]] to before line_offsets[l + 1], greater values on its left as seen against the constant
      * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane. Counts of
      * triangles in the statistics are those of lines between two points, triangle_keys is NULL. */
-    int64_t line_count;
-    int64_t* line_offsets; /* [line_count + 1]; NULL in three dimensions */
-    int32_t* line_points;
+    int64_t line_count, line_point_count;
+    int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
+    int32_t* line_points;  /* [line_point_count], point indices */
     /* Optional arrays, NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */

@@ -65,6 +65,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   if (mcor_is_plane(context))
   {
     mcor_unflatten_statistics(&context->plane, s);
+    mcor_count_squares(context, s);
   }
   s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->correction_sum / n : 0;

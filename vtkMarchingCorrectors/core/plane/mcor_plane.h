@@ -35,6 +35,9 @@ mcor_status mcor_flatten_points(mcor_context* context, const mcor_array* points,
 /* Turns the numbers of the lattice and the extent back. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
 
+/* Of cells that were counted in whole bricks those in the plane. */
+void mcor_count_squares(const mcor_context* context, mcor_statistics* statistics);
+
 /* The axis of the caller along which turned coordinate a goes; a = 2: the constant one. */
 static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {

@@ -67,7 +67,7 @@ static void mcor_follow_line(mcor_joining* j, int32_t from, mcor_surface* surfac
     j->done[at] = true;
     points[to++] = j->next[at];
   }
-  surface->line_offsets[++surface->line_count] = to;
+  surface->line_offsets[++surface->line_count] = surface->line_point_count = to;
 }
 
 static mcor_status mcor_join_lines(mcor_context* context, mcor_joining* j, mcor_surface* surface)

@@ -55,3 +55,10 @@ mcor_status mcor_emit_lines(mcor_context* context, const int sides[6], mcor_buff
     MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
     MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
 }
+
+void mcor_count_squares(const mcor_context* context, mcor_statistics* s)
+{
+  const int64_t squares = mcor_uses_pairs(context) ? s->seed_cells : s->seed_cells / MCOR_BRICK;
+  s->seed_cells_not_intersected -= s->seed_cells - squares;
+  s->seed_cells = squares;
+}

@@ -268,6 +268,7 @@ void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
   mcor_set_default_options(&options);
   options.sph_kernel = static_cast<mcor_sph_kernel>(this->Kernel);
   options.h_scale = this->HScaleFactor;
+  options.dimension = this->Dimension;
   std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
   options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
@@ -455,6 +456,7 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   printName("Used Density Array Name", this->UsedDensityArrayName);
   os << indent << "Kernel: " << this->GetKernelName() << "\n";
   os << indent << "H Scale Factor: " << this->HScaleFactor << "\n";
+  os << indent << "Dimension: " << this->Dimension << "\n";
   printName("Fluid Array Name", this->FluidArrayName);
   os << indent << "Fluid Value: " << this->FluidValue << "\n";
   os << indent << "Detect Fluid: " << this->DetectFluid << "\n";

@@ -228,6 +228,22 @@ public:
 
   ///@{
   /**
+   * 2: the particles lie in a plane of constant x, y or z, which all share exactly. The sums are those of
+   * two dimensions, volumes are areas, and vtkMarchingCorrectors makes lines. 3: never. 0 (the default,
+   * DIMENSION_AUTO): 2 where exactly one coordinate is the same for all particles.
+   */
+  enum DimensionType
+  {
+    DIMENSION_AUTO = 0,
+    DIMENSION_2 = 2,
+    DIMENSION_3 = 3
+  };
+  vtkSetMacro(Dimension, int);
+  vtkGetMacro(Dimension, int);
+  ///@}
+
+  ///@{
+  /**
    * The point array and the value in it that mark fluid particles; all others are solid. The field
    * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
    * default.
@@ -491,6 +507,7 @@ protected:
   std::string UsedDensityArrayName;
   int Kernel = CUBIC_SPLINE;
   double HScaleFactor = 1.0;
+  int Dimension = DIMENSION_AUTO;
   std::string FluidArrayName;
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;

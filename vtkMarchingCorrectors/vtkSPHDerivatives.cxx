@@ -41,7 +41,10 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   const bool asFloat = from.Array->GetDataType() == VTK_FLOAT;
   for (const Quantity& quantity : this->Quantities)
   {
-    if (quantity.IsWanted && from.Components == 3 && !quantity.AddTo(data, derivatives, asFloat))
+    const bool exists = // in two dimensions no eigenvalue is in the middle
+      derivatives.statistics.dimension != 2 || quantity.Values != &mcor_flow::lambda2;
+    if (quantity.IsWanted && exists && from.Components == 3 &&
+      !quantity.AddTo(data, derivatives, asFloat))
     {
       return false;
     }

@@ -24,7 +24,7 @@
  *     Divergence           tr J
  *     Vorticity            curl
  *     Q-criterion          (tr(J)^2 - tr(J J)) / 2, as in vtkGradientFilter
- *     Lambda2              the middle eigenvalue of S S + O O; below 0 in the core of a vortex
+ *     Lambda2              the middle eigenvalue of S S + O O; below 0 in the core of a vortex; not in two dimensions
  *     StrainRate           S, nine values
  *
  * They are float where the input array is, else double. Sums are over fluid particles; solid

@@ -45,7 +45,7 @@ PROPERTIES = {
     "EstimateSmoothingLength": (0, "flag"), "SmoothingLengthIsSupportRadius": (0, "flag"),
     "VolumeArrayName": ("", "text"), "MassArrayName": ("", "text"), "DensityArrayName": ("", "text"),
     "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"), "Kernel": (0, "int", 0, 8),
-    "HScaleFactor": (1.0, "real"), "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
+    "HScaleFactor": (1.0, "real"), "Dimension": (0, "int", 0, 3), "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
     "CubeSizeMode": (1, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
@@ -346,6 +346,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         options, fields = c.mcor_options(), c.ENUMS["mcor_field"]
         lib.mcor_set_default_options(ctypes.byref(options))
         options.sph_kernel, options.h_scale = choice.Kernel, choice.HScaleFactor
+        options.dimension = choice.Dimension
         options.field = fields["MCOR_WEIGHT_SUM" if choice.FreeSurface else
                                "MCOR_SHEPARD" if choice.ShepardNormalization else "MCOR_SUM"]
         options.seeds = 0 if choice.FreeSurface else choice.SeedMode

@@ -262,6 +262,12 @@ def take_all(struct, result, sizes):
     return arrays
 
 
+def take_lines(surface):
+    """Those of two dimensions."""
+    return {"line_offsets": take(surface.line_offsets, (surface.line_count + 1,)),
+            "line_points": take(surface.line_points, (surface.line_point_count,))}
+
+
 def take_each(pointers, names, components, count, more=()):
     """One array per attribute; those that the core left out are missing."""
     arrays = {}

@@ -186,7 +186,10 @@ def _surface(surface, arguments, names, attributes, from_nearest, nearest_wanted
     arrays = take_all("mcor_surface", surface,
                       {"point_count": count, "triangle_count": surface.triangle_count})
     if arrays["points"] is None:
-        arrays["points"], arrays["triangles"] = np.empty((0, 3)), np.empty((0, 3), np.int32)
+        arrays["points"] = np.empty((0, 3))
+    if arrays["triangles"] is None:
+        arrays["triangles"] = np.empty((0, 3), np.int32)
+    arrays.update(take_lines(surface))
     means = take_each(surface.attributes, names, arguments.components, count)
     carried = {}
     for name in attributes:

@@ -21,6 +21,7 @@ class Options(TypedDict, total=False):
     field: Literal["shepard", "sum", "weight_sum"]
     seeds: Literal["complete", "pairs"]
     topology: Literal["table", "field"]
+    dimension: Literal[0, 2, 3]
     h_scale: float
     cube_size_factor: float
     cube_size: float
@@ -67,6 +68,8 @@ WORDS = {
     "seeds": "where the surface is looked for: everywhere, so that no part of it is missed, or between pairs of "
              "particles on both sides of the iso value, as in the paper.",
     "topology": "how nodes are connected where their values leave it open: by a fixed table, or as the field says.",
+    "dimension": "2: the particles lie in a plane of constant x, y or z; there are lines in place of a surface, and "
+                 "volumes are areas. 3: never. 0: 2 where exactly one coordinate is the same for all.",
     "h_scale": "the kernel uses this times the smoothing length; below 1 it smooths less. Volumes do not change.",
     "cube_size_factor": "edge of the smallest cubes of the marching grid, in smallest smoothing lengths.",
     "cube_size": "the same in the unit of the positions; 0: the factor counts.",
@@ -116,7 +119,7 @@ ISOSURFACE = tuple(Options.__annotations__)
 FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
     "scalar_version", "attributes_version"))
-DERIVATIVES = ("sph_kernel", "h_scale", "precision", "memory_limit", "periodic",
+DERIVATIVES = ("sph_kernel", "dimension", "h_scale", "precision", "memory_limit", "periodic",
                "smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids",
                "particles_version")
 GAUGE = DERIVATIVES

@@ -46,9 +46,12 @@ class Result:
         return "; ".join(names) or "none"
 
 
+CELLS = ("points", "triangles", "triangle_keys", "line_points", "line_offsets")
+
+
 @dataclass(eq=False, repr=False)
 class Surface(Result):
-    """A triangle mesh. Arrays that were not asked for are None; all own their memory."""
+    """A triangle mesh, or lines of two dimensions. Arrays that were not asked for are None; all own their memory."""
 
     points: np.ndarray  #: (points, 3) float64, unit of the positions (L)
     triangles: np.ndarray  #: (triangles, 3) int32; the right-hand normal points to lower values
@@ -63,22 +66,33 @@ class Surface(Result):
     nearest_particle: Optional[np.ndarray] = None  #: (points,) int64, index of a fluid particle
     point_keys: Optional[np.ndarray] = None  #: (points, 3) uint64
     triangle_keys: Optional[np.ndarray] = None  #: (triangles, 2) uint64
+    line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other
+    line_offsets: Optional[np.ndarray] = None  #: (lines + 1,) int64: where each line begins in line_points
     #: {name: (points,) or (points, components)}: float64 means of real arrays, others as they are
     attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
     #: {name: particle} of the attributes that are left out, being NaN or infinite there
     left_out: Dict[str, int] = dataclass_field(default_factory=dict)
     statistics: Dict[str, Any] = dataclass_field(default_factory=dict)  #: as mcor_statistics of mcor.h
 
+    @property
+    def lines(self):
+        """Of two dimensions: the points of each polyline, greater values on its left; a closed one ends with its
+        first point."""
+        if self.line_offsets is None:
+            return []
+        return np.split(self.line_points, self.line_offsets[1:-1]) if len(self.line_offsets) > 1 else []
+
     def __repr__(self):
-        return (f"<Surface: {len(self.points)} points, {len(self.triangles)} triangles; "
-                f"arrays: {self._names(('points', 'triangles'))}>")
+        cells = f"{len(self.triangles)} triangles" if self.line_offsets is None else f"{len(self.lines)} lines"
+        return (f"<Surface: {len(self.points)} points, {cells}; "
+                f"arrays: {self._names(CELLS)}>")
 
     def point_arrays(self):
         """{name: array} of all that points carry, under the names that VTK's filter gives them."""
         arrays = dict(self.attributes)
         for f in fields(self):
             array = getattr(self, f.name)
-            if isinstance(array, np.ndarray) and f.name not in ("points", "triangles", "triangle_keys"):
+            if isinstance(array, np.ndarray) and f.name not in CELLS:
                 arrays["".join(part.capitalize() for part in f.name.split("_"))] = array
         return arrays
 
@@ -90,6 +104,9 @@ class Surface(Result):
             return _empty_pyvista(self.point_arrays(), self.triangle_keys)
         faces = np.insert(self.triangles.astype(np.int64), 0, 3, axis=1).ravel()
         mesh = pyvista.PolyData(self.points, faces) if len(faces) else pyvista.PolyData(self.points)
+        if self.line_offsets is not None:
+            mesh = pyvista.PolyData(self.points, lines=np.concatenate([[0]] + [
+                part for line in self.lines for part in ([len(line)], line)])[1:].astype(np.int64))
         for name, array in self.point_arrays().items():
             mesh.point_data[name] = array
         if self.triangle_keys is not None:
@@ -114,7 +131,11 @@ class Surface(Result):
 
         arrays = {name: array.astype(np.uint8) if array.dtype == bool else array
                   for name, array in self.point_arrays().items() if array.dtype.kind in "fiub"}
-        return meshio.Mesh(self.points, [("triangle", self.triangles)], point_data=arrays)
+        cells = [("triangle", self.triangles)]
+        if self.line_offsets is not None:
+            cells = [("line", np.concatenate([np.empty((0, 2), np.int32)] + [
+                np.stack([line[:-1], line[1:]], axis=1) for line in self.lines]))]
+        return meshio.Mesh(self.points, cells, point_data=arrays)
 
     def save(self, path):
         """Writes a file, whose name's end tells the format.

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonCore import (vtkAbstractArray, vtkDataArray, vtkDoubleA
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import _structs as c
-from ._arrays import statistics, take, take_all
+from ._arrays import statistics, take, take_all, take_lines
 from ._library import lib
 from ._vtk_particles import choose_array, is_real, name_of
 
@@ -38,6 +38,7 @@ def build_mesh(surface, particles, output, as_float):
     points.SetData(numpy_to_vtk(where.astype(np.float32 if as_float else np.float64, copy=False), deep=True))
     output.SetPoints(points)
     build_triangles(arrays["triangles"], output)
+    build_lines(take_lines(surface), output)
     build_carried(surface, particles, data, arrays["nearest_particle"])
     for option, name in COMPUTED.items():
         if arrays[option] is not None:
@@ -55,12 +56,21 @@ def build_mesh(surface, particles, output, as_float):
 def build_triangles(triangles, output):
     """With ids as vtkContourFilter's: some filters take a mesh with others for non-manifold."""
     corners = np.empty(0) if triangles is None else triangles.ravel()
+    output.SetPolys(build_cells(np.arange(0, len(corners) + 1, 3), corners))
+
+
+def build_lines(lines, output):
+    if lines["line_offsets"] is not None:
+        output.SetLines(build_cells(lines["line_offsets"], lines["line_points"]))
+
+
+def build_cells(first, corners):
     offsets, connectivity, cells = vtkTypeInt64Array(), vtkTypeInt64Array(), vtkCellArray()
-    for array, values in ((offsets, np.arange(0, len(corners) + 1, 3)), (connectivity, corners)):
+    for array, values in ((offsets, first), (connectivity, corners)):
         array.SetNumberOfValues(len(values))
         vtk_to_numpy(array)[:] = values
     cells.SetData(offsets, connectivity)
-    output.SetPolys(cells)
+    return cells
 
 
 def build_carried(surface, particles, data, nearest):
@@ -176,6 +186,9 @@ def add_statistics(data, s, surface, options):
             add_count(data, "HighestLevel", s["highest_level"])
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
+    if s["dimension"] == 2:
+        add_count(data, "Dimension", 2)
+        add_count(data, "Lines", surface.line_count)
     add_count(data, "TrianglesBeforeTrimming", s["triangles_before_trimming"])
     if options.capping:
         add_count(data, "CapTriangles", s["cap_triangles"])
@@ -191,8 +204,11 @@ def add_statistics(data, s, surface, options):
     add_real(data, "PositionError", s["position_error"])
     add_count(data, "TrimVertices", s["trim_vertices"])
     add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
-    add_real(data, "Area", s["area"])
-    if s["is_closed"]:
+    if s["dimension"] == 2:
+        add_real(data, "Length", s["length"])
+    if s["dimension"] != 2 or s["is_closed"]:
+        add_real(data, "Area", s["area"])
+    if s["dimension"] != 2 and s["is_closed"]:
         add_real(data, "Volume", s["volume"])
 
 

@@ -205,6 +205,12 @@ extern "C"
 
   typedef struct mcor_options
   {
+    /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are those of two
+     * dimensions (volumes are areas, masses per unit of depth), and lines are extracted in place of a
+     * surface. 3: never. 0 (the default): 2 where exactly one coordinate is the same for all particles, else
+     * 3; see mcor_statistics.dimension. In the plane, squares stand for cubes, and all have one size; a
+     * period along the constant axis means nothing. */
+    int dimension;
     mcor_sph_kernel sph_kernel;
     mcor_field field;
     mcor_seed_mode seeds;
@@ -319,6 +325,7 @@ extern "C"
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;             /* in use; 0: the surface does not end at solids */
     double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
+    int dimension;                 /* 2 or 3, see mcor_options.dimension */
     double cube_size;              /* unit L; the shortest of: */
     double cube_edges[3]; /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
@@ -338,9 +345,10 @@ extern "C"
     int64_t triangles_before_trimming;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
     /* Of the surface as it is returned: each edge has triangles on both sides; area, unit L^2; volume that
-     * a closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. */
+     * a closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In
+     * two dimensions: all lines are closed; area that they then enclose, else 0; length of lines, unit L. */
     int is_closed;
-    double area, volume;
+    double area, volume, length;
     int64_t march_rounds;
     /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
@@ -385,6 +393,13 @@ extern "C"
     double* points;          /* [point_count][3], unit L */
     int32_t* triangles;      /* [triangle_count][3], point indices */
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
+    /* Two dimensions: polylines, and no triangles. Line l runs through the points line_points[
+     * line_offsets[l]] to before line_offsets[l + 1], greater values on its left as seen against the constant
+     * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane. Counts of
+     * triangles in the statistics are those of lines between two points, triangle_keys is NULL. */
+    int64_t line_count, line_point_count;
+    int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
+    int32_t* line_points;  /* [line_point_count], point indices */
     /* Optional arrays, NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */

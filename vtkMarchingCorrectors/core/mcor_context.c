@@ -9,6 +9,7 @@
 #include "mcor_cap.h"
 #include "mcor_input.h"
 #include "mcor_pair_rounds.h"
+#include "mcor_plane.h"
 
 #include <stdlib.h>
 
@@ -169,12 +170,16 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->evaluations_counted = 0;
   context->grid.view = 0;
   mcor_begin_buffers(context);
-  const mcor_status status = body(context, input, options, result);
+  mcor_flat flat;
+  mcor_status status = mcor_flatten(context, input, options, &flat);
+  context->options = &flat.options;
+  status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
   if (status == MCOR_OUT_OF_CAPACITY)
   {
-    mcor_blame_outlier(context, input);
+    mcor_blame_outlier(context, &flat.input);
   }
-  mcor_keep_call(context, input, options);
+  mcor_keep_call(context, &flat.input, &flat.options);
+  free(flat.positions);
   context->options = NULL;
   context->statistics = NULL;
   mcor_end_box(context);

@@ -9,6 +9,7 @@
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_pair_rounds.h"
+#include "mcor_plane.h"
 
 /* One iso value's surface, appended. */
 static mcor_status mcor_extract_iso(
@@ -69,7 +70,7 @@ static mcor_status mcor_extract_all(
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
   }
   MCOR_TRY(context->grid.count > 0 ? MCOR_OK : mcor_attend_rounds(context, 0));
-  if (surface->normals)
+  if (surface->normals && !mcor_is_plane(context))
   {
     MCOR_TRY(mcor_finish_normals(context, surface));
   }
@@ -79,6 +80,7 @@ static mcor_status mcor_extract_all(
     surface->statistics.cells_of_level[0] = surface->statistics.cells_used;
     surface->statistics.triangles_of_level[0] = surface->statistics.triangles_before_trimming;
   }
+  MCOR_TRY(mcor_is_plane(context) ? mcor_finish_lines(context, surface) : MCOR_OK);
   mcor_measure_surface(surface);
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);

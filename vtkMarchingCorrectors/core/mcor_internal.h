@@ -289,6 +289,7 @@ struct mcor_context
   mcor_trim_data trim;
   mcor_lattice lattice;
   mcor_measure measure;
+  mcor_plane plane; /* of the call under way */
   mcor_buffer case_table;
   mcor_attributes attributes;
   mcor_box box;

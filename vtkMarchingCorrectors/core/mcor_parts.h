@@ -22,6 +22,13 @@ extern "C"
     int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
   } mcor_global_component;
 
+  /* The plane that all particles share in two dimensions. */
+  typedef struct mcor_plane
+  {
+    int axis;  /* the constant coordinate, 1 for x to 3 for z; 0: three dimensions */
+    double at; /* its value */
+  } mcor_plane;
+
   /* What is measured over all particles. Lengths in L; h: the unscaled smoothing length. */
   typedef struct mcor_measure
   {
@@ -37,6 +44,7 @@ extern "C"
     double cube;        /* cube size, or the longest of its edges; not read where it is given */
     double edge[3];     /* along x, y, z; the same */
     double wall_share;  /* if the options ask for it; 0: not yet measured */
+    mcor_plane plane;   /* low to x_high are then of the two other coordinates, and 0 */
   } mcor_measure;
 
   /* What must be known about all particles to extract the surface of a box from some of them. */

@@ -78,7 +78,8 @@ void mcor_check_reuse(
   const mcor_input* last = &context->last_input;
   const mcor_options* o = &context->last_options;
   const bool particles = mcor_same_particles(input, last);
-  const bool parameters = options->sph_kernel == o->sph_kernel && options->field == o->field &&
+  const bool parameters = options->dimension == o->dimension &&
+    options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
     options->level_limit == o->level_limit && options->capping == o->capping &&

@@ -3,7 +3,7 @@
 
 /* Where a call is: phases, times and counts. */
 
-#include "mcor_internal.h"
+#include "mcor_plane.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,8 +42,9 @@ mcor_status mcor_finish_statistics(mcor_context* context)
     s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
   }
   s->wall_share = m->solid_count > 0 && context->uses_solids ? mcor_wall_share(context) : 0;
+  s->dimension = mcor_is_plane(context) ? 2 : 3;
   s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));
-  s->position_error = 0.5 * sqrt(3) * ldexp(lattice->cube, -lattice->fix_bits);
+  s->position_error = 0.5 * sqrt(s->dimension) * ldexp(lattice->cube, -lattice->fix_bits);
   s->highest_level = lattice->top;
   s->scalar_min = m->scalar_min;
   s->scalar_max = m->scalar_max;
@@ -62,6 +63,11 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   int nodes = 0;
   MCOR_TRY(mcor_count_bits(context, known, known, context->bricks.now.count, &nodes));
   s->nodes_evaluated = nodes + context->adaptive.dropped;
+  if (mcor_is_plane(context))
+  {
+    mcor_unflatten_statistics(&context->plane, s);
+    mcor_count_squares(context, s);
+  }
   s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->correction_sum / n : 0;
   s->correction_deviation = n > 0

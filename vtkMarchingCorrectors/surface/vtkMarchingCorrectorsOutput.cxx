@@ -82,6 +82,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   points->SetData(vtkSPHAdoptReal(this->Surface.points, 3, this->Surface.point_count, asFloat));
   output->SetPoints(points);
   this->BuildTriangles(output);
+  this->BuildLines(output);
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
@@ -114,6 +115,25 @@ void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
   vtkNew<vtkCellArray> triangles;
   triangles->SetData(offsets, corners);
   output->SetPolys(triangles);
+}
+
+//------------------------------------------------------------------------------
+// Of two dimensions.
+void vtkMarchingCorrectorsOutput::BuildLines(vtkPolyData* output)
+{
+  const mcor_surface& s = this->Surface;
+  if (!s.line_offsets)
+  {
+    return;
+  }
+  vtkNew<vtkIdTypeArray> points, offsets;
+  points->SetNumberOfValues(s.line_offsets[s.line_count]);
+  offsets->SetNumberOfValues(s.line_count + 1);
+  std::copy_n(s.line_points, s.line_offsets[s.line_count], points->GetPointer(0));
+  std::copy_n(s.line_offsets, s.line_count + 1, offsets->GetPointer(0));
+  vtkNew<vtkCellArray> lines;
+  lines->SetData(offsets, points);
+  output->SetLines(lines);
 }
 
 //------------------------------------------------------------------------------
@@ -329,6 +349,11 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "Tunnels", { s.tunnels });
   vtkSPHAddCount(fieldData, "Points", { this->Surface.point_count });
   vtkSPHAddCount(fieldData, "Triangles", { this->Surface.triangle_count });
+  if (s.dimension == 2)
+  {
+    vtkSPHAddCount(fieldData, "Dimension", { s.dimension });
+    vtkSPHAddCount(fieldData, "Lines", { this->Surface.line_count });
+  }
   vtkSPHAddCount(fieldData, "TrianglesBeforeTrimming", { s.triangles_before_trimming });
   if (this->Options.capping)
   {
@@ -352,8 +377,15 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 void vtkMarchingCorrectorsOutput::AddMeasures(vtkFieldData* fieldData) const
 {
   const mcor_statistics& s = this->Surface.statistics;
-  vtkSPHAddReal(fieldData, "Area", { s.area });
-  if (s.is_closed)
+  if (s.dimension == 2)
+  {
+    vtkSPHAddReal(fieldData, "Length", { s.length });
+  }
+  if (s.dimension != 2 || s.is_closed)
+  {
+    vtkSPHAddReal(fieldData, "Area", { s.area });
+  }
+  if (s.dimension != 2 && s.is_closed)
   {
     vtkSPHAddReal(fieldData, "Volume", { s.volume });
   }

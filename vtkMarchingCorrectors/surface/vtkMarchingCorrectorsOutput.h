@@ -41,6 +41,7 @@ public:
 
 private:
   void BuildTriangles(vtkPolyData* output);
+  void BuildLines(vtkPolyData* output);
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);

@@ -206,6 +206,16 @@ const Options TheMethod = {
     "cubic (default), quadratic, mprime4, quintic, wendland, quartic, wendland_c4,\n"
     "wendland_c6 or sinc6",
     SetKernel },
+  { "--dimension", "auto|2|3",
+    "2: particles in a plane of constant x, y or z, which gives lines; auto (default): if all "
+    "share it",
+    [](Job& j, Text n, Text v)
+    {
+      SetAll(j, &vtkSPHAlgorithm::SetDimension,
+        ToChoice(n, v,
+          { { "auto", Filter::DIMENSION_AUTO }, { "2", Filter::DIMENSION_2 },
+            { "3", Filter::DIMENSION_3 } }));
+    } },
   { "--h-scale", "S", "the kernel uses S times the smoothing length (default 1)",
     [](Job& j, Text n, Text v)
     { SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v)); } },

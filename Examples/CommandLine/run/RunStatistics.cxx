@@ -119,10 +119,11 @@ std::string DescribeField(vtkFieldData* run)
 std::string DescribeMeasures(vtkFieldData* run)
 {
   const bool hasPieces = run->HasArray("Pieces");
-  return (hasPieces ? "; " + Format(run, "Pieces") +
-               (Number(run, "Pieces") == 1.0 ? " piece" : " pieces") + " of"
-             : run->HasArray("Area") ? ";"
-                                     : "") +
+  return (run->HasArray("Length") ? "; length " + Format(run, "Length") : "") +
+    (hasPieces ? "; " + Format(run, "Pieces") +
+          (Number(run, "Pieces") == 1.0 ? " piece" : " pieces") + " of"
+        : run->HasArray("Area") ? ";"
+                                : "") +
     (run->HasArray("Area") ? " area " + Format(run, "Area") : "") +
     (run->HasArray("Volume") ? ", volume " + Format(run, "Volume") : "");
 }
@@ -142,7 +143,8 @@ std::string DescribeCorrection(vtkFieldData* run)
 /// There may be more triangles than before: what a cut leaves of one is one or two.
 std::string DescribeTrimming(vtkFieldData* run)
 {
-  return Number(run, "Triangles") == Number(run, "TrianglesBeforeTrimming")
+  return run->HasArray("Lines") ||
+      Number(run, "Triangles") == Number(run, "TrianglesBeforeTrimming")
     ? ""
     : " (trimmed from " + Format(run, "TrianglesBeforeTrimming") + ", some of which it cut in two)";
 }
@@ -279,8 +281,10 @@ std::string DescribeRun(vtkFieldData* run)
        << Format(run, "SeedCells") << " seeds (" << Format(run, "SeedCellsNotIntersected")
        << " without surface), " << Format(run, "CellsUsed") << " with surface\n"
        << "correction  " << DescribeCorrection(run) << "\n"
-       << "surface     " << Format(run, "Points") << " points, " << Format(run, "Triangles")
-       << " triangles" << DescribeTrimming(run) << DescribeMeasures(run) << "\n";
+       << (run->GetArray("Lines") ? "lines       " : "surface     ") << Format(run, "Points")
+       << " points, " << Format(run, run->GetArray("Lines") ? "Lines" : "Triangles")
+       << (run->GetArray("Lines") ? " lines" : " triangles") << DescribeTrimming(run)
+       << DescribeMeasures(run) << "\n";
   return text.str();
 }
 

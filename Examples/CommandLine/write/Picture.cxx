@@ -18,6 +18,7 @@
 #include "vtkOutlineSource.h"
 #include "vtkPNGWriter.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkRenderWindow.h"
@@ -145,6 +146,21 @@ View ViewOfSlice(const Vector& up, int axis)
   return MakeView(axis == 1 && up[1] != 0.0 ? Vector{ 0.0, 0.0, 1.0 } : up, toEye);
 }
 
+/// The constant one of lines in a plane; -1: there is none.
+int AxisOfLines(vtkDataSet* data)
+{
+  auto* surface = vtkPolyData::SafeDownCast(data);
+  const double* bounds = data->GetBounds();
+  for (int a = 2; a >= 0 && surface && surface->GetNumberOfLines() > 0; --a)
+  {
+    if (bounds[2 * a] == bounds[2 * a + 1])
+    {
+      return a;
+    }
+  }
+  return -1;
+}
+
 /// Corners as the eye sees them: to the right, upwards, towards it; from the middle of the box.
 std::array<Vector, 8> CornersIn(const View& view, const vtkBoundingBox& box, const Vector& center)
 {
@@ -231,7 +247,8 @@ public:
     vtkNew<vtkDataSetMapper> mapper;
     mapper->SetInputDataObject(data);
     mapper->SetScalarModeToUsePointFieldData();
-    vtkDataArray* scalars = data->GetPointData()->GetArray("IsoValue"); // of a surface its iso value
+    vtkDataArray* scalars =
+      data->GetPointData()->GetArray("IsoValue"); // of a surface its iso value
     double range[2] = { 0.0, 0.0 };
     if (colors.ArrayOf(data))
     {
@@ -350,7 +367,8 @@ std::string Picture::Draw(const std::string& file, vtkDataSet* data, vtkDataSet*
 {
   const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
   messages->Clear();
-  const bool isSlice = sliceAxis >= 0;
+  const int axis = sliceAxis >= 0 ? sliceAxis : AxisOfLines(data);
+  const bool isSlice = axis >= 0;
   this->Drawn->Show(data, colors, isSlice);
   this->Drawn->ShowOutline(vtkBoundingBox(frame->GetBounds()));
   this->Seen.AddBounds(frame->GetBounds());
@@ -365,7 +383,7 @@ std::string Picture::Draw(const std::string& file, vtkDataSet* data, vtkDataSet*
   const Vector up = AxisOf(this->Options.Up);
   const std::vector<double>& given = this->Options.View;
   this->Drawn->Place(!given.empty() ? MakeView(up, { given[0], given[1], given[2] })
-      : isSlice                     ? ViewOfSlice(up, sliceAxis)
+      : isSlice                     ? ViewOfSlice(up, axis)
                                     : ObliqueView(up),
     this->Seen);
   std::string bytes = this->Drawn->Draw();

@@ -248,6 +248,12 @@ std::string SurfaceBytes(
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
   std::string bytes;
+  if (surface->GetNumberOfLines() > 0 && !EndsWith(file, ".vtp"))
+  {
+    throw std::runtime_error(file +
+      " could not be written: it would hold no lines, as two dimensions give. "
+      "Write a .vtp file");
+  }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
   {
     throw std::runtime_error(file + " could not be written" +
@@ -284,8 +290,7 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
     const bool isHeld = array == arrays->GetNormals() ||
-      std::string(array->GetName()) == "IsoValue" ||
-      (isPly && array == colors.ArrayOf(surface));
+      std::string(array->GetName()) == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
   }
   if (EndsWith(file, ".vtp") || names.empty() || (isPly && !colors.GetName().empty()))

@@ -23,7 +23,7 @@ static const char source[] =
   "  mcor_boundary_at at;\n"
   "  mcor_group_load(&grid, i, i + 1, node, offset, 0, &points, &query);\n"
   "  mcor_tile_init(&tile);\n"
-  "  mcor_evaluate_boundary(&grid, &query, &tile, &points, true, &at);\n"
+  "  mcor_evaluate_boundary(&grid, &query, &tile, &points, false, true, &at);\n"
   "  out[4 * i] = MCOR_GET(at.value, 0);\n"
   "  out[4 * i + 1] = MCOR_GET(at.gx, MCOR_LANES - 1);\n"
   "  out[4 * i + 2] = MCOR_GET(at.gy, 0);\n"

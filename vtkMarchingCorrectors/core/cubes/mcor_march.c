@@ -6,6 +6,7 @@
 #include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
+#include "mcor_plane.h"
 
 /* The used cells, among those examined, of the box and its ring. */
 static mcor_status mcor_classify_cells(mcor_context* context)
@@ -93,11 +94,15 @@ static mcor_status mcor_count_edges(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, tunnels, of_tunnels * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_DECISION_ARGS(context), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
-    MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
-  MCOR_TRY(mcor_is_resolved(context) ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
+  MCOR_TRY(mcor_is_plane(context)
+      ? mcor_count_lines(context)
+      : MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
+          MCOR_DECISION_ARGS(context), MCOR_BUFFER(&mesh->used),
+          MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->case_table),
+          MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+          MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
+  const bool has_tunnels = mcor_is_resolved(context) && !mcor_is_plane(context);
+  MCOR_TRY(has_tunnels ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
   context->statistics->tunnels += tunnel_count;
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
@@ -131,7 +136,8 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));
   MCOR_TRY(mcor_emit_vertices(context, iso));
-  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
+  MCOR_TRY(
+    mcor_emit_in_box(context, mcor_is_plane(context) ? mcor_emit_lines : mcor_emit_triangles));
   MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
   context->statistics->triangles_before_trimming += owned;
   return MCOR_OK;

@@ -3,7 +3,7 @@
 
 /* Nodes of the virtual grid: their values, and on which side of the iso value they are. */
 
-#include "mcor_internal.h"
+#include "mcor_plane.h"
 
 /* Values of all nodes that the cells to examine need and that are not known yet. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
@@ -27,11 +27,12 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated)
 {
   mcor_bricks* bricks = &context->bricks;
-  return MCOR_LAUNCH(context, "mcor_march_sign", MCOR_MEDIUM, bricks->now.count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_sign", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
     MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&bricks->now.valid));
+    MCOR_BUFFER(&bricks->now.valid)));
+  return mcor_spread_signs(context);
 }
 
 /* Number of bits set in both of two arrays of masks. */

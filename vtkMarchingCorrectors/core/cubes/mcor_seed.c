@@ -4,6 +4,7 @@
 /* Seed cells [III-C]. */
 
 #include "mcor_box.h"
+#include "mcor_plane.h"
 
 #include <float.h>
 #include <math.h>
@@ -60,6 +61,7 @@ static mcor_status mcor_test_regions(
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
   *listed = count;
   MCOR_TRY(mcor_void_bricks(context));
+  MCOR_TRY(mcor_void_above_plane(context));
   MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));
   return mcor_place_bricks(context);
@@ -81,6 +83,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
+  MCOR_TRY(mcor_spread_signs(context));
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));

@@ -11,6 +11,7 @@
 #include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_probe.h"
 #include "mcor_stage.h"
 
@@ -226,6 +227,11 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     {
       m[k / 3][k % 3] = mcor_get_real(context, job->moments, 9 * i + k);
     }
+    if (mcor_is_plane(context)) /* the matrix of two axes, whose condition this does not change */
+    {
+      m[2][2] =
+        sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));
+    }
     const bool corrected = !run->standard && mcor_invert(m, inverse);
     if (run->input->solid && run->input->solid[to])
     {
@@ -386,6 +392,11 @@ static mcor_status mcor_run_derive(
   const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
   mcor_release_derive(&run);
   MCOR_TRY(status);
+  for (int a = 0; a < input->attribute_count && mcor_is_plane(context); ++a)
+  {
+    mcor_unflatten_doubles(&context->plane, call->derivatives->gradients[a],
+      input->count * mcor_components(&input->attributes[a]), 0);
+  }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }

@@ -5,6 +5,7 @@
 
 #include "mcor_gauge.h"
 #include "mcor_input.h"
+#include "mcor_plane.h"
 #include "mcor_probe.h"
 #include "mcor_ranks.h"
 
@@ -171,7 +172,7 @@ static mcor_status mcor_gauge_particles(mcor_context* context, const mcor_input*
   return context->grid.count > 0 ? mcor_gauge_on_grid(context, input, job) : MCOR_OK;
 }
 
-static mcor_status mcor_run_gauge(
+static mcor_status mcor_gauge_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   const mcor_gauge_call* call = data;
@@ -201,6 +202,50 @@ static mcor_status mcor_run_gauge(
   }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
+}
+
+/* In two dimensions, lines in the plane are turned, and the places on them are turned back. */
+static mcor_status mcor_run_gauge(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  mcor_gauge_call call = *(const mcor_gauge_call*)data;
+  const mcor_plane* plane = &context->plane;
+  if (!mcor_is_plane(context) || call.count == 0)
+  {
+    return mcor_gauge_input(context, input, options, &call);
+  }
+  mcor_gauge_line* lines = malloc((size_t)call.count * sizeof *lines);
+  MCOR_RETURN_IF(!lines, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld gauges could not be allocated.", (long long)call.count);
+  mcor_status status = MCOR_OK;
+  for (int64_t i = 0; i < call.count && status == MCOR_OK; ++i)
+  {
+    const mcor_gauge_line* line = &call.lines[i];
+    const int w = mcor_plane_axis(plane, 2);
+    const bool off = isfinite(line->from[w]) && isfinite(line->to[w]) &&
+      (line->from[w] != plane->at || line->to[w] != plane->at);
+    lines[i] = *line;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double shift = a == 2 ? plane->at : 0;
+      lines[i].from[a] = line->from[mcor_plane_axis(plane, a)] - shift;
+      lines[i].to[a] = line->to[mcor_plane_axis(plane, a)] - shift;
+    }
+    if (off)
+    {
+      status = mcor_fail(context, MCOR_INVALID_ARGUMENT,
+        "Gauge %lld leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
+        (long long)i, 'x' + w, plane->at);
+    }
+  }
+  call.lines = lines;
+  status = status == MCOR_OK ? mcor_gauge_input(context, input, options, &call) : status;
+  for (int64_t i = 0; i < call.gauges->count && status == MCOR_OK; ++i)
+  {
+    mcor_unflatten_doubles(plane, call.gauges->readings[i].place, 1, plane->at);
+  }
+  free(lines);
+  return status;
 }
 
 mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mcor_options* options,

@@ -8,6 +8,7 @@
 #include "mcor_probe.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_stage.h"
 
 #include <math.h>
@@ -365,7 +366,7 @@ typedef struct mcor_probe_call
   mcor_samples* samples;
 } mcor_probe_call;
 
-static mcor_status mcor_run_probe(
+static mcor_status mcor_probe_points(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   const mcor_probe_call* call = data;
@@ -401,6 +402,33 @@ static mcor_status mcor_run_probe(
   MCOR_TRY(status);
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
+}
+
+/* In two dimensions, the points and gradients are turned. */
+static mcor_status mcor_run_probe(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  mcor_probe_call call = *(const mcor_probe_call*)data;
+  const mcor_plane* plane = &context->plane;
+  if (!mcor_is_plane(context) || call.count == 0)
+  {
+    return mcor_probe_points(context, input, options, &call);
+  }
+  mcor_samples* s = call.samples;
+  mcor_array points = { 0 };
+  double* flat = NULL;
+  MCOR_TRY(mcor_flatten_points(context, call.points, call.count, &points, &flat));
+  call.points = &points;
+  const mcor_status status = mcor_probe_points(context, input, options, &call);
+  free(flat);
+  MCOR_TRY(status);
+  mcor_unflatten_doubles(plane, s->weight_gradient, s->count, 0);
+  for (int a = 0; a < s->attribute_count && s->gradients; ++a)
+  {
+    const int64_t width = mcor_components(&input->attributes[a]);
+    mcor_unflatten_doubles(plane, s->gradients[a], s->count * width, 0);
+  }
+  return MCOR_OK;
 }
 
 /* What evaluates arrays, but no scalar, runs as for the free surface: without solids, but where these

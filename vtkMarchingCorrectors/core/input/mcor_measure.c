@@ -6,6 +6,7 @@
 #include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_tree_brick.h"
 
@@ -354,6 +355,13 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       "Use a larger cube size, or remove particles that are far away from the rest.",
       edge, last - first, a, MCOR_LATTICE_LIMIT);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
+    if (a == 2 && mcor_is_plane(context)) /* one layer of cells */
+    {
+      lattice->origin[a] = lattice->first[a] = 0;
+      lattice->last[a] = lattice->blocks[a] = 1;
+      lattice->period_first[a] = 0;
+      continue;
+    }
     lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
     if (unit > 0)
     {
@@ -384,6 +392,7 @@ mcor_status mcor_measure_input(
 {
   mcor_measure* m = &context->measure;
   *m = mcor_nothing;
+  m->plane = context->plane;
   if (options->globals)
   {
     *m = options->globals->measured;

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MCOR_PI 3.14159265358979323846
 #define MCOR_WATCHED 32 /* fluid particles, bits of a mask */
 #define MCOR_WATCH_CELLS                                                                           \
   64 /* along each axis of a coarse grid, bits of a row; the outermost are in no reach */
@@ -143,8 +144,8 @@ static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[
   {
     const double reach = watch->support * watch->h[s], distance = sqrt(nearest[s]);
     count[s] = (double)neighbours[s];
-    filled[s] =
-      count[s] * watch->volume[s] / (4.0 / 3 * 3.14159265358979323846) / (reach * reach * reach);
+    filled[s] = count[s] * watch->volume[s] / (m->plane.axis > 0 ? MCOR_PI : 4.0 / 3 * MCOR_PI) /
+      (reach * reach * (m->plane.axis > 0 ? 1 : reach));
     spacing[s] = distance < reach ? distance : 0;
     h[s] = watch->h[s];
   }

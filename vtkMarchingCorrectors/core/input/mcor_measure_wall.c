@@ -9,6 +9,7 @@
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_sph_kernel.h"
 
@@ -66,7 +67,7 @@ static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
   return mcor_is_given(&input->volume) ? mcor_array_at(&input->volume, i, 0)
     : mcor_is_given(&input->mass) && mcor_is_given(&input->density)
     ? mass / mcor_array_at(&input->density, i, 0)
-    : mass / wall->mass_max * h * h * h;
+    : mass / wall->mass_max * h * h * (mcor_is_plane(wall->context) ? 1 : h);
 }
 
 /* The first sample that is not before x along the axis. */
@@ -104,9 +105,10 @@ static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[
     const double w = mcor_wall_kernel(options->sph_kernel, d, 1 / scaled);
     if (w != 0)
     {
+      /* Shares do not depend on the norm, nor on that of two dimensions. */
       weight = weight != 0 ? weight
                            : mcor_wall_volume(wall, i, h) * mcor_kernel_norm(options->sph_kernel) /
-          (scaled * scaled * scaled);
+          (scaled * scaled * (mcor_is_plane(wall->context) ? 1 : scaled));
       const double most = fmin(fmax(weight * w, -MCOR_MOST_WEIGHT), MCOR_MOST_WEIGHT);
       wall->weights[slice][s][solid] += llrint(most * MCOR_WHOLE_WEIGHT);
     }

@@ -5,6 +5,7 @@
  * box their images. */
 
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_stage_chunk.h"
 
 #include <math.h>
@@ -60,21 +61,25 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
   return status;
 }
 
-/* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume in
- * cubes, the mass over the largest one, or 1. */
+/* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume (in two
+ * dimensions over the smoothing length) in cubes, the mass over the largest one, or 1. */
 double mcor_size_scale(const mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
+  const mcor_options* options = context->options;
   if (mcor_is_given(&input->volume) ||
     (mcor_is_given(&input->mass) && mcor_is_given(&input->density)))
   {
-    return 1 / (cube * cube * cube);
+    /* Of an area, times the smoothing length: see mcor_plane.h. */
+    const double plane =
+      mcor_is_plane(context) ? mcor_plane_factor(options->sph_kernel) * options->h_scale : 1;
+    return plane / (cube * cube * cube);
   }
   if (!mcor_is_given(&input->mass))
   {
     return 1;
   }
-  const mcor_globals* globals = context->options->globals;
+  const mcor_globals* globals = options->globals;
   return 1 / (globals ? globals->mass_max : mcor_largest(&input->mass, NULL, input->count, 0));
 }
 

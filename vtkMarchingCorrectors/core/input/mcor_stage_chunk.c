@@ -4,6 +4,7 @@
 /* A chunk of the caller's particles, in the staging arrays' units. */
 
 #include "mcor_stage_chunk.h"
+#include "mcor_plane.h"
 #include "mcor_tree_brick.h"
 
 #include <float.h>
@@ -65,6 +66,10 @@ void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
   for (int i = 0; i < chunk->count; ++i)
   {
     chunk->size[i] *= staging->size_scale;
+  }
+  for (int i = 0; i < chunk->count && mcor_is_plane(context) && !mcor_needs_density(input); ++i)
+  {
+    chunk->size[i] *= chunk->h[i];
   }
 }
 

@@ -52,6 +52,9 @@ mcor_say(mcor_suspicion* s, const char* format, ...)
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
+/* The same in two dimensions, per square; the lattices of these numbers are the same. */
+#define MCOR_MANY_IN_PLANE 5.6
+#define MCOR_ROW_NEIGHBOURS 3.5
 
 static bool mcor_is_wendland(mcor_sph_kernel kernel)
 {
@@ -73,17 +76,20 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
     "50 to 250", "60 to 200", "100 to 300", "150 to 400", "60 to 200" };
   _Static_assert(
     sizeof usual / sizeof usual[0] == MCOR_SPH_KERNEL_COUNT, "neighbours of each kernel");
+  static const char* const in_plane[MCOR_SPH_KERNEL_COUNT] = { "12 to 40", "12 to 40", "12 to 25",
+    "30 to 80", "15 to 60", "20 to 60", "25 to 80", "35 to 100", "20 to 60" };
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_sph_kernel kernel = s->options->sph_kernel;
+  const bool plane = n->dimension == 2;
   const double h = n->smoothing_length_median, spacing = n->spacing_median;
-  const double cube = pow(mcor_support_factor(kernel), 3);
+  const double cube = pow(mcor_support_factor(kernel), plane ? 2 : 3);
   const bool wendland = mcor_is_wendland(kernel);
   const bool few = h < MCOR_LEAST_RATIO * spacing || spacing == 0;
   const double near = h / (spacing > 0 ? spacing : h), found = n->neighbours_median / cube;
   const bool many = near > MCOR_SHEET_RATIO
-    ? found > MCOR_SHEET_NEIGHBOURS
+    ? found > (plane ? MCOR_ROW_NEIGHBOURS : MCOR_SHEET_NEIGHBOURS)
     : near > (wendland ? MCOR_MOST_RATIO_WENDLAND : MCOR_MOST_RATIO) &&
-      found > MCOR_MANY_NEIGHBOURS;
+      found > (plane ? MCOR_MANY_IN_PLANE : MCOR_MANY_NEIGHBOURS);
   if (n->fluid_particles < MCOR_FEW_PARTICLES || s->input->estimate_smoothing_length ||
     !(few || many))
   {
@@ -111,8 +117,9 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   return mcor_say(s,
     "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
     "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
-    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel],
-    wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
+    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel),
+    plane ? in_plane[kernel] : usual[kernel], wendland ? 2.2 : 1.7, why,
+    *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
 static bool mcor_warn_plane(mcor_suspicion* s)
@@ -123,7 +130,8 @@ static bool mcor_warn_plane(mcor_suspicion* s)
   {
     const double* e = n->fluid_extent;
     const double other = e[(a + 1) % 3] < e[(a + 2) % 3] ? e[(a + 1) % 3] : e[(a + 2) % 3];
-    if (n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h && other > 8 * h)
+    if (n->dimension != 2 && n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h &&
+      other > 8 * h)
     {
       return mcor_say(s,
         "The fluid particles lie in a plane: their extent along %c is %.3g, %.4g times the "
@@ -189,13 +197,15 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
   const bool eigenvalue = o->boundary_detection == MCOR_BOUNDARY_EIGENVALUE;
+  const bool plane = n->dimension == 2;
   const bool wall = n->wall_share > 0 && n->solid_particles > 0 && !s->input->ignore_solids;
   char share[100] = "";
   if (n->triangles_before_trimming == 0 && o->iso_count > 0)
   {
     return mcor_warn_discarded(s);
   }
-  if (s->surface->triangle_count > 0 || n->triangles_before_trimming == 0 || mcor_has_box(o))
+  if (s->surface->triangle_count > 0 || s->surface->line_count > 0 ||
+    n->triangles_before_trimming == 0 || mcor_has_box(o))
   {
     return false;
   }
@@ -206,13 +216,15 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   }
   if (o->field == MCOR_WEIGHT_SUM)
   {
-    return mcor_say(s, "All %lld triangles were trimmed: everywhere on the surface, %s.",
-      (long long)n->triangles_before_trimming, share);
+    return mcor_say(s, "All %lld %s were trimmed: everywhere on %s, %s.",
+      (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
+      plane ? "them" : "the surface", share);
   }
   return mcor_say(s,
-    "All %lld triangles were trimmed: everywhere on the surface the %s is below the vertex "
+    "All %lld %s were trimmed: everywhere on %s the %s is below the vertex "
     "threshold %g%s%s. %s",
-    (long long)n->triangles_before_trimming, eigenvalue ? "boundary eigenvalue" : "weight sum",
+    (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
+    plane ? "them" : "the surface", eigenvalue ? "boundary eigenvalue" : "weight sum",
     o->vertex_threshold, wall ? ", or " : "", share,
     eigenvalue ? "Try 0.3."
                : "In the fluid, weights are about 1 if volumes, masses and densities are right.");

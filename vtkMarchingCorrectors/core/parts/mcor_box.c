@@ -91,8 +91,7 @@ static void mcor_place_halves(
   }
 }
 
-void mcor_place_sides(
-  const mcor_lattice* lattice, int axis, const double* sides, double side[2])
+void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2])
 {
   const double first = side[0], last = side[1];
   for (int s = 0; s < 2; ++s)

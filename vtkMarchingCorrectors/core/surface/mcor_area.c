@@ -96,10 +96,14 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* About one of the points, as coordinates may be large. */
+/* About one of the points, as coordinates may be large. Lines are measured where they are joined. */
 void mcor_measure_surface(mcor_surface* surface)
 {
   mcor_measures measures = { .open = 0 };
+  if (surface->line_offsets)
+  {
+    return;
+  }
   for (int d = 0; d < 3 && surface->point_count > 0; ++d)
   {
     measures.origin[d] = surface->points[d];

@@ -137,7 +137,7 @@ static mcor_status mcor_evaluate_cap_nodes(
   MCOR_TRY(mcor_reserve(context, &p->eigenvalue, n * real));
   return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->node),
-    MCOR_BUFFER(&p->offset), MCOR_BUFFER(&p->eigenvalue));
+    MCOR_BUFFER(&p->offset), MCOR_INT(0), MCOR_BUFFER(&p->eigenvalue));
 }
 
 /* What was evaluated, on the host. */

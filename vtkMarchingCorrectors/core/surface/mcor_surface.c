@@ -34,6 +34,8 @@ void mcor_free_surface(mcor_surface* surface)
   }
   free(surface->triangles);
   free(surface->triangle_keys);
+  free(surface->line_offsets);
+  free(surface->line_points);
   for (int a = 0; surface->attributes && a < surface->attribute_count; ++a)
   {
     free(surface->attributes[a]);

@@ -5,6 +5,7 @@
 
 #include "mcor_adaptive_level.h"
 #include "mcor_box.h"
+#include "mcor_plane.h"
 
 #include <math.h>
 
@@ -20,9 +21,10 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor
     mcor_level_vertices(context, of_boundary, l, &first, &count);
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups,
-      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-      MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(eigenvalue)));
+    MCOR_TRY(
+      MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+        MCOR_BUFFER(&mesh->offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(eigenvalue)));
   }
   return mcor_view_level(context, 0);
 }
@@ -199,14 +201,14 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     mcor_level_vertices(context, true, l, &first, &count);
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context), MCOR_INT(groups),
-        MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(iso),
-        MCOR_REAL(options->tolerance * range), MCOR_REAL(mcor_vertex_threshold(context)),
-        MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
-        MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-        MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-        MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+    MCOR_TRY(MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+      MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
+      MCOR_REAL(mcor_vertex_threshold(context)), MCOR_REAL(mcor_fluid_share(context)),
+      MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(mcor_is_plane(context)),
+      MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   }
   return mcor_view_level(context, 0);
 }

@@ -146,13 +146,18 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
 }
 
 /* Evaluates at all points. The gradient of an eigenvalue is e . (dM/dx_k) e, with e its unit
- * eigenvector; it is of no use where the two smallest coincide. */
+ * eigenvector; it is of no use where the two smallest coincide. plane: in two dimensions, those of the
+ * matrix of x and y. */
 void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
-  const mcor_points* points, bool want_gradient, mcor_boundary_at* boundary)
+  const mcor_points* points, bool plane, bool want_gradient, mcor_boundary_at* boundary)
 {
   mcor_symmetric m;
   realv at[3], e[3], u[3], g[3], d[3], sum[3] = { 0, 0, 0 };
   mcor_boundary_matrix(grid, query, tile, points, &m);
+  if (plane) /* the smallest is one of the two axes of the plane */
+  {
+    m.zz = (real)4 * (fabs(m.xx) + fabs(m.yy) + (real)1);
+  }
   boundary->value = mcor_eigen_smallest(&m, e);
   mcor_points_relative(grid, query, points, at);
   for (bool first = true; want_gradient && mcor_tile_next(grid, query, tile, first); first = false)
@@ -165,8 +170,8 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
       const realv along_u = mcor_dot(e, u), along_g = mcor_dot(e, g);
       for (int a = 0; a < 3; ++a)
       {
-        sum[a] = MCOR_FMA(-MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i),
-          MCOR_FMA(e[a], along_g, along_u * d[a]), sum[a]);
+        sum[a] = MCOR_FMA(
+          -MCOR_EACH(tile, MCOR_TRIM_WEIGHT, i), MCOR_FMA(e[a], along_g, along_u * d[a]), sum[a]);
       }
     }
   }
@@ -178,7 +183,7 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
 /* One work-item = one group of points. Writes their boundary eigenvalues. */
 __kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
-  __global real* eigenvalue)
+  const int plane, __global real* eigenvalue)
 {
   const int group = get_global_id(0);
   if (group >= group_count)
@@ -192,7 +197,7 @@ __kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
   mcor_boundary_at boundary;
   mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_tile_init(&tile);
-  mcor_evaluate_boundary(&grid, &query, &tile, &points, false, &boundary);
+  mcor_evaluate_boundary(&grid, &query, &tile, &points, plane, false, &boundary);
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     if (points.index[lane] >= 0)

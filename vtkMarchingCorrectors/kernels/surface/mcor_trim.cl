@@ -227,7 +227,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 typedef struct
 {
   real threshold, fluid_share;
-  bool by_eigenvalue;
+  bool by_eigenvalue, plane;
   fixv lacking;
   realv inside[3]; /* from the linear cut, the edge's end inside */
 } mcor_trim_limits;
@@ -286,7 +286,7 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
 {
   if (limits->by_eigenvalue)
   {
-    mcor_evaluate_boundary(grid, query, &reach->tile, points, true, bound);
+    mcor_evaluate_boundary(grid, query, &reach->tile, points, limits->plane, true, bound);
   }
   else
   {
@@ -460,11 +460,11 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
 #define MCOR_TRIM_SOLVE_PARAMS                                                                     \
   const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
     const real tolerance, const real threshold, const real fluid_share, const int steps,           \
-    __global real4 *offset, __global real *value, __global real4 *gradient, __global real *weight, \
-    __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
+    const int plane, __global real4 *offset, __global real *value, __global real4 *gradient,       \
+    __global real *weight, __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
 
 #define MCOR_TRIM_SOLVE_ARGS                                                                       \
-  group_count, groups, node, iso, tolerance, threshold, fluid_share, steps, offset, value,         \
+  group_count, groups, node, iso, tolerance, threshold, fluid_share, steps, plane, offset, value,  \
     gradient, weight, flag, MCOR_ATTRIBUTE_ARGS
 
 /* What the next two kernels do. */
@@ -486,6 +486,7 @@ void mcor_trim_solve_group(
   limits.threshold = threshold;
   limits.fluid_share = fluid_share;
   limits.by_eigenvalue = by_eigenvalue;
+  limits.plane = plane;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];

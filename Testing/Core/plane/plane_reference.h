@@ -1,0 +1,41 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef plane_reference_h
+#define plane_reference_h
+
+/* The field of two dimensions and its squares once more: in double precision, all nodes, no code of the
+ * library's. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two coordinates, in
+ * cyclic order, are u and v. */
+
+#include "core_fixture.h"
+
+typedef struct plane_field
+{
+  const core_set* set;
+  const mcor_options* options;
+  int axis;
+} plane_field;
+
+typedef struct plane_sample
+{
+  double value, gradient[2]; /* of the field, not relative to the iso value */
+  double fluid, weight;      /* weight: of trimming */
+  double fluid_slope[2], weight_slope[2];
+} plane_sample;
+
+/* W of two dimensions over W of three, per smoothing length; from numbers of its own. */
+double plane_norm(mcor_sph_kernel kernel);
+plane_sample plane_evaluate(const plane_field* field, double u, double v);
+
+/* Compares the surface's vertices on lattice edges with the edges that are crossed, and all vertices with the
+ * field; the test fails where some are missing or there are others. Returns how many edges are crossed. */
+int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
+/* The same, and the lines' directions, ends and normals; closed: they must be. */
+void plane_check_lines(
+  const plane_field* field, double iso, const mcor_surface* surface, int closed);
+
+/* n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane, smoothing length
+ * 1.3 to 1.3 spread, volume 1. */
+core_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed);
+
+#endif

@@ -1,0 +1,445 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Two dimensions: kernels, the plane, weights, lines against a reference of all squares. */
+
+#include "mcor_plane.h"
+#include "plane_reference.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Midpoint rule over the support's square, of the normalisation that the library has. */
+static void test_kernels_integrate_to_1(void** state)
+{
+  (void)state;
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    const int n = 400;
+    const double h = 0.7, reach = h * oracle_support((oracle_kernel)k), step = 2 * reach / n;
+    double sum = 0;
+    for (int i = 0; i < n * n; ++i)
+    {
+      const double d[3] = { (i % n + 0.5) * step - reach, (i / n + 0.5) * step - reach, 0 };
+      sum += mcor_plane_factor((mcor_sph_kernel)k) * h *
+        oracle_kernel_value((oracle_kernel)k, h, d, NULL) * step * step;
+    }
+    CORE_CHECK(fabs(sum - 1) < 1e-5, "kernel %s: integral %.7f",
+      mcor_sph_kernel_name((mcor_sph_kernel)k), sum);
+  }
+}
+
+/* Inside of a lattice of particles, by given and by computed volumes. */
+static void test_weight_is_1_inside(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = plane_make(20, 0, 1, 1, 3, 1);
+  const double points[5][3] = { { 0, 3, 0 }, { 0.3, 3, -1.2 }, { 2.25, 3, 1.5 }, { -3.1, 3, 0.77 },
+    { 0, 3.5, 0 } };
+  const mcor_array at = core_array(points[0], 3);
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    for (int computed = 0; computed < 3; ++computed)
+    {
+      mcor_input input = core_input(&set);
+      mcor_options options = core_options(NULL);
+      mcor_samples samples;
+      options.iso_count = 0;
+      options.sph_kernel = (mcor_sph_kernel)k;
+      options.h_scale = computed == 2 ? 0.9 : 1;
+      input.volume = computed ? (mcor_array){ 0 } : input.volume;
+      input.scalar = (mcor_array){ 0 };
+      CORE_OK(context, mcor_probe(context, &input, &options, &at, 5, &samples));
+      for (int p = 0; p < 5; ++p)
+      {
+        const double w = samples.weight_sum[p];
+        CORE_CHECK(p == 4 ? w == 0 && !samples.valid[p]
+                          : fabs(w - 1) < (computed    ? 8e-2
+                                              : k == 1 ? 2e-2
+                                                       : 1e-2),
+          "%s, %d: weight %g", mcor_sph_kernel_name((mcor_sph_kernel)k), computed, w);
+      }
+      assert_int_equal(samples.statistics.dimension, 2);
+      mcor_free_samples(&samples);
+    }
+  }
+  core_free_set(&set);
+}
+
+static mcor_options plane_options(const double* iso)
+{
+  mcor_options options = core_options(iso);
+  options.boundary_flag = 1;
+  options.vertex_threshold = 0;
+  return options;
+}
+
+static int64_t compare(
+  mcor_context* context, const core_set* set, const mcor_options* options, int axis, int closed)
+{
+  mcor_input input = core_input(set);
+  const plane_field field = { set, options, axis };
+  mcor_surface surface = core_extract(context, &input, options);
+  const int64_t edges = plane_compare(&field, options->iso_values[0], &surface);
+  plane_check_lines(&field, options->iso_values[0], &surface, closed);
+  mcor_free_surface(&surface);
+  return edges;
+}
+
+static void test_lines_are_those_of_the_field(void** state)
+{
+  const double isos[3] = { 0.5, 0.4, 0.45 };
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    for (int f = 0; f < 3; ++f)
+    {
+      const int axis = (k + f) % 3;
+      core_set set = plane_make(12, 0.3, 1.4, axis, 10.0 * axis - 7, (uint64_t)(5 + k));
+      for (int64_t i = 0; i < set.count; ++i)
+      {
+        set.scalar[i] = f == MCOR_SUM ? 1 + 0.05 * set.scalar[i] : set.scalar[i];
+      }
+      mcor_options options = plane_options(&isos[f]);
+      options.sph_kernel = (mcor_sph_kernel)k;
+      options.field = (mcor_field)f;
+      options.h_scale = k == 3 ? 0.75 : 1;
+      CORE_CHECK(compare(*state, &set, &options, axis, f == MCOR_WEIGHT_SUM) > 20, "few edges");
+      options.precision = MCOR_FLOAT64;
+      CORE_CHECK(compare(*state, &set, &options, axis, f == MCOR_WEIGHT_SUM) > 20, "few edges");
+      core_free_set(&set);
+    }
+  }
+}
+
+/* Anything: noise, walls, all options that change where lines are. */
+static void test_random_lines(void** state)
+{
+  uint64_t seed = 11;
+  for (int round = 0; round < 40; ++round)
+  {
+    const int axis = (int)(random_bits(&seed) % 3);
+    core_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
+      axis, 3 * random_unit(&seed), seed);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.scalar[i] = 2 * random_unit(&seed) - 1;
+      set.solid[i] = random_bits(&seed) % 6 == 0;
+    }
+    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
+    mcor_options options = plane_options(&iso);
+    set.has_solids = round % 4 == 1 && round % 3 != MCOR_WEIGHT_SUM;
+    options.sph_kernel = (mcor_sph_kernel)(random_bits(&seed) % MCOR_SPH_KERNEL_COUNT);
+    options.field = (mcor_field)(round % 3);
+    options.cube_size_factor = 0.3 + 0.5 * random_unit(&seed);
+    options.vertex_threshold = round & 1 ? 0.5 : 0;
+    options.topology = round & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    compare(*state, &set, &options, axis, options.field == MCOR_WEIGHT_SUM);
+    core_free_set(&set);
+  }
+}
+
+/* A circle: its place, length and area. */
+static void test_circle(void** state)
+{
+  core_set set = plane_make(24, 0, 1, 2, 0, 1);
+  double isos[2] = { 0, -16 };
+  mcor_options options = plane_options(isos);
+  options.iso_count = 2;
+  options.iso_value = options.gradients = options.residual = options.weight_sum = 1;
+  mcor_input input = core_input(&set);
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.line_count, 2);
+  assert_true(surface.statistics.is_closed);
+  const double pi = 3.14159265358979;
+  double area = 0;
+  for (int64_t p = 0; p < surface.point_count; ++p)
+  {
+    const double r = hypot(surface.points[3 * p], surface.points[3 * p + 1]);
+    const double expected = surface.iso_value[p] == 0 ? 3 : 5;
+    /* A mean over the support lowers 9 - r^2 by its second moment. */
+    CORE_CHECK(fabs(r - expected) < 0.4, "radius %g", r);
+    CORE_CHECK(fabs(surface.weight_sum[p] - 1) < 2e-2, "weight %g", surface.weight_sum[p]);
+    area += surface.iso_value[p] == 0 ? 0 : r * r / (double)surface.point_count;
+  }
+  assert_true(area > 0);
+  CORE_CHECK(fabs(surface.statistics.area / pi - (2.7 * 2.7 + 4.8 * 4.8)) < 4, "area %g",
+    surface.statistics.area);
+  CORE_CHECK(
+    fabs(surface.statistics.length / (2 * pi) - 7.6) < 0.5, "length %g", surface.statistics.length);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Both detectors cut where both equations hold; the eigenvalue is one of the two axes. */
+static void test_trimming(void** state)
+{
+  core_set set = plane_make(14, 0.2, 1, 0, 2, 3);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = set.position[3 * i + 1] + 0.3 * set.position[3 * i + 2];
+  }
+  const double iso = 0.2;
+  mcor_options options = plane_options(&iso);
+  mcor_input input = core_input(&set);
+  options.boundary_eigenvalue = options.weight_sum = 1;
+  for (int eigenvalue = 0; eigenvalue < 2; ++eigenvalue)
+  {
+    options.boundary_detection = eigenvalue ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
+    options.vertex_threshold = eigenvalue ? 0.75 : 0.5;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.line_count, 1);
+    assert_int_equal(surface.statistics.trim_vertices, 2);
+    int inside = 0;
+    for (int64_t p = 0; p < surface.point_count; ++p)
+    {
+      const float at = eigenvalue ? surface.boundary_eigenvalue[p] : surface.weight_sum[p];
+      CORE_CHECK(!(surface.boundary_flag[p] & 1) || fabs(at - options.vertex_threshold) < 3e-5,
+        "cut at %g", at);
+      inside += fabs(surface.boundary_eigenvalue[p] - 1) < 0.2;
+    }
+    CORE_CHECK(2 * inside > surface.point_count, "%d of %lld near 1", inside,
+      (long long)surface.point_count);
+    const plane_field field = { &set, &options, 0 };
+    plane_check_lines(&field, iso, &surface, 0);
+    mcor_free_surface(&surface);
+  }
+  core_free_set(&set);
+}
+
+static void expect_error(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, const char* words)
+{
+  mcor_surface surface;
+  const mcor_status status = mcor_extract(context, input, options, &surface);
+  CORE_CHECK(status != MCOR_OK && strstr(mcor_last_error(context), words), "%s: %s", words,
+    mcor_last_error(context));
+}
+
+static void test_what_is_no_plane(void** state)
+{
+  core_set set = plane_make(10, 0.1, 1, 2, 1, 7);
+  const double iso = 0;
+  mcor_options options = plane_options(&iso);
+  mcor_input input = core_input(&set);
+  options.dimension = 3;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.statistics.dimension, 3);
+  assert_true(surface.line_count == 0 && surface.line_offsets == NULL);
+  mcor_free_surface(&surface);
+  options.dimension = 4;
+  expect_error(*state, &input, &options, "The dimension is 4");
+  options.dimension = 2;
+  set.position[5] += 1e-9;
+  expect_error(*state, &input, &options, "do not share one coordinate exactly");
+  options.dimension = 0; /* thin, but uneven */
+  surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.statistics.dimension, 3);
+  mcor_free_surface(&surface);
+  options.dimension = 2;
+  set.solid[1] = 1;
+  set.has_solids = 1;
+  input = core_input(&set);
+  expect_error(*state, &input, &options, "solid particle 1 has");
+  set.position[5] = NAN;
+  expect_error(*state, &input, &options, "position of particle 1 is not a number");
+  core_free_set(&set);
+}
+
+/* A point, and particles on a line, are in a plane if the caller says so. */
+static void test_points_and_rows(void** state)
+{
+  const double iso = 0.1;
+  for (int count = 1; count < 12; count += 10)
+  {
+    core_set set = core_make_set(count);
+    for (int i = 0; i < count; ++i)
+    {
+      set.position[3 * i] = i;
+      set.smoothing_length[i] = 1.3;
+      set.volume[i] = 1;
+    }
+    mcor_options options = plane_options(&iso);
+    mcor_input input = core_input(&set);
+    options.field = MCOR_WEIGHT_SUM;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.statistics.dimension, 3);
+    mcor_free_surface(&surface);
+    options.dimension = 2;
+    compare(*state, &set, &options, 2, 1);
+    core_free_set(&set);
+  }
+}
+
+/* Exact for what is linear; the reading of a gauge is where the weight is 0.5. */
+static void test_derivatives_and_gauges(void** state)
+{
+  mcor_context* context = *state;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    core_set set = plane_make(14, 0.2, 1.2, axis, 5, 3);
+    double* velocity = malloc((size_t)set.count * 3 * sizeof *velocity);
+    assert_non_null(velocity);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      const double u = set.position[3 * i + (axis + 1) % 3],
+                   v = set.position[3 * i + (axis + 2) % 3];
+      velocity[3 * i + axis] = 0;
+      velocity[3 * i + (axis + 1) % 3] = 2 * u - 3 * v;
+      velocity[3 * i + (axis + 2) % 3] = 0.5 * u + v;
+    }
+    const mcor_array attribute = core_array(velocity, 3);
+    mcor_input input = core_input(&set);
+    input.scalar = (mcor_array){ 0 };
+    input.attributes = &attribute;
+    input.attribute_count = 1;
+    mcor_options options = core_options(NULL);
+    options.iso_count = 0;
+    mcor_derivatives derivatives;
+    CORE_OK(context, mcor_derive(context, &input, &options, MCOR_GRADIENT_CORRECTED, &derivatives));
+    assert_int_equal(derivatives.statistics.dimension, 2);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      const double* j = derivatives.gradients[0] + 9 * i;
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      CORE_CHECK(derivatives.corrected[i] && fabs(j[3 * u + u] - 2) < 1e-3 &&
+          fabs(j[3 * u + v] + 3) < 1e-3 && fabs(j[3 * v + u] - 0.5) < 1e-3 &&
+          fabs(j[3 * v + v] - 1) < 1e-3 && j[3 * u + axis] == 0 && j[3 * axis + u] == 0,
+        "particle %lld: %g %g %g %g", (long long)i, j[3 * u + u], j[3 * u + v], j[3 * v + u],
+        j[3 * v + v]);
+    }
+    mcor_free_derivatives(&derivatives);
+    mcor_gauge_line line = { .name = "across" };
+    line.from[axis] = line.to[axis] = 5;
+    line.to[(axis + 1) % 3] = 12;
+    mcor_gauges gauges;
+    CORE_OK(context, mcor_gauge(context, &input, &options, &line, 1, &gauges));
+    const plane_field field = { &set, &options, axis };
+    const double at = gauges.readings[0].place[(axis + 1) % 3];
+    CORE_CHECK(gauges.readings[0].state == MCOR_GAUGE_WET && gauges.readings[0].place[axis] == 5 &&
+        fabs(plane_evaluate(&field, at, 0).fluid - 0.5) < 1e-4,
+      "reading %g", at);
+    mcor_free_gauges(&gauges);
+    line.to[axis] = 6;
+    assert_int_equal(
+      mcor_gauge(context, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
+    assert_non_null(strstr(mcor_last_error(context), "leaves the plane"));
+    free(velocity);
+    core_free_set(&set);
+  }
+}
+
+/* Bits do not depend on the order of the particles, nor, but for what is turned, on the plane. */
+static void test_bits(void** state)
+{
+  const double iso = 0.4;
+  core_set set = plane_make(12, 0.3, 1.5, 1, 2, 5);
+  int64_t* order = core_make_order(set.count, 6);
+  core_set other = core_permute(&set, order);
+  mcor_options options = plane_options(&iso);
+  options.vertex_threshold = 0.5;
+  uint64_t hash[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    mcor_input input = core_input(i == 1 ? &other : &set);
+    for (int64_t p = 0; p < set.count && i == 2; ++p)
+    {
+      const double y = set.position[3 * p], z = set.position[3 * p + 2];
+      set.position[3 * p] = z;
+      set.position[3 * p + 1] = y;
+      set.position[3 * p + 2] = -3;
+    }
+    mcor_surface surface = core_extract(*state, &input, &options);
+    for (int64_t p = 0; p < surface.point_count && i == 2; ++p)
+    {
+      const double x = surface.points[3 * p], y = surface.points[3 * p + 1];
+      surface.points[3 * p] = y;
+      surface.points[3 * p + 1] = 2;
+      surface.points[3 * p + 2] = x;
+    }
+    hash[i] = core_hash_bytes(
+      CORE_HASH_OF_NOTHING, surface.points, (size_t)surface.point_count * 3 * sizeof(double));
+    hash[i] = core_hash_bytes(
+      hash[i], surface.line_points, (size_t)surface.line_point_count * sizeof(int32_t));
+    mcor_free_surface(&surface);
+  }
+  assert_int_equal(hash[0], hash[1]);
+  assert_int_equal(hash[0], hash[2]);
+  free(order);
+  core_free_set(&other);
+  core_free_set(&set);
+}
+
+/* The lines of boxes side by side are those of all; a period is closed on itself. */
+static void test_boxes_and_periods(void** state)
+{
+  const double iso = 0.3;
+  core_set set = plane_make(12, 0.3, 1.3, 0, 4, 9);
+  mcor_input input = core_input(&set);
+  mcor_options options = plane_options(&iso);
+  mcor_surface whole = core_extract(*state, &input, &options);
+  double length = 0;
+  int64_t cells = 0;
+  for (int side = 0; side < 4; ++side)
+  {
+    const double box[6] = { 3, 5, side & 1 ? 0.1 : -INFINITY, side & 1 ? INFINITY : 0.1,
+      side & 2 ? -0.7 : -INFINITY, side & 2 ? INFINITY : -0.7 };
+    memcpy(options.box, box, sizeof box);
+    mcor_surface part = core_extract(*state, &input, &options);
+    length += part.statistics.length;
+    cells += part.statistics.cells_used;
+    mcor_free_surface(&part);
+  }
+  CORE_CHECK(fabs(length - whole.statistics.length) < 1e-9 * length && length > 0, "%g of %g",
+    length, whole.statistics.length);
+  assert_int_equal(cells, whole.statistics.cells_used);
+  options.box[0] = 4.5; /* beside the plane */
+  mcor_surface none = core_extract(*state, &input, &options);
+  assert_int_equal(none.line_count, 0);
+  mcor_free_surface(&none);
+  mcor_free_surface(&whole);
+  memset(options.box, 0, sizeof options.box);
+  options.periodic[2] = -6;
+  options.periodic[3] = 6;
+  options.periodic[4] = -6;
+  options.periodic[5] = 6;
+  options.field = MCOR_WEIGHT_SUM;
+  const double nearly = 0.97;
+  options.iso_values = &nearly;
+  mcor_surface periodic = core_extract(*state, &input, &options);
+  assert_true(periodic.line_count > 0);
+  for (int64_t l = 0; l < periodic.line_count; ++l)
+  {
+    const int64_t first = periodic.line_offsets[l], last = periodic.line_offsets[l + 1] - 1;
+    const int32_t ends[2] = { periodic.line_points[first], periodic.line_points[last] };
+    for (int e = 0; e < 2 && ends[0] != ends[1]; ++e)
+    {
+      const double* x = periodic.points + 3 * (int64_t)ends[e];
+      int sides = 0;
+      for (int a = 1; a < 3; ++a)
+      {
+        const double cube = periodic.statistics.cube_size;
+        const double low = cube * (double)periodic.statistics.lattice_origin[a];
+        sides += fabs(x[a] - low) < 1e-9 || fabs(x[a] - low - 12) < 1e-9;
+      }
+      CORE_CHECK(sides > 0, "a line ends at %g %g", x[1], x[2]);
+    }
+  }
+  mcor_free_surface(&periodic);
+  core_free_set(&set);
+}
+
+int main(int argc, char** argv)
+{
+  if (argc > 1)
+  {
+    cmocka_set_test_filter(argv[1]);
+  }
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
+    cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_lines_are_those_of_the_field),
+    cmocka_unit_test(test_random_lines), cmocka_unit_test(test_circle),
+    cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
+    cmocka_unit_test(test_points_and_rows), cmocka_unit_test(test_derivatives_and_gauges),
+    cmocka_unit_test(test_bits), cmocka_unit_test(test_boxes_and_periods) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,64 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Marching squares: see mcor_plane.cl. */
+
+#include "mcor_box.h"
+#include "mcor_plane.h"
+
+mcor_status mcor_spread_signs(mcor_context* context)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  return !mcor_is_plane(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_plane_spread", MCOR_LIGHT, now->count, MCOR_INT(now->count),
+        MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
+}
+
+/* As if a box ended at the lowest layer of bricks. */
+mcor_status mcor_void_above_plane(mcor_context* context)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  static const int first[3] = { -1, -1, -1 }, last[3] = { INT32_MAX, INT32_MAX, 1 };
+  return !mcor_is_plane(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
+        (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
+        MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
+        MCOR_BUFFER(&bricks->block_keys), MCOR_CELL_ARGS(first, last, 0, 0),
+        MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
+}
+
+/* In place of mcor_march_count. */
+mcor_status mcor_count_lines(mcor_context* context)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const int count = context->bricks.now.count;
+  return MCOR_LAUNCH(context, "mcor_plane_count", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base));
+}
+
+/* In place of mcor_march_triangles. */
+mcor_status mcor_emit_lines(mcor_context* context, const int sides[6], mcor_buffer* cells)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  const mcor_mesh* mesh = &context->mesh;
+  const bool follows = mcor_follows_cells(context);
+  const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
+  MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_plane_lines", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_DECISION_ARGS(context), MCOR_SIDES_ARGS(sides), MCOR_INT(follows),
+    MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
+    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&now->above),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
+}
+
+void mcor_count_squares(const mcor_context* context, mcor_statistics* s)
+{
+  const int64_t squares = mcor_uses_pairs(context) ? s->seed_cells : s->seed_cells / MCOR_BRICK;
+  s->seed_cells_not_intersected -= s->seed_cells - squares;
+  s->seed_cells = squares;
+}

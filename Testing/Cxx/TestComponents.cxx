@@ -8,6 +8,7 @@
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkMassProperties.h"
 #include "vtkMultiBlockDataSet.h"

@@ -203,7 +203,7 @@ const Options TheParticles = {
 const Options TheMethod = {
   { "", "", "The method", {} },
   { "--kernel", "NAME",
-    "cubic (default), quadratic, mprime4, quintic, wendland, quartic, wendland_c4,\n"
+    "cubic (default), quadratic, mprime4, quintic, wendland, quartic, wendland_c4, "
     "wendland_c6 or sinc6",
     SetKernel },
   { "--dimension", "auto|2|3",

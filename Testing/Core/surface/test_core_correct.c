@@ -69,6 +69,8 @@ static const correct_case cases[] = { { "linear", MCOR_CUBIC_SPLINE, MCOR_SHEPAR
   { "rough", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, 0.1, 0.3, 0.3, rough },
   { "kinks of the quadratic kernel", MCOR_QUADRATIC, MCOR_SUM, MCOR_FLOAT32, 1, 0.5, 0, core_ball },
   { "M'4", MCOR_M_PRIME_4, MCOR_SHEPARD, MCOR_FLOAT64, 0.2, 0.5, 0.3, core_slope },
+  { "sinc^6", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT32, 0.2, 0.5, 0.3, core_slope },
+  { "sinc^6, double", MCOR_SINC_6, MCOR_SUM, MCOR_FLOAT64, 2, 0.5, 0.3, core_ball },
   { "coarse", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 2, 0.3, core_ball },
   { "large offset", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 101325.3, 0.5, 0.3, offset } };
 

@@ -5,8 +5,8 @@
     make_structs.py mcor_parts.h mcor.h FOLDER
 
 _structs.py: the structures and enumerations of mcor.h for ctypes, and what its comments say of the shapes
-of arrays. check_structs.c: that the C compiler lays the structures out alike. exports.map: the functions that
-the library shows.
+of arrays. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
+the functions that the library shows, for the linkers of Linux, Windows and macOS.
 """
 import ctypes
 import re
@@ -153,6 +153,8 @@ def main():
     exports = header.functions
     (folder / "exports.map").write_text(
         "{ global: " + "; ".join(exports) + "; local: *; };\n", encoding="utf-8")
+    (folder / "exports.def").write_text("\n".join(["EXPORTS", *exports, ""]), encoding="utf-8")
+    (folder / "exports.txt").write_text("".join(f"_{name}\n" for name in exports), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -497,3 +497,4 @@ def paraview_plugin(kind):
 paraview_plugin_name = "MarchingCorrectorsPython"
 if __name__ == Path(__file__).stem:  # not as a part of the package
     paraview_plugin(vtkMarchingCorrectors)
+    from marchingcorrectors._vtk_reader import SPHParticleReader  # noqa: F401

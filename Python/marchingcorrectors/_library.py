@@ -43,7 +43,7 @@ ERRORS = {c.ENUMS["mcor_status"][name]: error for name, error in ERRORS.items()}
 
 
 def _open():
-    library = ctypes.CDLL(str(Path(__file__).with_name("_mcor.so")))
+    library = ctypes.CDLL(str(Path(__file__).with_name("_mcor.dll" if os.name == "nt" else "_mcor.so")))
     context, pointer = ctypes.c_void_p, ctypes.POINTER
     signatures = {
         "mcor_create_context": (ctypes.c_int, [ctypes.c_char_p, pointer(context)]),
@@ -84,7 +84,7 @@ def _open():
 
 
 lib = _open()
-_free = ctypes.CDLL(None).free
+_free = ctypes.CDLL("ucrtbase" if os.name == "nt" else None).free  # of the C library that the core uses
 _free.restype, _free.argtypes = None, [ctypes.c_void_p]
 
 _state_lock = threading.Lock()

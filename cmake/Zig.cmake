@@ -1,0 +1,43 @@
+# A toolchain file: the core for other systems, by `zig cc`, which has their headers and libraries with it
+# (PyPI: ziglang). Python/build-wheels uses it. Kernels of the built-in device are clang's for all.
+#
+#   MCOR_ZIG     the program
+#   MCOR_TARGET  x86_64-windows, aarch64-linux, x86_64-macos or aarch64-macos
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES MCOR_ZIG MCOR_TARGET)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+if (MCOR_TARGET STREQUAL "x86_64-windows")
+  set(CMAKE_SYSTEM_NAME Windows)
+  set(mcor_zig_target x86_64-windows-gnu)
+  set(MCOR_AHEAD_TRIPLE x86_64-w64-windows-gnu)
+elseif (MCOR_TARGET STREQUAL "aarch64-linux")
+  set(CMAKE_SYSTEM_NAME Linux)
+  set(CMAKE_SYSTEM_PROCESSOR aarch64)
+  set(mcor_zig_target aarch64-linux-gnu.2.28)
+  set(MCOR_AHEAD_TRIPLE aarch64-linux-gnu)
+elseif (MCOR_TARGET STREQUAL "x86_64-macos")
+  set(CMAKE_SYSTEM_NAME Darwin)
+  set(mcor_zig_target x86_64-macos.11.0)
+  set(MCOR_AHEAD_TRIPLE x86_64-apple-macos11)
+elseif (MCOR_TARGET STREQUAL "aarch64-macos")
+  set(CMAKE_SYSTEM_NAME Darwin)
+  set(CMAKE_SYSTEM_PROCESSOR arm64)
+  set(mcor_zig_target aarch64-macos.11.0)
+  set(MCOR_AHEAD_TRIPLE arm64-apple-macos11)
+else ()
+  message(FATAL_ERROR "MCOR_TARGET is '${MCOR_TARGET}': it must be one of those in ${CMAKE_CURRENT_LIST_FILE}.")
+endif ()
+
+set(CMAKE_C_COMPILER "${MCOR_ZIG}" cc -target ${mcor_zig_target})
+# CMake runs these without arguments of ours.
+foreach (tool IN ITEMS ar ranlib rc)
+  string(TOUPPER ${tool} variable)
+  set(mcor_script "${CMAKE_BINARY_DIR}/zig-${tool}")
+  if (NOT EXISTS "${mcor_script}")
+    file(WRITE "${mcor_script}" "#!/bin/sh\nexec '${MCOR_ZIG}' ${tool} \"$@\"\n")
+    execute_process(COMMAND chmod +x "${mcor_script}")
+  endif ()
+  set(CMAKE_${variable} "${mcor_script}" CACHE FILEPATH "" FORCE)
+endforeach ()
+set(CMAKE_RC_COMPILER "${CMAKE_RC}")
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)

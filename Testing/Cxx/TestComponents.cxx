@@ -21,6 +21,8 @@
 #include "vtkVariant.h"
 
 #include <array>
+#include <cstdio>
+#include <functional>
 #include <vector>
 
 namespace
@@ -307,6 +309,120 @@ void CheckPeriod()
   CHECK(
     std::abs(areas[0] / areas[1] - 1.0) < 0.01 && std::abs(volumes[0] / volumes[1] - 1.0) < 0.01);
 }
+
+/// A lattice of n^3 particles around the origin, with the sides 2, those that are wanted.
+vtkSmartPointer<vtkPolyData> Lattice(int n, const std::function<bool(const double x[3])>& wanted)
+{
+  std::vector<std::array<double, 3>> places;
+  for (int i = 0; i < n * n * n; ++i)
+  {
+    const int cell[3] = { i % n, i / n % n, i / n / n };
+    std::array<double, 3> x;
+    for (int a = 0; a < 3; ++a)
+    {
+      x[static_cast<size_t>(a)] = (2.0 * cell[a] + 1.0) / n - 1.0;
+    }
+    if (wanted(x.data()))
+    {
+      places.push_back(x);
+    }
+  }
+  auto lattice = Particles(places);
+  test::AddArray<vtkDoubleArray>(lattice, "Distance", 1,
+    [&](vtkIdType i, int)
+    {
+      const double* x = lattice->GetPoint(i);
+      return std::hypot(std::hypot(x[0], x[1]), x[2]);
+    });
+  return lattice;
+}
+
+/// Spheres of lattice particles: with twice as many along an axis area and volume are four times as near.
+void CheckConvergence()
+{
+  const double r = 0.6, pi = 3.14159265358979323846;
+  const double exact[2] = { 4.0 * pi * r * r, 4.0 / 3.0 * pi * r * r * r };
+  double errors[2][2];
+  for (int fine = 0; fine < 2; ++fine)
+  {
+    const int n = fine ? 40 : 20;
+    auto lattice = Lattice(n, [](const double*) { return true; });
+    vtkNew<vtkMarchingCorrectors> filter;
+    filter->SetInputData(lattice);
+    filter->SetSmoothingLength(1.3 * 2.0 / n);
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Distance");
+    filter->SetValue(0, r);
+    filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    filter->Update();
+    auto split = Split(filter->GetOutput(), lattice);
+    split->Update();
+    CHECK(split->GetTable()->GetNumberOfRows() == 1);
+    errors[0][fine] = std::abs(At(split->GetTable(), 0, "area") / exact[0] - 1.0);
+    errors[1][fine] = std::abs(
+      At(split->GetTable(), 0, "volume") / -exact[1] - 1.0); // a cavity: values are above outside
+  }
+  for (const auto& error : errors)
+  {
+    std::printf("errors %g, %g: %g times as near\n", error[0], error[1], error[0] / error[1]);
+    CHECK(error[0] < 0.1 && error[0] / error[1] > 3.5);
+  }
+}
+
+/// What the pieces hold, all particles being in one, is what there is: two balls, one hollow, and a lone particle.
+void CheckSums()
+{
+  auto particles = Lattice(24,
+    [](const double x[3])
+    {
+      const double left = std::hypot(std::hypot(x[0] + 0.45, x[1]), x[2]);
+      const double right = std::hypot(std::hypot(x[0] - 0.6, x[1]), x[2]);
+      const bool isLone = std::abs(x[0] - 0.6) < 0.05 && x[1] > 0.9 && x[2] > 0.9;
+      return (left < 0.5 && left > 0.25) || right < 0.3 || isLone;
+    });
+  vtkNew<vtkMarchingCorrectors> filter;
+  filter->SetInputData(particles);
+  filter->SetSmoothingLength(1.3 * 2.0 / 24);
+  filter->FreeSurfaceOn();
+  filter->SetFreeSurfaceValue(0.05);
+  filter->SetMass(8.0 / (24 * 24 * 24));
+  filter->SetDensity(1.0);
+  filter->Update();
+  auto split = Split(filter->GetOutput(), particles);
+  split->Update();
+  vtkTable* table = split->GetTable();
+  CHECK(table->GetNumberOfRows() == 4);
+  double sums[5] = {}, expected[5] = {};
+  int cavities = 0;
+  for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+  {
+    if (At(table, row, "volume") < 0.0)
+    {
+      ++cavities;
+      CHECK(At(table, row, "parent") == 0.0);
+      continue;
+    }
+    const double mass = At(table, row, "mass");
+    sums[0] += At(table, row, "particles");
+    sums[1] += mass;
+    sums[2] += mass * At(table, row, "vx");
+    sums[3] += mass * At(table, row, "vy");
+    sums[4] += mass * At(table, row, "vz");
+  }
+  CHECK(cavities == 1);
+  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+  {
+    const double* x = particles->GetPoint(i);
+    const double one[5] = { 1.0, 2.0, 4.0 * x[0], 4.0 * x[1], 4.0 * x[2] };
+    for (int k = 0; k < 5; ++k)
+    {
+      expected[k] += one[k];
+    }
+  }
+  for (int k = 0; k < 5; ++k)
+  {
+    CHECK(std::abs(sums[k] - expected[k]) < 1e-9 * expected[1]);
+  }
+}
 }
 
 int TestComponents(int, char*[])
@@ -316,5 +432,7 @@ int TestComponents(int, char*[])
   CheckFluid();
   CheckAgainstVtk();
   CheckPeriod();
+  CheckConvergence();
+  CheckSums();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

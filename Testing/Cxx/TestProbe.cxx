@@ -100,7 +100,7 @@ void CheckGradients()
   probe->Update();
   vtkDataArray* gradient = OutputOf(probe)->GetArray("Pair_Gradient");
   CHECK(gradient && gradient->GetNumberOfComponents() == 6 && gradient->GetDataType() == VTK_FLOAT);
-  CHECK(OutputOf(probe)->GetArray("Weight_Gradient"));
+  CHECK(OutputOf(probe)->GetArray("WeightSum_Gradient"));
   double mean[6] = {};
   for (vtkIdType i = 0; gradient && i < image->GetNumberOfPoints(); ++i)
   {

@@ -195,10 +195,10 @@ vtkSmartPointer<vtkPolyData> MakeTwoSizes()
   vtkNew<vtkPoints> points;
   vtkNew<vtkDoubleArray> lengths;
   lengths->SetName("h");
-  for (const double size : { 0.05, 0.4 })
+  for (const double size : { 0.05, 0.8 })
   {
     const double first = size < 0.1 ? 0.0 : 2.0;
-    const int along = size < 0.1 ? 40 : 5, across = static_cast<int>(std::lround(1.2 / size));
+    const int along = size < 0.1 ? 40 : 1, across = static_cast<int>(std::lround(1.2 / size));
     for (int i = 0; i < along * across * across; ++i)
     {
       const int x = i % along, y = i / along % across, z = i / along / across;

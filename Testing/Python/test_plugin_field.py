@@ -92,7 +92,7 @@ def check_probe(reader, plane):
     probe.ExcludedArrays = ["Velocity"]
     probe.ComputeGradients = 1
     names = set(arrays_of(probe)[1])
-    assert {"Height_Gradient", "Weight_Gradient"} <= names and "Velocity" not in names, names
+    assert {"Height_Gradient", "WeightSum_Gradient"} <= names and "Velocity" not in names, names
     probe.Points = Wavelet(WholeExtent=[-2, 2] * 3)
     data, found = arrays_of(probe)
     assert data.IsA("vtkImageData") and {"RTData", "Height"} <= set(found)

@@ -129,39 +129,28 @@ bool mcor_box_is_inside(const mcor_tile* tile, const real at[3], const int low[3
   return inside;
 }
 
-/* Whether the nodes on a leaf's sides do: those of its level on the far ones, and the finer ones. The tile
- * has what is close to all of it. */
+/* Whether the nodes of its level on a leaf's far sides do. The finer ones are nodes of finer leaves, too: either
+ * own ones, which a proof of those knows, or on their far sides, where a leaf beside a larger one is chosen. The
+ * march goes on from there. tile: what is close to all of the leaf. */
 bool mcor_sides_are_inside(
-  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, uint finer, real iso)
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {
   bool inside = true;
-  real at[3], finer_edge[3];
+  real at[3];
   for (int a = 0; a < 3; ++a)
   {
     at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit;
-    finer_edge[a] = (real)0.5 * grid->edge[a];
   }
   for (int a = 0; a < 3 && inside; ++a)
   {
     const int low[3] = { a == 0 ? 4 : 0, a == 1 ? 4 : 0, a == 2 ? 4 : 0 }, high[3] = { 4, 4, 4 };
     inside = mcor_box_is_inside(tile, at, low, high, grid->edge, iso);
   }
-  for (int d = 0; d < 27 && inside; ++d)
-  {
-    const int to[3] = { d % 3, d / 3 % 3, d / 9 };
-    int low[3], high[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      low[a] = to[a] == 2 ? 8 : 0;
-      high[a] = to[a] == 0 ? 0 : 8;
-    }
-    inside = !(finer >> d & 1) || mcor_box_is_inside(tile, at, low, high, finer_edge, iso);
-  }
   return inside;
 }
 
-/* What the proof says of a leaf: if it holds for its own nodes, but not for its sides beside leaves of other
- * levels, these are open. wide: what is close to its region, if it is complete. */
+/* What the proof says of a leaf: if it holds for its own nodes, but not for its far sides, next to finer
+ * leaves, these are open. wide: what is close to its region, if it is complete. */
 int mcor_leaf_proof(const mcor_grid* grid, int4 leaf, uint finer, const mcor_tile* wide, real iso)
 {
   mcor_query query = mcor_seed_query(grid, leaf, MCOR_LEAF_EXTENT(finer));
@@ -176,8 +165,7 @@ int mcor_leaf_proof(const mcor_grid* grid, int4 leaf, uint finer, const mcor_til
   {
     return mcor_leaf_state(MCOR_EXAMINE, finer);
   }
-  const bool all =
-    !finer || (tile.complete && mcor_sides_are_inside(grid, &query, &tile, finer, iso));
+  const bool all = !finer || (tile.complete && mcor_sides_are_inside(grid, &query, &tile, iso));
   return MCOR_ABOVE * MCOR_EVERYWHERE | (all ? 0 : MCOR_OPEN_SIDES);
 }
 #endif

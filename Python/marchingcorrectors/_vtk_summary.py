@@ -22,12 +22,20 @@ def estimate_cells(particles, options):
     h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
     h = h[fluid].astype(np.float64)
     drawn = is_drawn(to_numpy(particles.positions), options)[fluid]
-    if options.level_limit:  # cubes are larger where particles are
+    plane = is_plane(to_numpy(particles.positions), options.dimension)
+    if options.level_limit and not plane:  # cubes are larger where particles are
         h /= 2 ** np.minimum(np.floor(np.log2(h / h.min())), options.level_limit)
     radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated
     per_length = 1 / lib.mcor_support_factor(options.sph_kernel) if radius else 1.0
     size = options.cube_size if options.cube_size > 0 else options.cube_size_factor * float(h.min()) * per_length
-    return float((h[drawn] ** 3).sum()) * (per_length / 1.3) ** 3 / size ** 3 if size > 0 else 0.0
+    power = 2 if plane else 3
+    return float((h[drawn] ** power).sum()) * (per_length / 1.3) ** power / size ** power if size > 0 else 0.0
+
+
+def is_plane(positions, dimension):
+    """As mcor_find_dimension of mcor.h."""
+    constant = (positions == positions[:1]).all(0).sum() if dimension == 0 and len(positions) else 0
+    return dimension == 2 or constant == 1
 
 
 def is_drawn(positions, options):

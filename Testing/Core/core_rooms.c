@@ -113,6 +113,31 @@ static int rooms_uniform(mcor_context* context, const mcor_input* input)
   return rooms_surface(context, "period, caps", &fine, &options) && good;
 }
 
+/* The lowest layer of the fine particles. */
+static int rooms_plane(mcor_context* context, const mcor_input* input)
+{
+  int good = 1;
+  mcor_input flat = *input;
+  flat.count = 9;
+  for (int field = MCOR_SHEPARD; field <= MCOR_WEIGHT_SUM; ++field)
+  {
+    mcor_options options = rooms_options((mcor_field)field);
+    options.topology = MCOR_TOPOLOGY_FIELD;
+    options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
+    options.vertex_threshold = 0.2;
+    options.cube_size_factor = 0.5;
+    options.node_threshold = 0.05;
+    mcor_surface surface;
+    const mcor_status status = mcor_extract(context, &flat, &options, &surface);
+    const uint64_t hash = core_hash_bytes(core_hash(&surface), surface.line_points,
+      (size_t)surface.line_point_count * sizeof *surface.line_points);
+    rooms_print(context, "plane", surface.line_count, hash);
+    good = status == MCOR_OK && surface.line_count > 0 && good;
+    mcor_free_surface(&surface);
+  }
+  return good;
+}
+
 static int rooms_probe(mcor_context* context, const mcor_input* input)
 {
   const double at[15] = { 0, 0, 0, 1.2, 0.3, 0.7, 10.5, 2, 3, 60, 0, 0, 2, 2, 2 };
@@ -186,7 +211,8 @@ typedef struct rooms_run
 int main(int argc, char** argv)
 {
   static const rooms_run runs[] = { { "adaptive", rooms_adaptive }, { "uniform", rooms_uniform },
-    { "probe", rooms_probe }, { "derive", rooms_derive }, { "gauge", rooms_gauge } };
+    { "plane", rooms_plane }, { "probe", rooms_probe }, { "derive", rooms_derive },
+    { "gauge", rooms_gauge } };
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {

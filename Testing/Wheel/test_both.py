@@ -60,7 +60,7 @@ def make_cases(folder):
         "iso value": [lattice(folder, "a.vtp", r), "R", 99.0, {}],
         "neighbours": [lattice(folder, "b.vtp", r, h=0.3), "R", 0.4, {}],
         "few neighbours": [lattice(folder, "c.vtp", r, h=0.07), "R", 0.4, {}],
-        "plane": [lattice(folder, "d.vtp", r, positions=plane), "R", 1.0, {}],
+        "plane": [lattice(folder, "d.vtp", r, positions=plane), "R", 1.0, {"Dimension": 3}],
         "units": [lattice(folder, "e.vtp", {**r, "Mass": lambda x: np.full(len(x), 1e-9),
                                             "Density": lambda x: np.ones(len(x))}), "R", 0.4, {}],
         "all trimmed": [lattice(folder, "f.vtp", r), "R", 0.4, {"VertexThreshold": 5.0}],

@@ -522,6 +522,9 @@ extern "C"
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
+  /* 2 or 3: what a call with this input alone and this mcor_options.dimension takes it for. */
+  int mcor_find_dimension(const mcor_input* input, int dimension);
+
   /* What may be wrong with the input although the extraction succeeded. */
   typedef enum mcor_warning
   {

@@ -25,6 +25,7 @@ set(mcor_program_sources
   "kernels/cubes/mcor_topology_row.cl  LATTICE"
   "kernels/cubes/mcor_march.cl         LATTICE FIELD"
   "kernels/plane/mcor_plane.cl         LATTICE"
+  "kernels/plane/mcor_plane_nodes.cl   FIELD"
   "kernels/surface/mcor_attribute.cl   FIELD PROBE"
   "kernels/surface/mcor_evaluate.cl    FIELD"
   "kernels/surface/mcor_correct.cl     FIELD"

@@ -120,6 +120,11 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   {
     return;
   }
+  if (globals.measured.plane.axis > 0)
+  {
+    this->Fail(vtkSPHRanksNoPlane);
+    return;
+  }
   this->EstimateDistributed(ranks, mine.Core, options);
   vtkSPHRanksBalance balance;
   balance.HasWork = true;

@@ -134,6 +134,11 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
   {
     return false;
   }
+  if (globals.measured.plane.axis > 0)
+  {
+    this->Fail(vtkSPHRanksNoPlane);
+    return false;
+  }
   const std::string name = mine.Interpolated[0].Name;
   if (globals.components[0].not_finite >= 0)
   {

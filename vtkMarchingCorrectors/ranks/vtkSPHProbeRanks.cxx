@@ -190,6 +190,11 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   {
     return false;
   }
+  if (globals.measured.plane.axis > 0)
+  {
+    this->Fail(vtkSPHRanksNoPlane);
+    return false;
+  }
   std::vector<vtkIdType> numbers;
   const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
   const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, globals });

@@ -18,6 +18,11 @@
 class vtkMPIController;
 class vtkMultiProcessController;
 
+/** Of particles in two dimensions. */
+constexpr const char* vtkSPHRanksNoPlane = "The particles lie in a plane, and lines are made by "
+                                           "one process alone. Run one process, or set the "
+                                           "dimension to 3.";
+
 class vtkSPHRanks
 {
 public:

@@ -66,16 +66,18 @@ double vtkMarchingCorrectorsEstimateCells(
 {
   // In units of the smoothing length or, as a factor of it, the support radius.
   double cubes = 0.0;
+  const bool isPlane =
+    mcor_find_dimension(&input, options.dimension) == 2; // its squares have one size
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])
     {
       double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
-      for (int level = 0; level < options.level_limit && h >= 2.0 * least; ++level)
+      for (int level = 0; level < options.level_limit && !isPlane && h >= 2.0 * least; ++level)
       {
         h *= 0.5; // its cubes are larger
       }
-      cubes += IsDrawn(input, options, i) ? h * h * h : 0.0;
+      cubes += IsDrawn(input, options, i) ? h * h * (isPlane ? 1.0 : h) : 0.0;
     }
   }
   const bool isKnown = !input.estimate_smoothing_length || options.cube_size <= 0.0;
@@ -90,7 +92,8 @@ double vtkMarchingCorrectorsEstimateCells(
   const double size =
     options.cube_size > 0.0 ? options.cube_size : options.cube_size_factor * least * perLength;
   const double spacing = perLength / 1.3;
-  return size > 0.0 ? cubes * spacing * spacing * spacing / (size * size * size) : 0.0;
+  const double area = cubes * spacing * spacing, perArea = size * size;
+  return size <= 0.0 ? 0.0 : isPlane ? area / perArea : area * spacing / (perArea * size);
 }
 
 //------------------------------------------------------------------------------

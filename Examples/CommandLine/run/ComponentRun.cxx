@@ -61,6 +61,11 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   {
     return;
   }
+  if (run.Surface->GetNumberOfLines() > 0)
+  {
+    throw std::runtime_error("--components measures pieces of a surface, and particles in a plane "
+                             "have lines. Leave it out");
+  }
   vtkMarchingCorrectors* surface = this->Options->Surface;
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);

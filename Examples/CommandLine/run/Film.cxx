@@ -213,7 +213,8 @@ private:
     if (!this->Options.Quiet)
     {
       std::cout << Printable(this->Label(i)) << ": " << run.Surface->GetNumberOfPoints()
-                << " points, " << run.Surface->GetNumberOfPolys() << " triangles, "
+                << " points, " << run.Surface->GetNumberOfCells()
+                << (run.Surface->GetNumberOfLines() > 0 ? " lines, " : " triangles, ")
                 << std::setprecision(3) << run.WallSeconds << " s" << std::endl;
     }
     for (const std::string& warning : warnings)

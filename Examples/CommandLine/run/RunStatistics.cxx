@@ -31,6 +31,7 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
   "FlatLoops", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
   "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume", "Pieces",
+  "Dimension", "Lines", "Length",
   "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
   "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
   "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices",

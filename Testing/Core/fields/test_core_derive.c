@@ -32,6 +32,7 @@ static mcor_derivatives derive(mcor_context* context, const core_set* set, const
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
   options.precision = precision;
+  options.dimension = 3; /* also of three particles */
   mcor_derivatives derivatives;
   CORE_OK(context, mcor_derive(context, &input, &options, form, &derivatives));
   return derivatives;

@@ -119,7 +119,8 @@ static void flatten(core_set* set, double height)
 static void test_plane(void** state)
 {
   WARNED(MCOR_WARN_PLANE, "along y|0 times", flatten(&call.set, 0);
-         call.options.vertex_threshold = 0);
+         call.options.vertex_threshold = 0; call.options.dimension = 3);
+  SILENT(flatten(&call.set, 0)); /* two dimensions */
   WARNED(MCOR_WARN_PLANE, "along y|is 0.06", flatten(&call.set, 0.01);
          call.options.vertex_threshold = 0);
   SILENT(flatten(&call.set, 0.2); call.options.vertex_threshold = 0);

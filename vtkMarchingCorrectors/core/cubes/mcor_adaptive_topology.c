@@ -22,7 +22,7 @@ static mcor_status mcor_find_plain_faces(mcor_context* context)
     MCOR_BUFFER(&context->mesh.used), MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain),
     MCOR_BUFFER(&topology->used)));
   return MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, slots, MCOR_INT(slots),
-    MCOR_BUFFER(neighbours), MCOR_INT(false), MCOR_BUFFER(&topology->plain),
+    MCOR_BUFFER(neighbours), MCOR_INT(false), MCOR_INT(false), MCOR_BUFFER(&topology->plain),
     MCOR_BUFFER(&topology->used), MCOR_BUFFER(&context->bricks.now.above),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base));
 }

@@ -17,10 +17,14 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.examined),
     MCOR_BUFFER(&bricks->fresh)));
   /* One item per brick where one gathers for many lanes, else one per node. */
-  const size_t items = (size_t)count * (context->cl.lanes == 1 ? 64 : 1);
-  return MCOR_LAUNCH(context, "mcor_march_nodes", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->need),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
+  const bool plane = mcor_is_plane(context); /* there 16 of them, an item for all lanes */
+  const size_t items = (size_t)count *
+    (size_t)(plane               ? 16 / context->cl.lanes
+        : context->cl.lanes == 1 ? 64
+                                 : 1);
+  return MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_march_nodes", MCOR_HEAVY, items,
+    MCOR_GRID_ARGS(context), MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
 /* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */

@@ -67,7 +67,25 @@ static mcor_status mcor_test_regions(
   return mcor_place_bricks(context);
 }
 
-/* Places every brick whose nodes must be evaluated, and evaluates most of them. */
+/* Of the listed regions' bricks, tests and evaluates those of which nothing is known; requests known ones alone. */
+static mcor_status mcor_test_bricks(
+  mcor_context* context, double iso, const mcor_buffer* list, int listed)
+{
+  mcor_bricks* bricks = &context->bricks;
+  /* One item per region where one gathers for many lanes, else one per brick. */
+  const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
+    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list), MCOR_SEED_ARGS(context, iso),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid)));
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
+  return mcor_request_known(context);
+}
+
+/* Places every brick whose nodes must be evaluated, and evaluates most of them; none in a plane, where bounds
+ * on bricks cost more than their few nodes. */
 static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -76,17 +94,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
   MCOR_TRY(mcor_count_seeds(context, &bricks->seeds));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
-  /* One item per region where one gathers for many lanes, else one per brick. */
-  const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list), MCOR_SEED_ARGS(context, iso),
-    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
-    MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&bricks->now.valid)));
-  MCOR_TRY(mcor_spread_signs(context));
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
-  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
-  MCOR_TRY(mcor_request_known(context));
+  MCOR_TRY(mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, iso, list, listed));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));

@@ -5,6 +5,7 @@
  * field. */
 
 #include "mcor_adaptive_level.h"
+#include "mcor_plane.h"
 
 #include <stdlib.h>
 
@@ -137,8 +138,8 @@ mcor_status mcor_resolve_topology(mcor_context* context, double iso)
   const int count = context->bricks.now.count;
   MCOR_TRY(mcor_begin_topology(context));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_INT(true), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_INT(true), MCOR_INT(mcor_is_plane(context)),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
   return mcor_decide_topology(context, &mesh->used, iso);
 }

@@ -50,6 +50,20 @@ static bool mcor_has_positions(const mcor_input* input)
       NULL, input->count) < 0;
 }
 
+int mcor_find_dimension(const mcor_input* input, int dimension)
+{
+  int constant = 0;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3 && dimension != 3 && input->count > 0 && positions.data; ++a)
+  {
+    double low, high;
+    mcor_find_constant(&positions, input->count, a, &low, &high);
+    constant += low == high;
+  }
+  return dimension == 2 || constant == 1 ? 2 : 3;
+}
+
 /* Who is not in the plane of the others: a solid, if all fluid is in one. */
 static mcor_status mcor_refuse_plane(mcor_context* context, const mcor_input* input)
 {

@@ -61,4 +61,5 @@ void mcor_count_squares(const mcor_context* context, mcor_statistics* s)
   const int64_t squares = mcor_uses_pairs(context) ? s->seed_cells : s->seed_cells / MCOR_BRICK;
   s->seed_cells_not_intersected -= s->seed_cells - squares;
   s->seed_cells = squares;
+  s->nodes_evaluated /= MCOR_BRICK;
 }

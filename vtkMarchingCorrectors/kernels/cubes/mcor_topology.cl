@@ -16,7 +16,7 @@
 /* One work-item = one brick. Reads used cells, node masks and, unless `all` are, which cells are plain. Writes
  * the ambiguous faces between plain cells, next to used ones, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
-  const int all, __global const ulong* plain, __global const ulong* used,
+  const int all, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
 {
   const int slot = get_global_id(0);
@@ -36,7 +36,8 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   for (int axis = 0; axis < 3; ++axis)
   {
     const ulong between = all ? ~0UL : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
-    const ulong reached = between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
+    const ulong layer = !plane ? ~0UL : axis == 2 ? 0xffffUL : 0; /* of faces that are squares */
+    const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
     count += (int)popcount(ambiguous);

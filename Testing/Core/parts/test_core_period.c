@@ -59,10 +59,10 @@ static core_set add_images(const core_set* set, const double period[6])
   return all;
 }
 
-/* A point of the surface at x to within 1e-4, or -1. */
-static int64_t find_point(const mcor_surface* s, const double x[3])
+/* A point of the surface at x to within 1e-4, from number `from` on, or -1. */
+static int64_t find_point_from(const mcor_surface* s, const double x[3], int64_t from)
 {
-  for (int64_t i = 0; i < s->point_count; ++i)
+  for (int64_t i = from; i < s->point_count; ++i)
   {
     const double* p = s->points + 3 * i;
     if (fabs(p[0] - x[0]) < 1e-4 && fabs(p[1] - x[1]) < 1e-4 && fabs(p[2] - x[2]) < 1e-4)
@@ -71,6 +71,11 @@ static int64_t find_point(const mcor_surface* s, const double x[3])
     }
   }
   return -1;
+}
+
+static int64_t find_point(const mcor_surface* s, const double x[3])
+{
+  return find_point_from(s, x, 0);
 }
 
 /* As many triangles, and all points of one where the other has some, with about the same normals. */
@@ -132,8 +137,12 @@ static int has_partner(mcor_surface* s, const double period[6], int64_t point)
       if (fabs(x[a] - side) < 1e-9)
       {
         x[a] += upper ? -length : length;
-        const int64_t other = find_point(s, x);
-        found = found || (other >= 0 && same_bits(s, point, other, a));
+        /* Near a node there may be several. */
+        for (int64_t other = find_point(s, x); other >= 0 && !found;
+             other = find_point_from(s, x, other + 1))
+        {
+          found = same_bits(s, point, other, a);
+        }
       }
     }
   }
@@ -436,6 +445,15 @@ enum
   POINTS = 1500
 };
 
+static void check_equal(const double* values, const double* expected, int count, double limit)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    CORE_CHECK(fabs(values[i] - expected[i]) <= limit, "number %d is %.17g, expected %.17g", i,
+      values[i], expected[i]);
+  }
+}
+
 /* The field at points, and of those that are in the period with all images as particles. */
 static void check_points(
   mcor_context* context, const core_set* set, mcor_options* options, uint64_t version)
@@ -474,9 +492,11 @@ static void check_points(
       assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
     }
   }
-  assert_memory_equal(moved.weight_sum, samples.weight_sum, POINTS * sizeof(double));
-  assert_memory_equal(moved.values[0], samples.values[0], POINTS * sizeof(double));
-  assert_memory_equal(moved.gradients[0], samples.gradients[0], 3 * POINTS * sizeof(double));
+  /* Halfway between two places of the device, rounding decides for one: here, in double precision, of some. */
+  const int halves = options->cube_size > 0 && options->precision == MCOR_FLOAT64;
+  check_equal(moved.weight_sum, samples.weight_sum, POINTS, halves ? 1e-10 : 0);
+  check_equal(moved.values[0], samples.values[0], POINTS, halves ? 1e-10 : 0);
+  check_equal(moved.gradients[0], samples.gradients[0], 3 * POINTS, halves ? 1e-10 : 0);
   mcor_free_samples(&samples);
   mcor_free_samples(&moved);
   mcor_free_samples(&expected);
@@ -487,7 +507,7 @@ static void check_points(
  * a period away. */
 static void stretch(core_set* set, double period[6])
 {
-  static const double factors[3] = { 1, 1 + 1.0 / 32, 1 - 3.0 / 128 };
+  static const double factors[3] = { 1, 1 + 5.0 / 128, 1 + 3.0 / 128 };
   for (int64_t i = 0; i < 3 * set->count; ++i)
   {
     set->position[i] *= factors[i % 3];
@@ -510,6 +530,7 @@ static void points_see_images(void** state)
     options.precision = i % 4 < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
     if (i >= 4)
     {
+      options.cube_size = 0.5;
       stretch(&set, options.periodic);
     }
     check_points(*state, &set, &options, i == 1 ? 77 : 0);
@@ -539,6 +560,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   mcor_options options = period_options(NULL, around), plain = options;
   options.iso_count = plain.iso_count = 0;
   options.sph_kernel = plain.sph_kernel = kernel;
+  options.cube_size = unequal ? 0.5 : 0;
   memset(plain.periodic, 0, sizeof plain.periodic);
   mcor_derivatives found, expected, moved;
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &found));
@@ -609,21 +631,21 @@ static double measure_area(const mcor_surface* s)
 static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;
-  const int length[3] = { 16, 16, 8 };
+  const int length[3] = { 16, 16, 16 };
   for (int i = 0; i < 4; ++i)
   {
-    double around[6] = { 0, 16, 0, 16, 0, 8 };
+    double around[6] = { 0, 16, 0, 16, 0, 16 };
     core_set set = make_period(length, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
       const double dx = fmin(x[0], 16 - x[0]), dy = fmin(x[1], 16 - x[1]);
-      const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 4) * (x[2] - 4)) / 2.5);
+      const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 8) * (x[2] - 8)) / 2.5);
       set.smoothing_length[p] = h < 3 ? h : 3;
     }
     stretch(&set, around);
-    around[4] = i < 2 ? around[4] : 0;
-    around[5] = i < 2 ? around[5] : 0;
+    around[4] = i == 0 ? around[4] : 0;
+    around[5] = i == 0 ? around[5] : 0;
     mcor_options options = period_options(i == 1 ? &half : &iso, around);
     options.level_limit = MCOR_CUBE_LEVELS - 1;
     options.cube_size = 0.3;
@@ -633,10 +655,12 @@ static void adaptive_unequal(void** state)
     const mcor_input input = core_input(&set);
     mcor_surface surface = core_extract(*state, &input, &options);
     const double* edge = surface.statistics.cube_edges;
-    assert_true(edge[0] != edge[1] && (i >= 2 || edge[1] != edge[2]));
+    assert_true(edge[0] != edge[1] && (i > 0 || edge[1] != edge[2]));
     assert_true(surface.statistics.highest_level >= 1);
-    assert_true(surface.statistics.cells_of_level[0] > 100);
-    assert_true(surface.statistics.cells_of_level[1] > 100);
+    const int64_t* cells = surface.statistics.cells_of_level;
+    const int levels = (cells[0] > 20) + (cells[1] > 20) + (cells[2] > 20);
+    CORE_CHECK(levels >= (i == 1 ? 1 : 2), "%lld, %lld and %lld cells of levels 0, 1 and 2",
+      (long long)cells[0], (long long)cells[1], (long long)cells[2]);
     CORE_CHECK(
       surface.statistics.residual_max < 1e-5, "residual %g", surface.statistics.residual_max);
     check_sides("adaptive, unequal", &surface, options.periodic);

@@ -96,7 +96,7 @@ void particle_period_set(mcor_options* options, const char* open)
 
 void particle_period_stretch(oracle_particles* particles, mcor_options* options)
 {
-  static const double factors[3] = { 1.0, 1.0331, 0.9713 };
+  static const double factors[3] = { 1.0, 1.0331, 1.0713 };
   for (int64_t i = 0; i < 3 * particles->count; ++i)
   {
     particles->position[i] *= factors[i % 3];

@@ -220,12 +220,20 @@ def check_blocks(reader):
     halves = [Clip(Input=reader, ClipType="Plane", Invert=side) for side in (0, 1)]
     for half in halves:
         half.ClipType.Origin, half.ClipType.Normal = [1.5, 0, 0], [1, 0, 0]
-    split, counts = GroupDatasets(Input=halves), []
+    split, counts, held = GroupDatasets(Input=halves), [], []
     for source, blocks in ((reader, "Together"), (split, "Together"), (split, "Apart")):
         extract = MarchingCorrectors(Input=source, FreeSurface=1, Blocks=blocks)  # noqa: F821
         counts.append(triangles(extract))
+        if blocks == "Together":
+            pieces = SPHPieces(Surface=extract, Particles=source)  # noqa: F821
+            assert triangles(pieces) == counts[-1]
+            table = pieces.SMProxy.GetOutputPort(1).GetDataInformation().GetRowDataInformation()
+            held.append([tuple(table.GetArrayInformation(name).GetComponentRange(0))
+                         for name in ("component", "particles", "mass")])
+            Delete(pieces)
         Delete(extract)
     assert counts[0] == counts[1] < counts[2], counts
+    assert held[0] == held[1] and 40000 < held[0][1][1] < 44880, held  # the walls are none of it
 
 
 def check_plugin(remote):

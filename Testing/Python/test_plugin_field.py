@@ -9,7 +9,8 @@ import tempfile
 
 from paraview import servermanager, smtrace
 from paraview.simple import (Connect, Delete, Disconnect, FindSource, GetAnimationScene, GetSources, GroupDatasets,
-                             LoadPlugin, LoadState, Plane, RenameSource, SaveState, Wavelet, XMLPolyDataReader)
+                             LoadPlugin, LoadState, Plane, PlotDataOverTime, RenameSource, SaveState, Wavelet,
+                             XMLPolyDataReader)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -129,6 +130,22 @@ def check_slices(reader):
     volume.NaNOutsideOfTheFluid = 0
     assert not numpy.isnan(arrays_of(volume)[1]["Height"]).any()
     Delete(volume)
+
+
+def check_gauge(reader):
+    """A line upright through the particles, over time as the guide says."""
+    gauge = SPHGauge(Particles=reader)  # noqa: F821
+    gauge.Point1, gauge.Point2 = [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]
+    over_time = PlotDataOverTime(Input=gauge, FieldAssociation="Rows", OnlyReportSelectionStatistics=0)
+    over_time.UpdatePipeline()
+    rows = over_time.GetDataInformation().GetRowDataInformation()
+    names = [rows.GetArrayInformation(i).GetName() for i in range(rows.GetNumberOfArrays())]
+    depth = next(rows.GetArrayInformation(name) for name in names if name.startswith("depth"))
+    height = (SIDE - 1) * SPACING  # of the lattice, and half a spacing on either side
+    assert depth.GetNumberOfTuples() == 2 and abs(depth.GetComponentRange(0)[1] - height - SPACING) < 0.1 * SPACING, (
+        depth.GetNumberOfTuples(), depth.GetComponentRange(0))
+    Delete(over_time)
+    Delete(gauge)
 
 
 def check_derivatives(reader):
@@ -251,6 +268,7 @@ def main():
                       Point2=[-1.0, 1.0, 0.0], XResolution=20, YResolution=20)
         check_probe(reader, plane)
         check_slices(reader)
+        check_gauge(reader)
         check_derivatives(reader)
         check_interpolator(reader)
         state = os.path.join(folder, "state.pvsm")

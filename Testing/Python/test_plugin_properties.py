@@ -3,10 +3,13 @@
 """Every property of every filter comes back by a trace and by a state, whatever it is set to. In pvpython;
 nothing is computed, as many of these choices together make no sense."""
 import os
+import pathlib
+import re
+import subprocess
 
-from paraview import smtrace
-from paraview.simple import (Delete, FindSource, GetSources, LoadPlugin, LoadState, Plane, RenameSource, SaveState,
-                             XMLPolyDataReader)
+from paraview import smstate, smtrace
+from paraview.simple import (Delete, FindSource, GetSources, LoadPlugin, LoadState, Plane, PointSource, RenameSource,
+                             SaveState, XMLPolyDataReader)
 
 
 def properties_of(proxy):
@@ -100,8 +103,36 @@ def compare(what, found, wanted):
     assert not lost, (what, lost)
 
 
+def run_alone(script):
+    path = os.path.join(os.environ["MCOR_TEST_OUTPUT"], f"state_{os.getpid()}.py")
+    pathlib.Path(path).write_text(script, encoding="utf-8")
+    done = subprocess.run([os.environ["MCOR_TEST_PVPYTHON"], path], capture_output=True, text=True, check=False)
+    os.remove(path)
+    return done.stdout + done.stderr
+
+
+def check_python_state():
+    """A state saved as Python wants the line that the guide tells, and nothing else."""
+    source = PointSource(NumberOfPoints=100)
+    made = SPHContourIsosurfaceFreeSurface(registrationName="found", Input=source)  # noqa: F821, pylint: disable=undefined-variable
+    state = smstate.get_state() + '\nprint("found:", FindSource("found").CubeSizeFactor)\n'
+    guide = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "Guide" / "paraview.md"
+    text = guide.read_text(encoding="utf-8")
+    line, error = re.search("^    (LoadPlugin.*)$", text, re.M).group(1), re.search("NameError: ([^`]*)`", text).group(1)
+    plugin = re.sub('"/[^"]*"', f'"{os.environ["MCOR_TEST_PLUGIN"]}"', line)
+    begin = "from paraview.simple import *\n"
+    assert begin in state and state.replace(begin, begin + plugin + "\n") != state
+    assert "NameError: " + error in run_alone(state), run_alone(state)
+    found = run_alone(state.replace(begin, begin + plugin + "\n"))
+    assert "found: 0.5" in found and "Error" not in found, found
+    Delete(made)
+    Delete(source)
+    print("the guide's line makes a state run", flush=True)
+
+
 def main():
     LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())
+    check_python_state()  # of these sources alone
     data = os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp")
     reader = XMLPolyDataReader(registrationName="reader", FileName=[data])
     reader.UpdatePipeline()
@@ -113,6 +144,8 @@ def main():
     for name in ("SPHSlice", "SPHLine", "SPHVolume"):
         check(name, lambda own, made=globals()[name]: made(registrationName=own, Input=reader))
     check("SPHDerivatives", lambda name: SPHDerivatives(registrationName=name, Input=reader))  # noqa: F821
+    check("SPHGauge", lambda name: SPHGauge(registrationName=name, Particles=reader))  # noqa: F821
+    check("SPHPieces", lambda name: SPHPieces(registrationName=name, Surface=plane, Particles=reader))  # noqa: F821
     check("SPHTemporalInterpolator",
           lambda name: SPHTemporalInterpolator(registrationName=name, Input=reader))  # noqa: F821
 

@@ -11,7 +11,8 @@ double plane_norm(mcor_sph_kernel kernel)
   /* 10 / (7 pi) over 1 / pi; 2 (2 - q)^2 / ... : so that the integral over the plane is 1, which
    * test_core_plane checks. */
   static const double norm[MCOR_SPH_KERNEL_COUNT] = { 1.4285714285714286, 1.6, 1,
-    1.7573221757322175, 1.3333333333333333 };
+    1.7573221757322175, 1.3333333333333333, 1.6013344453711426, 1.1636363636363636,
+    1.0448979591836735, 1.0635845764083533 };
   return norm[kernel];
 }
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _structs as c
 from ._arrays import (Arguments, as_named, as_points, contiguous, is_real, left_out, number, statistics, take,
-                      take_all, take_each)
+                      take_all, take_each, take_lines)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, lib
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, check_names, with_options

@@ -57,6 +57,13 @@ class Plane(CommandLineTest):
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "would hold no lines")
         self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "have lines")
 
+    def test_particle_distance(self):
+        """Of DualSPHysics, whose smoothing length is that of the dimension."""
+        del self.arrays["SmoothingLength"]
+        files.write_vtp(self.input, self.points, self.arrays)
+        lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]
+        self.assertAlmostEqual(lengths[0], 0.1 * math.sqrt(2), delta=1e-12)
+
     def test_derivatives(self):
         result = self.extract("--derive", "Velocity", "--scalar", "Divergence", "--iso", "1.5")
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -131,6 +131,25 @@ class Results(unittest.TestCase):
         self.assertTrue((uses == 2).all())  # closed
         self.assertEqual(mc.free_surface(POSITIONS, estimate_smoothing_length=True).statistics["solid_particles"], 0)
 
+    def test_lines(self):
+        """Of two dimensions: one of a circle, with greater values outside on its left."""
+        flat = np.stack(np.meshgrid(np.arange(N) * 0.1, [0.5], np.arange(N) * 0.1, indexing="ij"), -1).reshape(-1, 3)
+        distance = np.hypot(flat[:, 0] - 0.65, flat[:, 2] - 0.65)
+        surface = mc.isosurface(flat, distance, 0.4, smoothing_length=H, volume=0.01, weight_sum=True)
+        line, = surface.lines
+        self.assertEqual((surface.statistics["dimension"], surface.triangles.shape), (2, (0, 3)))
+        self.assertEqual(line[0], line[-1])
+        self.assertEqual(sorted(line[1:]), list(range(len(surface.points))))
+        self.assertTrue((surface.points[:, 1] == 0.5).all())
+        z, x = (surface.points[line, 2] - 0.65, surface.points[line, 0] - 0.65)  # y is the constant axis
+        area = 0.5 * (z[:-1] * x[1:] - z[1:] * x[:-1]).sum()
+        self.assertAlmostEqual(area, -np.pi * 0.4 ** 2, delta=0.03)
+        self.assertAlmostEqual(area, surface.statistics["area"], delta=1e-9)
+        space = quietly(mc.isosurface, flat, distance, 0.4, smoothing_length=H, volume=0.01, dimension=3)
+        self.assertEqual(space.lines, [])
+        with self.assertRaisesRegex(mc.InvalidData, "do not share one coordinate"):
+            sphere(dimension=2)
+
     def test_empty(self):
         surface = mc.isosurface(np.empty((0, 3)), np.empty(0), iso=1, smoothing_length=1.0)
         self.assertEqual((surface.points.shape, surface.triangles.shape), ((0, 3), (0, 3)))

@@ -170,7 +170,9 @@ const Options TheParticles = {
   { "", "", "The particles (arrays not given are found by their usual names)", {} },
   { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or estimated from the spacing",
     [](Job& j, Text n, Text v) { j.SmoothingLength = ToQuantity(n, v); } },
-  { "--dp", "D", "particle distance of DualSPHysics: smoothing length coefh x sqrt(3) x D",
+  { "--dp", "D",
+    "particle distance of DualSPHysics: smoothing length coefh x sqrt(3) x D, in two dimensions "
+    "sqrt(2)",
     [](Job& j, Text n, Text v) { j.ParticleDistance = ToPositive(n, v); } },
   { "--coefh", "C", "coefficient of DualSPHysics, see --dp (default 1)",
     [](Job& j, Text n, Text v) { j.CoefH = ToPositive(n, v); } },

@@ -13,6 +13,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkSPHPeriod.h"
 
 #include <algorithm>
@@ -35,6 +36,20 @@ bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
 }
 
+/// Whether the filter takes the particles for those of two dimensions.
+bool IsPlane(vtkSPHAlgorithm* filter, vtkPointSet* particles)
+{
+  double bounds[6];
+  particles->GetPoints()->GetBounds(bounds);
+  int constant = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    constant += bounds[2 * a] == bounds[2 * a + 1];
+  }
+  return filter->GetDimension() == vtkSPHAlgorithm::DIMENSION_2 ||
+    (filter->GetDimension() == vtkSPHAlgorithm::DIMENSION_AUTO && constant == 1);
+}
+
 /// What of the settings depends on the input: whether a text is a number or the name of an array, and
 /// where a period lies.
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
@@ -54,7 +69,8 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   }
   if (job.ParticleDistance > 0.0)
   {
-    filter->SetSmoothingLength(job.CoefH * std::sqrt(3.0) * job.ParticleDistance);
+    filter->SetSmoothingLength(
+      job.CoefH * std::sqrt(IsPlane(filter, particles) ? 2.0 : 3.0) * job.ParticleDistance);
   }
   if (IsConstant(job.Mass, particles, value))
   {

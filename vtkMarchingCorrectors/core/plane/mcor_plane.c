@@ -42,12 +42,10 @@ static void mcor_find_constant(
 /* Whether positions can be looked at; what is wrong otherwise is for mcor_check_input to say. */
 static bool mcor_has_positions(const mcor_input* input)
 {
-  return input->count >= 0 && input->positions.data && input->positions.type <= MCOR_FLOAT64 &&
-    (input->positions.components == 3 || input->positions.components == 0) &&
-    mcor_find_not_finite(
-      &(mcor_array){
-        .data = input->positions.data, .type = input->positions.type, .components = 3 },
-      NULL, input->count) < 0;
+  const mcor_array* positions = &input->positions;
+  return input->count == 0 ||
+    (input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && positions->data &&
+      (unsigned)positions->type <= MCOR_FLOAT64);
 }
 
 int mcor_find_dimension(const mcor_input* input, int dimension)
@@ -55,7 +53,7 @@ int mcor_find_dimension(const mcor_input* input, int dimension)
   int constant = 0;
   mcor_array positions = input->positions;
   positions.components = 3;
-  for (int a = 0; a < 3 && dimension != 3 && input->count > 0 && positions.data; ++a)
+  for (int a = 0; a < 3 && dimension != 3 && mcor_has_positions(input); ++a)
   {
     double low, high;
     mcor_find_constant(&positions, input->count, a, &low, &high);
@@ -69,6 +67,10 @@ static mcor_status mcor_refuse_plane(mcor_context* context, const mcor_input* in
 {
   mcor_array positions = input->positions;
   positions.components = 3;
+  if (mcor_find_not_finite(&positions, NULL, input->count) >= 0)
+  {
+    return MCOR_OK; /* for mcor_check_input to say */
+  }
   for (int a = 2; a >= 0 && input->solid; --a)
   {
     int64_t fluid = 0, other = 0, solid = -1;

@@ -45,7 +45,10 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
 
     @smproperty.doublevector(name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty")
     def GetTimestepValues(self):
-        return self._times_of() if self._names else None
+        try:
+            return self._times_of() if self._names else None
+        except io.FileError:  # RequestInformation says it
+            return None
 
     def _read(self, i):
         if self._kept[0] != i:
@@ -82,11 +85,11 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
 
     def RequestData(self, request, inputs, outputs):
         information = outputs.GetInformationObject(0)
-        times, step = self._times_of(), 0
-        if information.Has(Pipeline.UPDATE_TIME_STEP()):
-            wanted = information.Get(Pipeline.UPDATE_TIME_STEP())
-            step = max((i for i, time in enumerate(times) if time <= wanted), default=0)
         try:
+            times, step = self._times_of(), 0
+            if information.Has(Pipeline.UPDATE_TIME_STEP()):
+                wanted = information.Get(Pipeline.UPDATE_TIME_STEP())
+                step = max((i for i, time in enumerate(times) if time <= wanted), default=0)
             data = to_vtk(self._read(step))
         except io.FileError as error:
             self._fail(error)

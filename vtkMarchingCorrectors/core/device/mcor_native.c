@@ -85,22 +85,6 @@ static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
 
 /* ---- Platform and device ---- */
 
-/* The best of the instruction sets for which programs are compiled. */
-static mcor_instructions mcor_best_instructions(void)
-{
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-    __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-    __builtin_cpu_supports("avx512vl");
-  return v4 ? MCOR_INSTRUCTIONS_V4 : v3 ? MCOR_INSTRUCTIONS_V3 : MCOR_INSTRUCTIONS_BASE;
-#else
-  return MCOR_INSTRUCTIONS_BASE;
-#endif
-}
-
 static const char* mcor_device_text(void)
 {
   static const char* const texts[] = { "built in: this CPU", "built in: this CPU, AVX2",

@@ -194,9 +194,17 @@ void mcor_system_remove_unused(const char* folder, const char* part, int days)
   }
 }
 
+/* Objects of Wine's own OpenCL.dll do not begin with tables of functions, by which all others are called. */
+static bool mcor_is_wine(void)
+{
+  const HMODULE library = GetModuleHandleW(L"ntdll.dll");
+  return library && GetProcAddress(library, "wine_get_version") != NULL;
+}
+
 mcor_function mcor_system_opencl(void)
 {
-  HMODULE loader = LoadLibraryExW(L"OpenCL.dll", NULL, LOAD_LIBRARY_SEARCH_SYSTEM32);
+  const HMODULE loader =
+    mcor_is_wine() ? NULL : LoadLibraryExW(L"OpenCL.dll", NULL, LOAD_LIBRARY_SEARCH_SYSTEM32);
   return loader ? (mcor_function)(void*)GetProcAddress(loader, "clGetPlatformIDs") : NULL;
 }
 

@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Prints the SHA-256 of results, one line each: the same on every system. NumPy alone, by operations that round alike."""
+import hashlib
+import os
+import sys
+import tempfile
+import warnings
+
+import numpy as np
+
+import marchingcorrectors as mc
+
+
+def show(name, *arrays):
+    digest = hashlib.sha256()
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array).tobytes())
+    print(name, len(arrays[0]), digest.hexdigest(), flush=True)
+
+
+warnings.simplefilter("ignore")
+x = np.random.default_rng(34).random((20000, 3))
+d = x - 0.5
+radius = np.sqrt(d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1] + d[:, 2] * d[:, 2])
+words = {"smoothing_length": 0.05, "volume": 1 / len(x)}
+for kernel in ("cubic", "quintic", "wendland", "mprime4", "quadratic"):
+    surface = mc.isosurface(x, radius, 0.3, sph_kernel=kernel, **words)
+    show(kernel, surface.points, surface.triangles, surface.normals)
+surface = mc.isosurface(x.astype(np.float32), radius.astype(np.float32), [0.2, 0.4], attributes={"r": radius}, **words)
+show("values", surface.points, surface.triangles, surface.attributes["r"])
+surface = mc.isosurface(x, radius, 0.3, estimate_smoothing_length=True)
+show("estimated", surface.points, surface.triangles)
+surface = mc.free_surface(x, **words)
+show("free", surface.points, surface.triangles)
+samples = mc.probe(x, x[:1000], attributes={"r": radius}, **words)
+show("probe", samples.values["r"], samples.weight_sum)
+
+with tempfile.TemporaryDirectory() as folder:  # names that no code page of one byte has
+    folder = os.path.join(folder, "été 測試")
+    os.mkdir(folder)
+    name = os.path.join(folder, "surface 測.ply")
+    surface.save(name)
+    with open(name, "rb") as file:
+        show("ply", np.frombuffer(file.read(), np.uint8))
+print(mc.devices(), file=sys.stderr)

@@ -1,0 +1,95 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The wheel for Windows in a Windows CPython under wine gives the bytes that the wheel for Linux gives.
+
+    test_windows.py FOLDER_OF_THE_ENVIRONMENT
+
+MCOR_WINDOWS_WHEEL: one that is built; else Python/build-wheels builds it. Status 77: there is no wine, or PyPI is
+out of reach. Where CPython's own site is not: its library and extension modules are taken from a wheel that has
+them (panda3d), its modules in Python from a CPython of the same version here.
+"""
+import glob
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import zipfile
+from pathlib import Path
+
+SOURCES, HERE = Path(os.environ["MCOR_TEST_SOURCES"]), Path(__file__).parent
+PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4")  # NumPy 2 wants functions that wine 8 has not
+VERSION = (3, 11)
+SKIPPED = 77
+WIDE_MAIN = """#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
+int wmain(int count, wchar_t** words)
+{
+  HMODULE library = LoadLibraryW(L"python311.dll");
+  int (*python)(int, wchar_t**) = library ? (int (*)(int, wchar_t**))(void*)GetProcAddress(library, "Py_Main") : 0;
+  return python ? python(count, words) : 99;
+}
+"""
+
+
+def skip(sentence):
+    print(f"Skipped: {sentence}")
+    sys.exit(SKIPPED)
+
+
+def make_python(folder, wheel):
+    if subprocess.run([sys.executable, "-m", "pip", "--disable-pip-version-check", "download", "-q", "--no-deps",
+                       "--only-binary=:all:", "--platform", "win_amd64", "--python-version", "%d.%d" % VERSION,
+                       "-d", folder / "wheels", *PACKAGES]).returncode:
+        skip("the Python package index is out of reach.")
+    python = folder / "python"
+    shutil.copytree(sysconfig.get_path("stdlib"), python / "Lib",
+                    ignore=shutil.ignore_patterns("site-packages", "lib-dynload", "test", "config-*", "__pycache__"))
+    site = python / "Lib" / "site-packages"
+    for package in [wheel, *(folder / "wheels").glob("numpy-*.whl")]:
+        zipfile.ZipFile(package).extractall(site)
+    with zipfile.ZipFile(next((folder / "wheels").glob("panda3d-*.whl"))) as archive:
+        for name in archive.namelist():
+            if name.startswith("deploy_libs/") and name.endswith((".dll", ".pyd")) and "api-ms-win" not in name:
+                (python / Path(name).name).write_bytes(archive.read(name))
+    (folder / "main.c").write_text(WIDE_MAIN)
+    subprocess.run(["x86_64-w64-mingw32-gcc", "-municode", "-O1", folder / "main.c", "-o", python / "python.exe"], check=True)
+    return python / "python.exe"
+
+
+def hashes(*command, **more):
+    done = subprocess.run([*map(str, command), str(HERE / "surface_hashes.py")], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+    print(done.stderr[-3000:])
+    assert done.returncode == 0, done.returncode
+    return [line.strip() for line in done.stdout.splitlines() if line.strip()]
+
+
+def main():
+    if not (shutil.which("wine") and shutil.which("x86_64-w64-mingw32-gcc")):
+        skip("there is no wine, or no gcc for Windows (Debian: apt install wine64 wine gcc-mingw-w64-x86-64).")
+    if sys.version_info[:2] != VERSION:
+        skip("the modules of CPython %d.%d are wanted, and this is %d.%d." % (*VERSION, *sys.version_info[:2]))
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        wheel = os.environ.get("MCOR_WINDOWS_WHEEL")
+        if not wheel:
+            subprocess.run([sys.executable, SOURCES / "Python" / "build-wheels", "--only", "windows", "--kernels", "usual",
+                            folder / "dist"], check=True)
+            wheel, = glob.glob(f"{folder}/dist/*-win_amd64.whl")
+        python = make_python(folder, wheel)
+        environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
+        environment.pop("PYTHONPATH", None)
+        windows = hashes("wine", python, env=environment)
+        here = hashes(Path(sys.argv[1]) / "venv" / "bin" / "python")
+        print("\n".join(windows))
+        # C libraries round the cube root in the estimate of smoothing lengths differently.
+        windows, here = ([line.rpartition(" ")[0] if line.startswith("estimated") else line for line in lines]
+                         for lines in (windows, here))
+        assert len(here) == 10 and windows == here, "\n".join(["on Linux:", *here])
+        subprocess.run(["wineserver", "-k"], env=environment)
+
+
+if __name__ == "__main__":
+    main()

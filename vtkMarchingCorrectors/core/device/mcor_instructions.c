@@ -1,0 +1,42 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Asked of the processor itself: the compiler's own question, __builtin_cpu_supports, has an answer in
+ * some of its libraries alone. */
+
+#include "mcor_native.h"
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+
+#define MCOR_HAS(bits, wanted) (((bits) & (wanted)) == (wanted))
+
+mcor_instructions mcor_best_instructions(void)
+{
+  const unsigned fma_saved_avx = 1u << 12 | 1u << 27 | 1u << 28;
+  const unsigned bmi_avx2_bmi2 = 1u << 3 | 1u << 5 | 1u << 8;
+  const unsigned avx512_f_dq_cd_bw_vl = 1u << 16 | 1u << 17 | 1u << 28 | 1u << 30 | 1u << 31;
+  unsigned a = 0, b = 0, c = 0, d = 0, state = 0, rest = 0;
+  if (!__get_cpuid(1, &a, &b, &c, &d) || !MCOR_HAS(c, fma_saved_avx))
+  {
+    return MCOR_INSTRUCTIONS_BASE;
+  }
+  /* The registers that the system keeps for each thread. */
+  __asm__ volatile("xgetbv" : "=a"(state), "=d"(rest) : "c"(0));
+  if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || !MCOR_HAS(state, 0x06u) ||
+    !MCOR_HAS(b, bmi_avx2_bmi2))
+  {
+    return MCOR_INSTRUCTIONS_BASE;
+  }
+  return MCOR_HAS(state, 0xE6u) && MCOR_HAS(b, avx512_f_dq_cd_bw_vl) ? MCOR_INSTRUCTIONS_V4
+                                                                     : MCOR_INSTRUCTIONS_V3;
+}
+
+#else
+
+mcor_instructions mcor_best_instructions(void)
+{
+  return MCOR_INSTRUCTIONS_BASE;
+}
+
+#endif

@@ -501,7 +501,7 @@ class Options(CommandLineTest):
 
     def test_input_formats(self):
         expected = self.succeed(*ISO)["statistics"]
-        self.assertTrue(0 < expected["PositionError"] < 1e-6)
+        self.assertTrue(0 < expected["position_error"] < 1e-6)
         for name, write in (("p.vtu", files.write_vtu), ("p.vtk", files.write_legacy)):
             with self.subTest(name):
                 write(self.directory / name, self.points, self.arrays)

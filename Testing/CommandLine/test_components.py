@@ -132,6 +132,18 @@ class Components(CommandLineTest):
         self.assertEqual((layer["closed"], layer["particles"]), ("1", "1000"))
         self.assertAlmostEqual(float(layer["volume"]), 1, delta=0.02)
 
+    def test_box(self):
+        """What a box cuts has a volume with caps alone."""
+        box = ["--box=-inf,0.2,-inf,inf,-inf,inf"]
+        cut, = self.pieces(*box)
+        self.assertEqual((cut["closed"], cut["volume"], cut["particles"]), ("0", "", ""))
+        capped, = self.pieces(*box, "--capping")
+        side = float(capped["xmax"])
+        self.assertAlmostEqual(side, 0.2, delta=0.04)
+        self.assertEqual(capped["closed"], "1")
+        self.assertAlmostEqual(float(capped["volume"]), side + 0.5, delta=0.06)
+        self.assertEqual(int(capped["particles"]), sum(x < side for x, y, z in self.points) - 4)
+
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
                                   ([*FREE, "--least-volume", "1"], "no use for --least-volume"),

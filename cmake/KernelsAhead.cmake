@@ -21,7 +21,9 @@ elseif (CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$")
 elseif (mcor_ahead)
   message(STATUS "No built-in device: none is known for the processor ${CMAKE_SYSTEM_PROCESSOR}. An OpenCL driver is needed.")
 endif ()
-set(MCOR_AHEAD_FLAGS "-O3" CACHE STRING "Flags of clang for the kernels of the built-in device")
+# Vectors of 16 lanes are passed on the stack where a function is not inlined.
+set(MCOR_AHEAD_FLAGS "-O3 -mllvm -inline-threshold=800" CACHE STRING
+  "Flags of clang for the kernels of the built-in device")
 set(MCOR_AHEAD_INSTRUCTIONS "V3;V4;BASE" CACHE STRING
   "Instruction sets of these kernels, those of other processors are ignored: V3, V4 (x86-64), BASE (arm64)")
 mark_as_advanced(MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS)

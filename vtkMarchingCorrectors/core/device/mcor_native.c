@@ -90,8 +90,8 @@ static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
 
 /* ---- Platform and device ---- */
 
-/* The best of the instruction sets for which programs are compiled. */
-static mcor_instructions mcor_best_instructions(void)
+/* The best instruction set of this processor. */
+static mcor_instructions mcor_own_instructions(void)
 {
 #if defined(__x86_64__)
   __builtin_cpu_init();
@@ -104,6 +104,18 @@ static mcor_instructions mcor_best_instructions(void)
 #else
   return MCOR_INSTRUCTIONS_BASE;
 #endif
+}
+
+/* Of those for which programs are compiled: a build may leave some out. */
+static mcor_instructions mcor_best_instructions(void)
+{
+  const mcor_instructions own = mcor_own_instructions();
+  mcor_instructions best = MCOR_INSTRUCTIONS_BASE;
+  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
+  {
+    best = p->instructions <= own && p->instructions > best ? p->instructions : best;
+  }
+  return best;
 }
 
 static const char* mcor_device_text(void)

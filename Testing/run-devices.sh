@@ -5,8 +5,9 @@
 #   ./Testing/run-devices.sh [--build-dir DIR] [--long] [NAME]...
 #
 # NAME: built-in, rusticl (Mesa's llvmpipe), intel (Intel's runtime for CPUs), pocl3 (PoCL 3.0 of PyPI),
-# arm64 (the built-in device, compiled for that processor, which is emulated); default: all. Packages come from Debian and, into a temporary folder, from PyPI. --long: larger cases, double
-# precision where the device has it, and each form of the kernels. DIR (build-tests) is what
+# arm64 (the built-in device, compiled for that processor, which is emulated); default: all. Packages come from
+# Debian and, into a temporary folder, from PyPI. --long: larger cases, double precision where the device has it
+# (the built-in one is compiled anew with it), and each form of the kernels. DIR (build-tests) is what
 # Testing/run-tests.sh has built. Status 1: a device failed or gave other bits.
 set -uo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
@@ -73,12 +74,19 @@ compare_forms() { # NAME SETTING...
   compare "$@"
   if [ -z "$size" ] && [ "$name" != rusticl ]; then
     compare "$name-8" MCOR_LANES=8 "${@:2}"
-    compare "$name-gpu" MCOR_DEVICE_FORM=gpu "${@:2}"
+    [ "$name" = built-in ] || compare "$name-gpu" MCOR_DEVICE_FORM=gpu "${@:2}"
   fi
 }
 
-# The core and its tests for arm64, with double precision, by clang and Debian's libraries for it. The test
-# library is taken from a package of that architecture, without a change to this system's.
+# The core and its tests with all that the built-in device can have compiled.
+build_core() { # FOLDER CMAKE ARGUMENTS...
+  cmake -S . -B "$scratch/$1" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_VTK=OFF \
+    -DMCOR_BUILD_EXAMPLES=OFF -DMCOR_AHEAD=all "${@:2}" &&
+    cmake --build "$scratch/$1" --target core_bits core_rooms
+}
+
+# For arm64, by clang and Debian's libraries for it. The test library is taken from a package of that
+# architecture, without a change to this system's.
 build_arm64() {
   local apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=
     -o "Dir::State=$scratch/apt" -o "Dir::State::status=$scratch/apt/status" -o "Dir::Cache=$scratch/apt")
@@ -86,13 +94,11 @@ build_arm64() {
     touch "$scratch/apt/status" && "${apt[@]}" update &&
     (cd "$scratch/apt" && "${apt[@]}" download libcmocka-dev libcmocka0) || return 1
   for package in "$scratch"/apt/*.deb; do dpkg -x "$package" "$scratch/arm64" || return 1; done
-  cmake -S . -B "$scratch/build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_VTK=OFF \
-    -DMCOR_BUILD_EXAMPLES=OFF -DMCOR_AHEAD=all -DMCOR_AHEAD_TRIPLE=aarch64-linux-gnu \
+  build_core build -DMCOR_AHEAD_TRIPLE=aarch64-linux-gnu \
     -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
     -DCMAKE_C_COMPILER=clang -DCMAKE_C_COMPILER_TARGET=aarch64-linux-gnu \
     -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_COMPILER_TARGET=aarch64-linux-gnu \
-    -Dcmocka_DIR="$scratch/arm64/usr/lib/aarch64-linux-gnu/cmake/cmocka" &&
-    cmake --build "$scratch/build" --target core_bits core_rooms
+    -Dcmocka_DIR="$scratch/arm64/usr/lib/aarch64-linux-gnu/cmake/cmocka"
 }
 
 vendor() { echo "$1" >"$scratch/vendors/device.icd"; }
@@ -103,7 +109,12 @@ echo "reference: PoCL"
 for name in "${names[@]}"; do
   case "$name" in
     built-in)
-      compare_forms built-in OCL_ICD_VENDORS="$scratch/none" ;;
+      if [ -z "$size" ]; then
+        build_core double >"$scratch/build.log" 2>&1 || { tail -20 "$scratch/build.log"; exit 1; }
+        programs=("$scratch/double/bin")
+      fi
+      compare_forms built-in OCL_ICD_VENDORS="$scratch/none"
+      programs=("$build/bin") ;;
     arm64)
       mcor_install clang gcc-aarch64-linux-gnu g++-aarch64-linux-gnu qemu-user || exit 1
       build_arm64 >"$scratch/build.log" 2>&1 || { tail -20 "$scratch/build.log"; exit 1; }

@@ -11,7 +11,7 @@
 
 #define MCOR_HAS(bits, wanted) (((bits) & (wanted)) == (wanted))
 
-mcor_instructions mcor_best_instructions(void)
+mcor_instructions mcor_own_instructions(void)
 {
   const unsigned fma_saved_avx = 1u << 12 | 1u << 27 | 1u << 28;
   const unsigned bmi_avx2_bmi2 = 1u << 3 | 1u << 5 | 1u << 8;
@@ -34,7 +34,7 @@ mcor_instructions mcor_best_instructions(void)
 
 #else
 
-mcor_instructions mcor_best_instructions(void)
+mcor_instructions mcor_own_instructions(void)
 {
   return MCOR_INSTRUCTIONS_BASE;
 }

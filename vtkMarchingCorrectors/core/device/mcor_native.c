@@ -20,8 +20,10 @@
 /* Work-groups of one work-item, in which the host launches what takes long, make a launch worth waking
  * threads; of 64, in which it launches what takes some nanoseconds, many do. */
 #define MCOR_FEW_LIGHT_ITEMS 8192
-/* Parts of a launch for each thread, as work-items differ; and work-items of a part, at most. */
-#define MCOR_PARTS_PER_THREAD 16
+/* Parts of a launch for each thread, as work-items differ: those that take long, by far, and the threads
+ * that have none left wait for the last part. And work-items of a part, at most. */
+#define MCOR_LIGHT_PARTS 16
+#define MCOR_HEAVY_PARTS 64
 #define MCOR_PART_ITEMS 4096
 
 extern const cl_icd_dispatch mcor_native_table;
@@ -84,6 +86,18 @@ static struct _cl_platform_id mcor_platform = { &mcor_native_table };
 static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
 
 /* ---- Platform and device ---- */
+
+/* Of those for which programs are compiled: a build may leave some out. */
+static mcor_instructions mcor_best_instructions(void)
+{
+  const mcor_instructions own = mcor_own_instructions();
+  mcor_instructions best = MCOR_INSTRUCTIONS_BASE;
+  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
+  {
+    best = p->instructions <= own && p->instructions > best ? p->instructions : best;
+  }
+  return best;
+}
 
 static const char* mcor_device_text(void)
 {
@@ -563,7 +577,8 @@ static mcor_pool* mcor_pool_of(cl_context context)
 
 static size_t mcor_launch_step(cl_uint units, size_t items, size_t group)
 {
-  const size_t parts = (size_t)units * MCOR_PARTS_PER_THREAD, step = (items + parts - 1) / parts;
+  const size_t parts = (size_t)units * (group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
+  const size_t step = (items + parts - 1) / parts;
   return group > 1 && items < MCOR_FEW_LIGHT_ITEMS ? items
     : step < MCOR_PART_ITEMS                       ? step
                                                    : MCOR_PART_ITEMS;

@@ -37,7 +37,7 @@ typedef struct mcor_native_program
 extern const mcor_native_program mcor_native_programs[];
 
 /* The best that this processor and its system have. */
-mcor_instructions mcor_best_instructions(void);
+mcor_instructions mcor_own_instructions(void);
 /* NULL where this processor has none of the instruction sets. */
 cl_platform_id mcor_native_platform(void);
 /* Whether there is a program for these options, as given to clBuildProgram. */

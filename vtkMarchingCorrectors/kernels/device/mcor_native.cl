@@ -126,38 +126,38 @@ MCOR_DEFINE_ATOMIC(uint, and, and, MCOR_COMMA uint v, v)
 MCOR_DEFINE_ATOMIC(uint, min, umin, MCOR_COMMA uint v, v)
 MCOR_DEFINE_ATOMIC(uint, max, umax, MCOR_COMMA uint v, v)
 
-/* Vectors R of n numbers T. Clang makes one instruction of such a loop. */
+/* Vectors R of n numbers T. Clang makes one instruction of such a loop, but branches of one with a choice. */
 #define MCOR_EACH_LANE(R, n, value)                                                                \
   R r;                                                                                             \
   for (int i = 0; i < n; ++i)                                                                      \
   {                                                                                                \
     r[i] = value;                                                                                  \
   }                                                                                                \
-  return r;
+  return r
 #define MCOR_DEFINE_REALS(n, R, T)                                                                 \
   MCOR_DEFINE R fabs(R x)                                                                          \
   {                                                                                                \
-    MCOR_EACH_LANE(R, n, fabs((T)x[i]))                                                            \
+    MCOR_EACH_LANE(R, n, fabs((T)x[i]));                                                           \
   }                                                                                                \
   MCOR_DEFINE R sqrt(R x)                                                                          \
   {                                                                                                \
-    MCOR_EACH_LANE(R, n, sqrt((T)x[i]))                                                            \
+    MCOR_EACH_LANE(R, n, sqrt((T)x[i]));                                                           \
   }                                                                                                \
   MCOR_DEFINE R floor(R x)                                                                         \
   {                                                                                                \
-    MCOR_EACH_LANE(R, n, floor((T)x[i]))                                                           \
+    MCOR_EACH_LANE(R, n, floor((T)x[i]));                                                          \
   }                                                                                                \
   MCOR_DEFINE R ceil(R x)                                                                          \
   {                                                                                                \
-    MCOR_EACH_LANE(R, n, ceil((T)x[i]))                                                            \
+    MCOR_EACH_LANE(R, n, ceil((T)x[i]));                                                           \
   }                                                                                                \
   MCOR_DEFINE R sign(R x)                                                                          \
   {                                                                                                \
-    MCOR_EACH_LANE(R, n, sign((T)x[i]))                                                            \
+    return x > 0 ? (R)1 : x < 0 ? (R)-1 : x == 0 ? x : (R)0;                                       \
   }                                                                                                \
   MCOR_DEFINE R fma(R a, R b, R c)                                                                 \
   {                                                                                                \
-    MCOR_EACH_LANE(R, n, fma((T)a[i], (T)b[i], (T)c[i]))                                           \
+    MCOR_EACH_LANE(R, n, fma((T)a[i], (T)b[i], (T)c[i]));                                          \
   }                                                                                                \
   MCOR_DEFINE_RANGE(R, R)                                                                          \
   MCOR_DEFINE_RANGE(R, T)

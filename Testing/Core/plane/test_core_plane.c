@@ -329,6 +329,32 @@ static void test_derivatives_and_gauges(void** state)
   }
 }
 
+/* Of a smooth scalar, pairs find what complete seeds do; and what is kept serves another iso value. */
+static void test_pairs_and_reuse(void** state)
+{
+  core_set set = plane_make(20, 0.2, 1, 2, -1, 4);
+  const double isos[2] = { -20, 2 };
+  mcor_input input = core_input_to_keep(&set);
+  for (int i = 0; i < 2; ++i)
+  {
+    uint64_t hash[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      mcor_options options = plane_options(&isos[i]);
+      options.seeds = k == 1 ? MCOR_PAIRS : MCOR_COMPLETE;
+      mcor_input fresh = core_input(&set);
+      mcor_surface surface = core_extract(*state, k == 2 ? &fresh : &input, &options);
+      assert_int_equal(surface.line_count, 1);
+      hash[k] = core_hash_bytes(
+        CORE_HASH_OF_NOTHING, surface.points, (size_t)surface.point_count * 3 * sizeof(double));
+      mcor_free_surface(&surface);
+    }
+    assert_int_equal(hash[0], hash[1]);
+    assert_int_equal(hash[0], hash[2]);
+  }
+  core_free_set(&set);
+}
+
 /* Bits do not depend on the order of the particles, nor, but for what is turned, on the plane. */
 static void test_bits(void** state)
 {
@@ -440,6 +466,7 @@ int main(int argc, char** argv)
     cmocka_unit_test(test_random_lines), cmocka_unit_test(test_circle),
     cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
     cmocka_unit_test(test_points_and_rows), cmocka_unit_test(test_derivatives_and_gauges),
-    cmocka_unit_test(test_bits), cmocka_unit_test(test_boxes_and_periods) };
+    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
+    cmocka_unit_test(test_boxes_and_periods) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -127,7 +127,7 @@ static bool mcor_is_owned(
   for (int a = 0; a < 3; ++a)
   {
     const double at = line->from[a] + place * (line->to[a] - line->from[a]);
-    double cell = floor(at / lattice->cube - (double)lattice->origin[a]);
+    double cell = floor(at / lattice->edge[a] - (double)lattice->origin[a]);
     if (lattice->period[a] > 0)
     {
       cell -= floor((cell - lattice->period_first[a]) / lattice->period[a]) * lattice->period[a];

@@ -75,8 +75,8 @@ __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global
   query.radius = -1;
   for (int a = 0; a < 3; ++a)
   {
-    query.low[a] = (fix)corner[a] << grid.fix_bits;
-    query.high[a] = query.low[a] + ((fix)extent[a] << grid.fix_bits);
+    query.low[a] = corner[a] * grid.step[a];
+    query.high[a] = query.low[a] + extent[a] * grid.step[a];
   }
   mcor_query_in_region(&grid, bricks[slot], &query);
   for (int a = 0; a < 3; ++a)
@@ -84,8 +84,8 @@ __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global
     at[a] = (real)(query.low[a] - query.origin[a]) * grid.unit;
   }
   const fixv lane = mcor_lane_index();
-  const realv x = at[0] + MCOR_CONVERT_REALV(lane & 3);
-  const realv y = at[1] + MCOR_CONVERT_REALV(lane >> 2);
+  const realv x = at[0] + MCOR_CONVERT_REALV(lane & 3) * grid.edge[0];
+  const realv y = at[1] + MCOR_CONVERT_REALV(lane >> 2) * grid.edge[1];
   mcor_plane_sums sums;
   sums.s = sums.w = sums.t = 0;
   mcor_tile tile;

@@ -238,7 +238,7 @@ public:
     DIMENSION_2 = 2,
     DIMENSION_3 = 3
   };
-  vtkSetMacro(Dimension, int);
+  vtkSetClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
   vtkGetMacro(Dimension, int);
   ///@}
 

@@ -81,6 +81,7 @@ mcor_options oracle_case_options(const double* iso)
   options.level_limit = 0; /* where a case does not ask for others */
   options.iso_values = iso;
   options.iso_count = 1;
+  options.dimension = 3; /* few particles may share a coordinate */
   options.normals = options.gradients = options.weight_sum = options.boundary_flag = 1;
   options.residual = options.correction_length = 1;
   return options;

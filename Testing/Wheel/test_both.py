@@ -130,7 +130,7 @@ class Test(unittest.TestCase):
 
     def test_accessor(self):
         """As doubles, with the same arrays and sentences."""
-        words_of = {"Kernel": lambda value: {"sph_kernel": value},
+        words_of = {"Kernel": lambda value: {"sph_kernel": value}, "Dimension": lambda value: {"dimension": value},
                     "VertexThreshold": lambda value: {"vertex_threshold": value},
                     "FluidArrayName": lambda value: {"fluid": (value, 0)},
                     "DetectPeriod": lambda value: {"periodic": "auto"}, "Capping": lambda value: {"capping": True},

@@ -19,14 +19,17 @@ static double pick(uint64_t* state, const double* values, int count)
   return values[random_bits(state) % (uint64_t)count];
 }
 
-static void fill_options(oracle_case* at, uint64_t* state, double* iso)
+/* Seeds of which some found faults, with the kernels that there were. */
+#define SEEDS_OF_FIVE_KERNELS 1000
+
+static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, double* iso)
 {
   static const double scales[] = { 1.0, 1.0, 0.75, 0.5 };
   static const double factors[] = { 0.5, 0.5, 0.7, 1.0, 1.3 };
   static const double node_thresholds[] = { 0.1, 0.1, 0.0, 0.3 };
   static const double isos[] = { 0.0, 1.0, 0.3, -0.4, 0.05 };
   at->options = oracle_case_options(iso);
-  at->options.sph_kernel = (mcor_sph_kernel)(random_bits(state) % MCOR_SPH_KERNEL_COUNT);
+  at->options.sph_kernel = (mcor_sph_kernel)(random_bits(state) % kernels);
   at->options.field = (mcor_field)(random_bits(state) % 3);
   at->options.h_scale = pick(state, scales, 4);
   at->options.cube_size_factor = pick(state, factors, 5);
@@ -85,7 +88,7 @@ static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
     return;
   }
   at.input = particle_set_input(&set);
-  fill_options(&at, &state, &iso);
+  fill_options(&at, &state, seed < SEEDS_OF_FIVE_KERNELS ? 5 : MCOR_SPH_KERNEL_COUNT, &iso);
   if (adaptive)
   {
     at.options.level_limit = MCOR_CUBE_LEVELS - 1;

@@ -5,7 +5,7 @@
  * sums are exact: so whatever the order is, and whoever has which triangle, sums are the same to the last bit. */
 
 #include "mcor_internal.h"
-#include "mcor_parts.h"
+#include "mcor_parallel.h"
 
 #include <math.h>
 
@@ -54,37 +54,80 @@ static double mcor_exact_unit(double most, int64_t count)
   return bound > 0 && isfinite(bound) ? ldexp(1, ilogb(bound) + 1 - 53) : 1;
 }
 
-void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
+/* Of each slice of the triangles its own measures, as exact as those of parts. */
+typedef struct mcor_measure_job
 {
-  measures->triangle_count = surface->triangle_count;
-  measures->area_most = measures->volume_most = 0;
-  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  const mcor_surface* surface;
+  const int64_t* numbers;
+  const mcor_measures* all;
+  mcor_measures slices[MCOR_SLICES];
+} mcor_measure_job;
+
+static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_measure_job* job = data;
+  mcor_measures* measures = &job->slices[slice];
+  for (int64_t t = first; t < last; ++t)
   {
     double area, volume;
-    mcor_measure_triangle(surface, measures->origin, t, &area, &volume);
+    mcor_measure_triangle(job->surface, job->all->origin, t, &area, &volume);
     measures->area_most = fmax(measures->area_most, area);
     measures->volume_most = fmax(measures->volume_most, fabs(volume));
   }
 }
 
-void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
+void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
 {
-  const double area_unit = mcor_exact_unit(measures->area_most, measures->triangle_count);
-  const double volume_unit = mcor_exact_unit(measures->volume_most, measures->triangle_count);
-  uint64_t open = 0;
-  measures->area = measures->volume = 0;
-  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  mcor_measure_job job = { .surface = surface, .all = measures };
+  const int slices =
+    mcor_parallel_for(surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_terms_slice, &job);
+  measures->triangle_count = surface->triangle_count;
+  measures->area_most = measures->volume_most = 0;
+  for (int i = 0; i < slices; ++i)
   {
+    measures->area_most = fmax(measures->area_most, job.slices[i].area_most);
+    measures->volume_most = fmax(measures->volume_most, job.slices[i].volume_most);
+  }
+}
+
+static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_measure_job* job = data;
+  const mcor_measures* all = job->all;
+  const int64_t* numbers = job->numbers;
+  const double area_unit = mcor_exact_unit(all->area_most, all->triangle_count);
+  const double volume_unit = mcor_exact_unit(all->volume_most, all->triangle_count);
+  double areas = 0, volumes = 0;
+  uint64_t open = 0;
+  for (int64_t t = first; t < last; ++t)
+  {
+    const int32_t* triangle = job->surface->triangles + 3 * t;
     double area, volume;
-    mcor_measure_triangle(surface, measures->origin, t, &area, &volume);
-    measures->area += nearbyint(area / area_unit) * area_unit;
-    measures->volume += nearbyint(volume / volume_unit) * volume_unit;
+    mcor_measure_triangle(job->surface, all->origin, t, &area, &volume);
+    areas += nearbyint(area / area_unit) * area_unit;
+    volumes += nearbyint(volume / volume_unit) * volume_unit;
     for (int i = 0; i < 3; ++i)
     {
-      const int64_t p = surface->triangles[3 * t + i], q = surface->triangles[3 * t + (i + 1) % 3];
+      const int64_t p = triangle[i], q = triangle[(i + 1) % 3];
       const int64_t a = numbers ? numbers[p] : p, b = numbers ? numbers[q] : q;
       open += a < b ? mcor_edge_number(a, b) : 0 - mcor_edge_number(b, a);
     }
+  }
+  job->slices[slice] = (mcor_measures){ .area = areas, .volume = volumes, .open = (int64_t)open };
+}
+
+void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
+{
+  mcor_measure_job job = { .surface = surface, .numbers = numbers, .all = measures };
+  const int slices =
+    mcor_parallel_for(surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_sums_slice, &job);
+  uint64_t open = 0;
+  measures->area = measures->volume = 0;
+  for (int i = 0; i < slices; ++i)
+  {
+    measures->area += job.slices[i].area;
+    measures->volume += job.slices[i].volume;
+    open += (uint64_t)job.slices[i].open;
   }
   measures->open = (int64_t)open;
 }

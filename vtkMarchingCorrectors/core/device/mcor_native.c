@@ -108,9 +108,10 @@ static const char* mcor_device_text(void)
 
 cl_platform_id mcor_native_platform(void)
 {
+  const mcor_instructions own = mcor_own_instructions();
   for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
   {
-    if (p->instructions <= mcor_best_instructions())
+    if (p->instructions <= own)
     {
       return &mcor_platform;
     }

@@ -108,7 +108,7 @@ def later_applies(folder):
     ]
 
 
-SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics")  # how names begin of what the panel shows
+SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics", "SurfaceMeasures")  # how names begin of what the panel shows
 
 
 def properties(file):

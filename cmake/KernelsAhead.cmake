@@ -92,7 +92,11 @@ macro (mcor_compile_variants instructions flags lanes double)
       string(REPLACE "." ";" variant "${variant}")
       list(GET variant 0 field)
       list(GET variant 1 solids)
-      foreach (program IN ITEMS FIELD PROBE ADAPTIVE)
+      set(programs FIELD ADAPTIVE)
+      if (field EQUAL 2) # as mcor_program_options
+        list(APPEND programs PROBE)
+      endif ()
+      foreach (program IN LISTS programs)
         list(FIND mcor_programs ${program} number)
         string(TOLOWER "${mcor_ahead_name}_${program}_${w}_${field}_${solids}" name)
         mcor_compile_program(${program} ${name} ${instructions} "${flags}"

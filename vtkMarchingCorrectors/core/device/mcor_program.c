@@ -55,6 +55,8 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   const mcor_build* build = &cl->build;
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
+  /* Probes sum any arrays, not the one to contour: that is compiled for no field in particular. */
+  const mcor_field field = program == MCOR_PROGRAM_PROBE ? MCOR_WEIGHT_SUM : build->field;
   const char* f = is_double ? "" : "f";
   int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s%s -DMCOR_PROGRAM=%d",
     cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
@@ -70,5 +72,5 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
     "-DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%s%s -DMCOR_TENSOR=%d "
     "-DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
     cl->lanes, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm, f,
-    kernels[k].support, f, kernels[k].tensor, (int)build->field, build->solids);
+    kernels[k].support, f, kernels[k].tensor, (int)field, build->solids);
 }

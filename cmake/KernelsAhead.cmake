@@ -2,8 +2,8 @@
 # them (mcor_native_programs, see mcor_native.h): none where there is no clang.
 set(MCOR_AHEAD usual CACHE STRING
   "Kernels compiled for the built-in device: usual, all (all SPH kernels, double precision, too), or OFF")
-# The usual SPH kernels. All of them would take the build minutes more.
-set(mcor_ahead_usual cubic quadratic mprime4 quintic wendland)
+# All of them would take the build minutes more.
+set(MCOR_AHEAD_USUAL "cubic;quadratic;mprime4;quintic;wendland" CACHE STRING "SPH kernels of MCOR_AHEAD=usual")
 set_property(CACHE MCOR_AHEAD PROPERTY STRINGS usual all OFF)
 find_program(MCOR_CLANG NAMES clang clang-19 clang-18 clang-17 clang-16 clang-15 clang-14 DOC "Compiles OpenCL kernels")
 mark_as_advanced(MCOR_CLANG)
@@ -28,7 +28,7 @@ set(MCOR_AHEAD_FLAGS "-O3 -mllvm -inline-threshold=800" CACHE STRING
   "Flags of clang for the kernels of the built-in device")
 set(MCOR_AHEAD_INSTRUCTIONS "V3;V4;BASE" CACHE STRING
   "Instruction sets of these kernels, those of other processors are ignored: V3, V4 (x86-64), BASE (arm64)")
-mark_as_advanced(MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS)
+mark_as_advanced(MCOR_AHEAD_USUAL MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS)
 set(mcor_ahead_flags "${MCOR_AHEAD_FLAGS}")
 if (CMAKE_CROSSCOMPILING)
   string(APPEND mcor_ahead_flags " --target=${MCOR_AHEAD_TRIPLE}")
@@ -85,7 +85,7 @@ macro (mcor_compile_variants instructions flags lanes double)
     set(support ${CMAKE_MATCH_2})
     set(norm ${CMAKE_MATCH_3})
     set(tensor ${CMAKE_MATCH_4})
-    if (NOT mcor_ahead STREQUAL "all" AND NOT w IN_LIST mcor_ahead_usual)
+    if (NOT mcor_ahead STREQUAL "all" AND NOT w IN_LIST MCOR_AHEAD_USUAL)
       continue ()
     endif ()
     foreach (variant IN ITEMS 0.0 0.1 1.0 1.1 2.0 2.1) # field, solids

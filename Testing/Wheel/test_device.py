@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Which device is found: the built-in one, with no driver, no program and no home; drivers' by name. Each case in
-a process of its own."""
+a process of its own. Whole: of a wheel with all kernels."""
 import os
 import subprocess
 import sys
@@ -26,7 +26,7 @@ print(*mc.devices(), sep=";")
 """
 
 
-class Test(unittest.TestCase):
+class Case(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         self.addCleanup(self.folder.cleanup)
@@ -41,6 +41,14 @@ class Test(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         return done.stdout.splitlines()
 
+
+class Whole(Case):
+    def test_double_precision_is_built_in(self):
+        before = "isosurface = mc.isosurface; mc.isosurface = lambda *a, **k: isosurface(*a, precision='float64', **k)"
+        self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
+
+
+class Usual(Case):
     def test_no_driver_program_or_home(self):
         bits, name, devices = self.run_it(system=False, PATH="/nonexistent", HOME="/nonexistent", XDG_CACHE_HOME="")
         self.assertIn("built in: this CPU", name)
@@ -49,10 +57,6 @@ class Test(unittest.TestCase):
         if here[0] != "DeviceError":
             self.assertIn("Portable Computing Language", here[1])
             self.assertEqual(bits, here[0])
-
-    def test_double_precision_is_built_in(self):
-        before = "isosurface = mc.isosurface; mc.isosurface = lambda *a, **k: isosurface(*a, precision='float64', **k)"
-        self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
 
     def test_by_name(self):
         self.assertIn("built in: this CPU", self.run_it(device="built in")[1])

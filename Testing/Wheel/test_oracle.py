@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sample of the oracle's random cases: their particles as NumPy arrays through isosurface() on the
-built-in device, the surface back to the oracle.
+"""A sample of the oracle's random cases: their particles as NumPy arrays through isosurface(), the surface back to
+the oracle.
 
     test_oracle.py LIBRARY RESULTS [COUNT]
+
+With MCOR_TEST_WHOLE, of a wheel with all kernels: all on the built-in device.
 """
 import ctypes
 import os
@@ -13,8 +15,10 @@ import traceback
 
 import numpy as np
 
+WHOLE = "MCOR_TEST_WHOLE" in os.environ
 EMPTY = tempfile.TemporaryDirectory()
-os.environ["OCL_ICD_VENDORS"] = EMPTY.name  # no driver of the system's
+if WHOLE:
+    os.environ["OCL_ICD_VENDORS"] = EMPTY.name  # no driver of the system's
 
 import marchingcorrectors as mc
 from marchingcorrectors import _structs as c
@@ -97,7 +101,7 @@ def extract(given, options, surface):
         hand_back(surface.contents, found)
         seen["calls"] += 1
         seen["triangles"] += len(found.triangles)
-        assert found.statistics["platform"] == "built in"
+        assert found.statistics["platform"] == "built in" or not WHOLE
         return 0
     except BaseException:
         traceback.print_exc()

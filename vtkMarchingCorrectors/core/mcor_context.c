@@ -112,7 +112,7 @@ mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
     return MCOR_OK;
   }
   mcor_release_memory(context);
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
   return mcor_change_device(context, build);
 }
 
@@ -121,8 +121,8 @@ mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
 {
   mcor_check_reuse(context, input, options, uses_solids);
-  context->uses_solids = uses_solids;
-  if (!context->value_valid)
+  context->kept.uses_solids = uses_solids;
+  if (!context->kept.value)
   {
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
@@ -134,23 +134,23 @@ mcor_status mcor_prepare(
     .precision = options->precision,
     .solids = context->grid.has_solids };
   MCOR_TRY(mcor_choose_build(context, &build));
-  if (!context->grid_valid)
+  if (!context->kept.grid)
   {
     mcor_release_adaptive(context);
     mcor_release_grid(context); /* that of the last call is memory for this one's particles */
     MCOR_TRY(mcor_make_grid(context, input));
   }
-  if (!context->value_valid)
+  if (!context->kept.value)
   {
     MCOR_TRY(mcor_set_scalar(context, input));
   }
   mcor_release_stage(context);
   mcor_release_sort(context);
-  if (!context->nodes_valid)
+  if (!context->kept.nodes)
   {
     mcor_release_brick_data(context, &context->bricks.now);
   }
-  context->grid_valid = context->value_valid = context->nodes_valid = true;
+  context->kept.grid = context->kept.value = context->kept.nodes = true;
   return MCOR_OK;
 }
 
@@ -159,20 +159,20 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
 {
   context->error[0] = '\0';
-  context->options = options;
-  context->statistics = statistics;
-  context->phase = MCOR_PHASE_INPUT;
-  context->phase_begin = mcor_seconds();
-  context->doing = mcor_phase_name(context->phase);
-  context->fraction_end = 0.1;
+  context->run = (mcor_run){ .options = options,
+    .statistics = statistics,
+    .phase = MCOR_PHASE_INPUT,
+    .phase_begin = mcor_seconds(),
+    .doing = mcor_phase_name(MCOR_PHASE_INPUT),
+    .fraction = context->run.fraction,
+    .fraction_end = 0.1,
+    .report_time = mcor_seconds() };
   context->cl.build_seconds = 0;
-  context->correction_count = context->correction_sum = context->correction_squares = 0;
-  context->evaluations_counted = 0;
   context->grid.view = 0;
   mcor_begin_buffers(context);
   mcor_flat flat;
   mcor_status status = mcor_flatten(context, input, options, &flat);
-  context->options = &flat.options;
+  context->run.options = &flat.options;
   status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
   if (status == MCOR_OUT_OF_CAPACITY)
   {
@@ -180,14 +180,13 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   }
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
-  context->options = NULL;
-  context->statistics = NULL;
+  context->run = (mcor_run){ .fraction = context->run.fraction };
   mcor_end_box(context);
   mcor_end_rounds(context);
   mcor_end_caps(context);
   if (status != MCOR_OK)
   {
-    context->grid_valid = context->value_valid = context->nodes_valid = false;
+    context->kept.grid = context->kept.value = context->kept.nodes = false;
   }
   return status;
 }
@@ -203,8 +202,7 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
   cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
   const int64_t held = cl->bytes;
-  context->fraction = 0;
-  context->report_time = mcor_seconds();
+  context->run.fraction = 0;
   mcor_status status = mcor_try_call(context, input, options, statistics, body, result);
   if (status == MCOR_OUT_OF_CAPACITY)
   {

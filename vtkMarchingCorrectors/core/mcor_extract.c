@@ -15,10 +15,10 @@
 static mcor_status mcor_extract_iso(
   mcor_context* context, const mcor_input* input, int i, mcor_surface* surface)
 {
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   const bool last = i + 1 == options->iso_count;
   const double value = options->iso_values[i], iso = value - context->value_shift;
-  context->iso_number = i;
+  context->run.iso_number = i;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
   const bool adaptive = mcor_is_adaptive(context);

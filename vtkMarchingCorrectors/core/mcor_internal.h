@@ -275,51 +275,69 @@ typedef struct mcor_box
   int told_count;
 } mcor_box;
 
-struct mcor_context
+/* The call under way; options are NULL between calls. */
+typedef struct mcor_run
 {
-  bool created; /* false: mcor_create_context failed */
-  mcor_cl cl;
-  mcor_sort_data sort;
-  mcor_stage_data stage;
-  mcor_grid grid;
-  mcor_bricks bricks;
-  mcor_mesh mesh;
-  mcor_topology_data topology;
-  mcor_points points;
-  mcor_trim_data trim;
-  mcor_lattice lattice;
-  mcor_measure measure;
-  mcor_plane plane; /* of the call under way */
-  mcor_buffer case_table;
-  mcor_attributes attributes;
-  mcor_box box;
-  mcor_tree tree;
-  mcor_adaptive adaptive;
-  mcor_adaptive_pairs adaptive_pairs;
-  int32_t* source;           /* [grid.count] input index of each device particle; NULL: the same */
-  double value_shift;        /* A0 */
-  double largest_weight;     /* no particle has a greater V / (scaled h)^3 */
-  bool nodes_valid;          /* bricks hold node values of the current scalar */
-  mcor_input last_input;     /* what grid and value were made from */
-  mcor_globals last_globals; /* given; 0 where none were; its arrays are not kept */
-  uint64_t last_splits;      /* of their split bricks, a hash */
-  mcor_options last_options;
-  bool grid_valid, value_valid;
-  const mcor_options* options; /* of the call under way; NULL between calls */
-  bool uses_solids;            /* solid particles are on the device */
-  int iso_number;              /* of the iso value under way */
+  const mcor_options* options;
   mcor_statistics* statistics;
+  int iso_number; /* of the iso value under way */
   mcor_phase phase;
   double phase_begin;
   const char* doing;             /* what runs, as last reported */
-  double fraction, fraction_end; /* last reported; where what runs ends */
+  double fraction, fraction_end; /* last reported, also by a first attempt; where what runs ends */
   double report_time;            /* of the last report */
-  double report_interval;        /* between launches, seconds; at least that */
-  int probe_batch;               /* points; 0 before the first probe */
   bool building_told;            /* in this phase */
   double correction_count, correction_sum, correction_squares;
   int64_t evaluations_counted; /* of vertices_corrected */
+} mcor_run;
+
+/* The data set of the last call, and which of its results hold; see mcor_reuse.c. */
+typedef struct mcor_kept
+{
+  mcor_input input;
+  mcor_options options;
+  mcor_globals globals; /* given; 0 where none were; its arrays are not kept */
+  uint64_t splits;      /* of their split bricks, a hash */
+  bool uses_solids;     /* solid particles are on the device */
+  bool grid, value;
+  bool nodes; /* bricks hold node values of the current scalar */
+} mcor_kept;
+
+struct mcor_context
+{
+  bool created; /* false: mcor_create_context failed */
   char error[4096];
+  mcor_run run;
+
+  /* The device, and what is on it whatever the data. */
+  mcor_cl cl;
+  mcor_buffer case_table;
+  mcor_sort_data sort;
+  double report_interval; /* between launches, seconds; at least that */
+  int probe_batch;        /* points; 0 before the first probe */
+
+  /* The data set. */
+  mcor_kept kept;
+  mcor_measure measure;
+  mcor_lattice lattice;
+  mcor_plane plane; /* of the call under way */
+  mcor_box box;
+  mcor_stage_data stage;
+  mcor_grid grid;
+  int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
+  double value_shift;    /* A0 */
+  double largest_weight; /* no particle has a greater V / (scaled h)^3 */
+  mcor_attributes attributes;
+  mcor_tree tree;
+
+  /* The surface of one iso value. */
+  mcor_bricks bricks;
+  mcor_adaptive adaptive;
+  mcor_adaptive_pairs adaptive_pairs;
+  mcor_topology_data topology;
+  mcor_mesh mesh;
+  mcor_points points;
+  mcor_trim_data trim;
 };
 
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
@@ -389,7 +407,7 @@ static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options*
 /* The wall share in use. */
 static inline double mcor_wall_share(const mcor_context* context)
 {
-  const double share = mcor_asked_share(context->options);
+  const double share = mcor_asked_share(context->run.options);
   return share < 0 ? context->measure.wall_share : share;
 }
 
@@ -401,7 +419,7 @@ static inline bool mcor_wants_pairs(const mcor_options* options)
 
 static inline bool mcor_uses_pairs(const mcor_context* context)
 {
-  return mcor_wants_pairs(context->options);
+  return mcor_wants_pairs(context->run.options);
 }
 
 /* The work of one call; what an attempt before left in the result is to be freed first. */
@@ -556,48 +574,6 @@ typedef struct mcor_topology_table
 
 void mcor_make_topology_table(mcor_topology_table* table);
 
-extern const char mcor_source_mcor_shared_h[];
-extern const char mcor_source_mcor_builtin_cl[];
-extern const char mcor_source_mcor_prelude_cl[];
-extern const char mcor_source_mcor_intrinsic_cl[];
-extern const char mcor_source_mcor_points_cl[];
-extern const char mcor_source_mcor_sph_kernel_h[];
-extern const char mcor_source_mcor_query_cl[];
-extern const char mcor_source_mcor_gather_lanes_cl[];
-extern const char mcor_source_mcor_gather_point_cl[];
-extern const char mcor_source_mcor_node_lanes_cl[];
-extern const char mcor_source_mcor_node_point_cl[];
-extern const char mcor_source_mcor_end_cl[];
-extern const char mcor_source_mcor_evaluate_cl[];
-extern const char mcor_source_mcor_field_cl[];
-extern const char mcor_source_mcor_scan_cl[];
-extern const char mcor_source_mcor_grid_cl[];
-extern const char mcor_source_mcor_brick_cl[];
-extern const char mcor_source_mcor_node_cl[];
-extern const char mcor_source_mcor_bound_cl[];
-extern const char mcor_source_mcor_seed_cl[];
-extern const char mcor_source_mcor_block_cl[];
-extern const char mcor_source_mcor_march_cl[];
-extern const char mcor_source_mcor_pair_cl[];
-extern const char mcor_source_mcor_correct_cl[];
-extern const char mcor_source_mcor_topology_row_cl[];
-extern const char mcor_source_mcor_topology_cl[];
-extern const char mcor_source_mcor_boundary_cl[];
-extern const char mcor_source_mcor_trim_cl[];
-extern const char mcor_source_mcor_attribute_cl[];
-extern const char mcor_source_mcor_box_cl[];
-extern const char mcor_source_mcor_cap_cl[];
-extern const char mcor_source_mcor_probe_cl[];
-extern const char mcor_source_mcor_probe_lanes_cl[];
-extern const char mcor_source_mcor_probe_point_cl[];
-extern const char mcor_source_mcor_derive_cl[];
-extern const char mcor_source_mcor_adaptive_cell_h[];
-extern const char mcor_source_mcor_adaptive_seed_cl[];
-extern const char mcor_source_mcor_adaptive_cl[];
-extern const char mcor_source_mcor_adaptive_march_cl[];
-extern const char mcor_source_mcor_adaptive_topology_cl[];
-extern const char mcor_source_mcor_adaptive_pair_cl[];
-
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \
   MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
@@ -627,7 +603,7 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 /* Kernel arguments of MCOR_SEED_PARAMS. */
 #define MCOR_SEED_ARGS(c, iso)                                                                     \
   MCOR_BUFFER(&(c)->grid.side_flags), MCOR_REAL(mcor_side_margin(c)), MCOR_REAL(iso),              \
-    MCOR_REAL((c)->options->node_threshold)
+    MCOR_REAL((c)->run.options->node_threshold)
 
 #define MCOR_BLOCK_ARGS(c)                                                                         \
   MCOR_INT((c)->bricks.block_count), MCOR_INT((c)->bricks.block_shift),                            \
@@ -640,7 +616,7 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 
 static inline bool mcor_is_resolved(const mcor_context* context)
 {
-  return context->options->topology == MCOR_TOPOLOGY_FIELD;
+  return context->run.options->topology == MCOR_TOPOLOGY_FIELD;
 }
 
 /* Kernel arguments of MCOR_DECISION_PARAMS. */

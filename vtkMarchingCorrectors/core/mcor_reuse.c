@@ -40,7 +40,7 @@ static uint64_t mcor_hash_splits(const mcor_globals* globals)
 static bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
 {
   const mcor_globals none = { 0 };
-  const mcor_globals *a = &context->last_globals, *b = globals ? globals : &none;
+  const mcor_globals *a = &context->kept.globals, *b = globals ? globals : &none;
   bool same = a->measured.fluid_count == b->measured.fluid_count &&
     a->measured.solid_count == b->measured.solid_count && a->measured.h_min == b->measured.h_min &&
     a->measured.support_min == b->measured.support_min &&
@@ -49,7 +49,7 @@ static bool mcor_same_globals(const mcor_context* context, const mcor_globals* g
     a->measured.wall_share == b->measured.wall_share &&
     a->measured.scalar_min == b->measured.scalar_min &&
     a->measured.scalar_max == b->measured.scalar_max && a->scalar_shift == b->scalar_shift;
-  same = same && context->last_splits == (globals ? mcor_hash_splits(globals) : 0);
+  same = same && context->kept.splits == (globals ? mcor_hash_splits(globals) : 0);
   for (int i = 0; i < 3; ++i)
   {
     same = same && a->measured.low[i] == b->measured.low[i] &&
@@ -75,30 +75,29 @@ static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
 void mcor_check_reuse(
   mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
 {
-  const mcor_input* last = &context->last_input;
-  const mcor_options* o = &context->last_options;
+  const mcor_input* last = &context->kept.input;
+  const mcor_options* o = &context->kept.options;
   const bool particles = mcor_same_particles(input, last);
   const bool parameters = options->dimension == o->dimension &&
     options->sph_kernel == o->sph_kernel && options->field == o->field &&
     options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
     options->level_limit == o->level_limit && options->capping == o->capping &&
-    mcor_same_box(options, o) &&
-    mcor_same_globals(context, options->globals);
-  context->grid_valid =
-    context->grid_valid && particles && parameters && uses_solids == context->uses_solids;
-  context->value_valid = context->value_valid && context->grid_valid &&
-    input->scalar_version != 0 && input->scalar_version == last->scalar_version &&
+    mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
+  context->kept.grid =
+    context->kept.grid && particles && parameters && uses_solids == context->kept.uses_solids;
+  context->kept.value = context->kept.value && context->kept.grid && input->scalar_version != 0 &&
+    input->scalar_version == last->scalar_version &&
     input->scalar_component == last->scalar_component &&
     (input->scalar_dot.data == NULL) == (last->scalar_dot.data == NULL);
-  context->nodes_valid = context->nodes_valid && context->value_valid;
+  context->kept.nodes = context->kept.nodes && context->kept.value;
 }
 
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   const mcor_globals* globals = options->globals;
-  context->last_input = *input;
-  context->last_options = *options;
-  context->last_globals = globals ? *globals : (mcor_globals){ 0 };
-  context->last_splits = globals ? mcor_hash_splits(globals) : 0;
+  context->kept.input = *input;
+  context->kept.options = *options;
+  context->kept.globals = globals ? *globals : (mcor_globals){ 0 };
+  context->kept.splits = globals ? mcor_hash_splits(globals) : 0;
 }

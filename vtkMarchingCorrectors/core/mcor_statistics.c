@@ -12,21 +12,21 @@ mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fra
 {
   MCOR_TRY(mcor_finish(context));
   const double now = mcor_seconds();
-  context->statistics->seconds[context->phase] += now - context->phase_begin;
-  context->phase = phase;
-  context->phase_begin = now;
-  context->building_told = false;
+  context->run.statistics->seconds[context->run.phase] += now - context->run.phase_begin;
+  context->run.phase = phase;
+  context->run.phase_begin = now;
+  context->run.building_told = false;
   return mcor_report(context, mcor_phase_name(phase), fraction, end);
 }
 
 /* Numbers that are known at the end. */
 mcor_status mcor_finish_statistics(mcor_context* context)
 {
-  mcor_statistics* s = context->statistics;
+  mcor_statistics* s = context->run.statistics;
   const mcor_measure* m = &context->measure;
   const mcor_lattice* lattice = &context->lattice;
   const mcor_box* box = &context->box;
-  const double n = context->correction_count;
+  const double n = context->run.correction_count;
   s->build_seconds = context->cl.build_seconds;
   s->fluid_particles = m->fluid_count;
   s->solid_particles = m->solid_count;
@@ -41,7 +41,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   {
     s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
   }
-  s->wall_share = m->solid_count > 0 && context->uses_solids ? mcor_wall_share(context) : 0;
+  s->wall_share = m->solid_count > 0 && context->kept.uses_solids ? mcor_wall_share(context) : 0;
   s->dimension = mcor_is_plane(context) ? 2 : 3;
   s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));
   s->position_error = 0.5 * sqrt(s->dimension) * ldexp(lattice->cube, -lattice->fix_bits);
@@ -69,12 +69,12 @@ mcor_status mcor_finish_statistics(mcor_context* context)
     mcor_count_squares(context, s);
   }
   s->correction_count = (int64_t)n;
-  s->correction_mean = n > 0 ? context->correction_sum / n : 0;
+  s->correction_mean = n > 0 ? context->run.correction_sum / n : 0;
   s->correction_deviation = n > 0
-    ? sqrt(fmax(context->correction_squares / n - s->correction_mean * s->correction_mean, 0))
+    ? sqrt(fmax(context->run.correction_squares / n - s->correction_mean * s->correction_mean, 0))
     : 0;
   s->iterations_mean = s->vertices_corrected > 0
-    ? (double)context->evaluations_counted / (double)s->vertices_corrected - 1
+    ? (double)context->run.evaluations_counted / (double)s->vertices_corrected - 1
     : 0;
   s->device_bytes_peak = context->cl.bytes_peak;
   snprintf(s->device, sizeof s->device, "%s", context->cl.device_name);

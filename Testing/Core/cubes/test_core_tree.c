@@ -132,8 +132,8 @@ static void measure(
   options->field = MCOR_WEIGHT_SUM;
   options->level_limit = limit;
   options->sph_kernel = is_cube ? MCOR_M_PRIME_4 : MCOR_CUBIC_SPLINE;
-  context->options = options;
-  context->uses_solids = false;
+  context->run.options = options;
+  context->kept.uses_solids = false;
   CORE_OK(context, mcor_measure_input(context, input, options));
 }
 
@@ -142,7 +142,7 @@ static void make_tree(
 {
   measure(context, set, limit, options, input);
   CORE_OK(context, mcor_make_tree(context, input));
-  context->options = NULL;
+  context->run.options = NULL;
 }
 
 static void leaves_are_those_of_the_definition(void** state)
@@ -278,7 +278,7 @@ static void more_bricks_than_numbers(void** state)
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(strstr(mcor_last_error(context), "adaptive cubes of 24 levels"), "%s",
     mcor_last_error(context));
-  context->options = NULL;
+  context->run.options = NULL;
   core_free_set(&set);
 }
 
@@ -303,7 +303,7 @@ static void more_leaves_than_the_limit(void** state)
   }
   CORE_CHECK(room < 50000000, "%lld bytes", (long long)room);
   mcor_release_tree(&context->tree);
-  context->options = NULL;
+  context->run.options = NULL;
   core_free_set(&set);
 }
 
@@ -324,7 +324,7 @@ static void more_leaves_of_all_levels(void** state)
   }
   assert_null(context->tree.leaves);
   mcor_release_tree(&context->tree);
-  context->options = NULL;
+  context->run.options = NULL;
   core_free_set(&set);
 }
 
@@ -356,7 +356,7 @@ static void making_leaves_can_be_cancelled(void** state)
   options.progress = stop_at;
   options.progress_user = &left;
   context->report_interval = 0;
-  context->fraction_end = 1;
+  context->run.fraction_end = 1;
   CORE_OK(context, mcor_make_tree(context, &input));
   const int calls = often - left, splits = (int)context->tree.split[1].count;
   CORE_CHECK(calls > 50, "%d calls, %d bricks of level 1", calls, splits);
@@ -370,7 +370,7 @@ static void making_leaves_can_be_cancelled(void** state)
   CORE_OK(context, mcor_make_tree(context, &input));
   assert_int_equal(often - left, calls);
   context->report_interval = interval;
-  context->options = NULL;
+  context->run.options = NULL;
   core_free_set(&set);
 }
 

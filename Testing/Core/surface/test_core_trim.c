@@ -41,8 +41,8 @@ static void trim(mcor_context* context, flat_mesh* m)
   options.preview = 1;
   static mcor_statistics statistics;
   mcor_surface surface = core_extract(context, &input, &options); /* for the search grid */
-  context->options = &options;                                    /* as if the call went on */
-  context->statistics = &statistics;
+  context->run.options = &options;                                /* as if the call went on */
+  context->run.statistics = &statistics;
   mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)m->vertices;
   CORE_OK(context, mcor_write(context, &mesh->node, m->node, n * sizeof m->node[0]));
@@ -55,7 +55,7 @@ static void trim(mcor_context* context, flat_mesh* m)
     mcor_write(context, &mesh->triangles, m->triangle, (size_t)m->triangles * 3 * sizeof(int)));
   mesh->march_count = mesh->vertex_count = m->vertices;
   mesh->triangle_count = m->triangles;
-  context->statistics = &surface.statistics;
+  context->run.statistics = &surface.statistics;
   CORE_OK(context, mcor_trim(context, 0));
   m->vertices = mesh->vertex_count;
   m->triangles = mesh->triangle_count;
@@ -349,8 +349,8 @@ static void test_vertex_limit(void** state)
   CORE_OK(context, mcor_write(context, &mesh->triangles, corners, sizeof corners));
   mesh->triangle_count = 1;
   mesh->march_count = mesh->vertex_count = MCOR_COUNT_LIMIT - 1;
-  context->options = &options;
-  context->statistics = &surface.statistics;
+  context->run.options = &options;
+  context->run.statistics = &surface.statistics;
   assert_int_equal(mcor_trim(context, 0), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(
     strstr(mcor_last_error(context), "2147479553 vertices"), "%s", mcor_last_error(context));

@@ -128,7 +128,7 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
   MCOR_TRY(mcor_view_level(context, 0));
   return MCOR_LAUNCH(context, "mcor_adaptive_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
-    MCOR_REAL(iso), MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&now->known),
+    MCOR_REAL(iso), MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&now->known),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
@@ -249,8 +249,8 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_seeds(context, &seeds));
   MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
-  context->statistics->seed_cells += seeds;
-  context->statistics->seed_cells_not_intersected += seeds;
+  context->run.statistics->seed_cells += seeds;
+  context->run.statistics->seed_cells_not_intersected += seeds;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
@@ -274,7 +274,7 @@ static mcor_status mcor_count_by_level(mcor_context* context)
 {
   mcor_adaptive* adaptive = &context->adaptive;
   mcor_mesh* mesh = &context->mesh;
-  mcor_statistics* s = context->statistics;
+  mcor_statistics* s = context->run.statistics;
   int caps, used, hits;
   MCOR_TRY(mcor_scan(context, &adaptive->flat, adaptive->count, &caps));
   MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
@@ -320,7 +320,7 @@ static mcor_status mcor_emit_leaf_triangles(
 static mcor_status mcor_count_triangles(mcor_context* context)
 {
   const mcor_adaptive* adaptive = &context->adaptive;
-  mcor_statistics* s = context->statistics;
+  mcor_statistics* s = context->run.statistics;
   cl_int end = 0;
   for (int l = 0; l <= context->tree.top; ++l)
   {
@@ -341,7 +341,7 @@ mcor_status mcor_march_leaves(mcor_context* context, double iso)
   mcor_mesh* mesh = &context->mesh;
   mesh->march_count = mesh->vertex_count = mesh->triangle_count = 0;
   memset(mesh->level_first, 0, sizeof mesh->level_first);
-  ++context->statistics->march_rounds;
+  ++context->run.statistics->march_rounds;
   if (context->adaptive.count == 0)
   {
     return mcor_uses_pairs(context) ? mcor_attend_growth(context) : MCOR_OK;

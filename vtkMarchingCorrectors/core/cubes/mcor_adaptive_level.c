@@ -41,7 +41,7 @@ mcor_status mcor_view_level(mcor_context* context, int level)
 mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
 {
   const mcor_cl* cl = &context->cl;
-  const bool waited_for = cl->is_cpu && context->options->progress;
+  const bool waited_for = cl->is_cpu && context->run.options->progress;
   const int most = cl->is_cpu ? MCOR_LARGE_LAUNCH - 1 : span->end;
   int size = waited_for ? MCOR_FIRST_SPAN : most;
   if (waited_for && span->count > 0)

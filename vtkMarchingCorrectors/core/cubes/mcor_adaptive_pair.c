@@ -59,8 +59,9 @@ static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
   MCOR_TRY(
     mcor_fill(context, &pairs->reached, 0, (size_t)context->adaptive.count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_adaptive_pair_seed", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso), MCOR_REAL(context->options->h_scale),
-    MCOR_PLACE_ARGS(context), MCOR_INT(context->tree.top), MCOR_BUFFER(&pairs->reached));
+    MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso),
+    MCOR_REAL(context->run.options->h_scale), MCOR_PLACE_ARGS(context), MCOR_INT(context->tree.top),
+    MCOR_BUFFER(&pairs->reached));
 }
 
 /* One round of growth; *grown is false when no cell was added. */
@@ -78,7 +79,7 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
     MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
   *grown = flag != 0;
-  ++context->statistics->march_rounds;
+  ++context->run.statistics->march_rounds;
   return MCOR_OK;
 }
 

@@ -44,6 +44,6 @@ mcor_status mcor_resolve_leaves(mcor_context* context, double iso)
     MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&context->mesh.triangle_base),
     MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, adaptive->count, &tunnels));
-  context->statistics->tunnels += tunnels;
+  context->run.statistics->tunnels += tunnels;
   return MCOR_OK;
 }

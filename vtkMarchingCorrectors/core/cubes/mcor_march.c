@@ -43,7 +43,7 @@ static mcor_status mcor_count_hits(mcor_context* context, const mcor_buffer* see
 {
   int hits;
   MCOR_TRY(mcor_count_cells(context, &context->mesh.used, seeds, &hits));
-  context->statistics->seed_cells_not_intersected -= hits;
+  context->run.statistics->seed_cells_not_intersected -= hits;
   return MCOR_OK;
 }
 
@@ -66,7 +66,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
       MCOR_TRY(mcor_classify_cells(context));
       MCOR_TRY(mcor_count_hits(context, &bricks->now.cells));
     }
-    ++context->statistics->march_rounds;
+    ++context->run.statistics->march_rounds;
     MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
     MCOR_TRY(pairs && !grown ? mcor_exchange_cells(context, NULL, &grown) : MCOR_OK);
   }
@@ -78,7 +78,7 @@ static mcor_status mcor_find_cells(mcor_context* context, double iso)
   MCOR_TRY(mcor_classify_cells(context));
   MCOR_TRY(pairs ? MCOR_OK : mcor_count_hits(context, &bricks->seeds));
   MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
-  context->statistics->cells_used += used;
+  context->run.statistics->cells_used += used;
   return MCOR_OK;
 }
 
@@ -103,7 +103,7 @@ static mcor_status mcor_count_edges(mcor_context* context)
           MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
   const bool has_tunnels = mcor_is_resolved(context) && !mcor_is_plane(context);
   MCOR_TRY(has_tunnels ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
-  context->statistics->tunnels += tunnel_count;
+  context->run.statistics->tunnels += tunnel_count;
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
@@ -139,6 +139,6 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(
     mcor_emit_in_box(context, mcor_is_plane(context) ? mcor_emit_lines : mcor_emit_triangles));
   MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
-  context->statistics->triangles_before_trimming += owned;
+  context->run.statistics->triangles_before_trimming += owned;
   return MCOR_OK;
 }

@@ -34,7 +34,7 @@ mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_sign", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
-    MCOR_REAL(context->options->node_threshold), MCOR_BUFFER(&bricks->now.above),
+    MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
   return mcor_spread_signs(context);
 }
@@ -54,5 +54,5 @@ mcor_status mcor_count_bits(
 void mcor_release_nodes(mcor_context* context)
 {
   MCOR_RELEASE(context, &context->bricks.now.value, &context->bricks.now.weight);
-  context->nodes_valid = false;
+  context->kept.nodes = false;
 }

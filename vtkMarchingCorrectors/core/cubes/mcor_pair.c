@@ -17,8 +17,8 @@ mcor_status mcor_seed_pairs(mcor_context* context, double iso)
   mcor_buffer* pair_cells = &bricks->pair_cells;
   MCOR_TRY(mcor_fill(context, pair_cells, 0, bricks_of_blocks * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso), MCOR_REAL(context->options->h_scale),
-    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(pair_cells)));
+    MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso),
+    MCOR_REAL(context->run.options->h_scale), MCOR_BLOCK_ARGS(context), MCOR_BUFFER(pair_cells)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request", MCOR_LIGHT, bricks_of_blocks,
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(pair_cells), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_place_bricks(context));

@@ -248,7 +248,7 @@ mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* gro
   const void* all;
   int64_t count = 0, fresh = 0;
   *grown = false;
-  if (!mcor_is_limited(context) && !context->options->ranks)
+  if (!mcor_is_limited(context) && !context->run.options->ranks)
   {
     return MCOR_OK;
   }
@@ -292,10 +292,10 @@ mcor_status mcor_attend_growth(mcor_context* context)
 /* Of a rank that has nothing to do, for all iso values from number `first` on. */
 mcor_status mcor_attend_rounds(mcor_context* context, int first)
 {
-  const bool all = context->options->ranks && mcor_uses_pairs(context);
+  const bool all = context->run.options->ranks && mcor_uses_pairs(context);
   context->bricks.now.count = all ? 0 : context->bricks.now.count;
   context->adaptive.count = all ? 0 : context->adaptive.count;
-  for (int i = first; i < context->options->iso_count && all; ++i)
+  for (int i = first; i < context->run.options->iso_count && all; ++i)
   {
     MCOR_TRY(mcor_attend_growth(context));
   }

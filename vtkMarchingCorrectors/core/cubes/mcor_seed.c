@@ -35,8 +35,8 @@ static mcor_status mcor_count_seeds(mcor_context* context, const mcor_buffer* se
 {
   int count;
   MCOR_TRY(mcor_count_cells(context, seeds, seeds, &count));
-  context->statistics->seed_cells += count;
-  context->statistics->seed_cells_not_intersected += count;
+  context->run.statistics->seed_cells += count;
+  context->run.statistics->seed_cells_not_intersected += count;
   return MCOR_OK;
 }
 
@@ -120,7 +120,7 @@ mcor_status mcor_find_side_flags(mcor_context* context, double iso)
   mcor_grid* grid = &context->grid;
   const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
   MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
-  return context->options->field == MCOR_WEIGHT_SUM
+  return context->run.options->field == MCOR_WEIGHT_SUM
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
         MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),

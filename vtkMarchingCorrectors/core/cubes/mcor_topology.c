@@ -90,8 +90,8 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &joined));
-  context->statistics->ambiguous_faces += faces;
-  context->statistics->joined_faces += joined;
+  context->run.statistics->ambiguous_faces += faces;
+  context->run.statistics->joined_faces += joined;
   return MCOR_OK;
 }
 
@@ -106,7 +106,7 @@ static mcor_status mcor_resolve_cells(mcor_context* context, const mcor_buffer* 
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", iso, &samples));
-  context->statistics->ambiguous_cells += samples / 2;
+  context->run.statistics->ambiguous_cells += samples / 2;
   return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
     MCOR_BUFFER(&topology->decisions));

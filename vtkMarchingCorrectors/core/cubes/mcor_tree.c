@@ -113,7 +113,7 @@ static mcor_status mcor_list_leaves(mcor_context* context, mcor_tree* tree, int 
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
 {
   mcor_tree* tree = &context->tree;
-  const mcor_globals* globals = context->options->globals;
+  const mcor_globals* globals = context->run.options->globals;
   mcor_release_tree(tree);
   if (globals)
   {
@@ -126,7 +126,7 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   {
     MCOR_TRY(mcor_split_bricks(context, input, tree));
   }
-  const bool keys = context->options->point_keys || context->options->triangle_keys;
+  const bool keys = context->run.options->point_keys || context->run.options->triangle_keys;
   MCOR_RETURN_IF(keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
     "cubes. Use a larger cube size, or fewer levels.",

@@ -283,7 +283,7 @@ static mcor_status mcor_split_by_particles(
 {
   mcor_tree_job* job = calloc(1, sizeof *job);
   MCOR_RETURN_IF(!job, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   job->context = context;
   job->input = input;
   job->tree = tree;
@@ -396,7 +396,7 @@ mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mc
   MCOR_TRY(mcor_guess_leaves(context, input));
   MCOR_TRY(mcor_number_bricks(context, tree));
   MCOR_TRY(mcor_split_by_particles(context, input, tree));
-  MCOR_TRY(context->options->ranks ? mcor_join_ranks(context, tree) : MCOR_OK);
+  MCOR_TRY(context->run.options->ranks ? mcor_join_ranks(context, tree) : MCOR_OK);
   for (int l = 1; l <= tree->top; ++l)
   {
     MCOR_TRY(mcor_split_above(context, tree, l));

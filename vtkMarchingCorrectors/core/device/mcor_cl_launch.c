@@ -143,7 +143,7 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
 
 static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 {
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   return load == MCOR_HEAVY && (!context->cl.is_cpu || (options && options->progress));
 }
 
@@ -151,7 +151,7 @@ static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 static double mcor_part_limit(const mcor_context* context)
 {
   const mcor_measure* m = &context->measure;
-  const double scale = context->options ? context->options->h_scale : 1;
+  const double scale = context->run.options ? context->run.options->h_scale : 1;
   const double terms =
     fmin(m->neighbours * scale * scale * scale, (double)m->fluid_count + (double)m->solid_count);
   const int limit =
@@ -224,7 +224,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     return MCOR_OK;
   }
-  if (load == MCOR_HEAVY && context->options && context->options->progress)
+  if (load == MCOR_HEAVY && context->run.options && context->run.options->progress)
   {
     MCOR_TRY(mcor_finish(context)); /* so that what was launched before is not reported with it */
   }

@@ -38,12 +38,12 @@ void mcor_drop_programs(mcor_cl* cl, bool all)
 
 mcor_status mcor_report_building(mcor_context* context)
 {
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   const char* phase = "building the OpenCL program (first time only)";
-  const bool told = context->building_told;
-  context->building_told = true;
+  const bool told = context->run.building_told;
+  context->run.building_told = true;
   MCOR_RETURN_IF(!told && options && options->progress &&
-      options->progress(options->progress_user, context->fraction, phase) != 0,
+      options->progress(options->progress_user, context->run.fraction, phase) != 0,
     context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
   return MCOR_OK;
 }
@@ -51,7 +51,7 @@ mcor_status mcor_report_building(mcor_context* context)
 void mcor_add_build_seconds(mcor_context* context, double seconds)
 {
   context->cl.build_seconds += seconds;
-  context->phase_begin += seconds;
+  context->run.phase_begin += seconds;
 }
 
 static mcor_status mcor_fail_build(

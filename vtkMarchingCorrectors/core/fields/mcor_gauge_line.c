@@ -179,7 +179,7 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 {
   mcor_context* context = job->context;
   const mcor_gauge_line* line = &job->lines[number];
-  const double step = mcor_gauge_step(context->options->h_scale, context->measure.h_min);
+  const double step = mcor_gauge_step(context->run.options->h_scale, context->measure.h_min);
   const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
   double clip[2];
   mcor_clip_line(context, line, clip);

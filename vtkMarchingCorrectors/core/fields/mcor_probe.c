@@ -89,7 +89,7 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
   const double shift = component->shift, unscale = 1 / component->scale;
   const bool is_sum = job->run->is_sum;
   /* Rounding of a mean does not take it beyond what it is of, unless the kernel itself does. */
-  const bool is_between = !is_sum && context->options->sph_kernel != MCOR_M_PRIME_4;
+  const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
   double* values = job->run->samples->values[component->attribute] + component->component;
@@ -158,7 +158,7 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
   mcor_context* context = run->context;
   const size_t n = (size_t)run->inside, real = context->cl.real_size,
                arrays = (size_t)context->attributes.count;
-  mcor_probe_job job = { .run = run, .threshold = context->options->node_threshold };
+  mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
   struct
   {
     const mcor_buffer* buffer;
@@ -249,7 +249,7 @@ static bool mcor_has_attributes(const mcor_context* context, const mcor_input* i
 static void mcor_keep_attributes(mcor_context* context, const mcor_input* input, mcor_samples* s)
 {
   mcor_attributes* attributes = &context->attributes;
-  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !context->options->globals;
+  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !context->run.options->globals;
   for (int a = 0; a < input->attribute_count; ++a)
   {
     all = all && s->attribute_not_finite[a] < 0;
@@ -344,8 +344,8 @@ static mcor_status mcor_make_tables(
   s->attribute_count = input->attribute_count;
   MCOR_RETURN_IF(!s->values || (gradients && !s->gradients) || !s->attribute_not_finite, context,
     MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  if (!context->grid_valid || !mcor_same_particles(input, &context->last_input) ||
-    context->options->globals || input->attribute_count != context->last_input.attribute_count)
+  if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input) ||
+    context->run.options->globals || input->attribute_count != context->kept.input.attribute_count)
   {
     context->attributes.kept = 0;
   }

@@ -105,7 +105,7 @@ static void mcor_read_points(
       at[a][i] = at[a][i] / lattice->edge[a] - origin;
     }
     /* The gradient of its kernel is 0 exactly at a particle, and near by not: points round as those do. */
-    for (int i = 0; i < count && run->context->options->sph_kernel == MCOR_QUADRATIC; ++i)
+    for (int i = 0; i < count && run->context->run.options->sph_kernel == MCOR_QUADRATIC; ++i)
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }

@@ -249,7 +249,7 @@ static mcor_status mcor_refuse_density(
   return mcor_fail(context, MCOR_INVALID_DATA,
     "The volume of particle %lld cannot be computed: with kernel %s, which has negative lobes, the "
     "density there is too low or negative. Provide volumes, or masses and densities.",
-    (long long)particle, mcor_sph_kernel_name(context->options->sph_kernel));
+    (long long)particle, mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 
 /* V = m / sum_k m_k W(x_j - x_k, h_j), own and unscaled h; m = 1 where no mass is known. */
@@ -262,13 +262,14 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
-    MCOR_REAL(context->options->h_scale), MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(density)));
+    MCOR_REAL(context->run.options->h_scale), MCOR_BUFFER(&grid->trim_weight),
+    MCOR_BUFFER(density)));
   double low[3], high[3];
   cl_int first = INT32_MAX;
   mcor_find_evaluated(context, low, high);
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
   /* Volumes grow with its cube, in two dimensions with its square. */
-  const double scale = context->options->h_scale;
+  const double scale = context->run.options->h_scale;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(mcor_is_plane(context) ? pow(scale, 2.0 / 3) : scale), MCOR_BUFFER(&grid->order),
     MCOR_BUFFER(density), MCOR_INT(context->lattice.fix_bits), MCOR_BUFFER(&grid->px),
@@ -355,15 +356,15 @@ static mcor_status mcor_order_coincident(mcor_context* context)
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;
-  const mcor_field field = context->options->field;
+  const mcor_field field = context->run.options->field;
   context->value_shift = 0;
   if (grid->count == 0)
   {
     return MCOR_OK;
   }
-  if (field == MCOR_SHEPARD && context->options->globals)
+  if (field == MCOR_SHEPARD && context->run.options->globals)
   {
-    context->value_shift = context->options->globals->scalar_shift;
+    context->value_shift = context->run.options->globals->scalar_shift;
   }
   else if (field == MCOR_SHEPARD)
   {
@@ -391,5 +392,5 @@ void mcor_release_grid(mcor_context* context)
   mcor_grid* g = &context->grid;
   MCOR_RELEASE(context, &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py,
     &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->side_flags);
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
 }

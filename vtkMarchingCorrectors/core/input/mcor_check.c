@@ -246,7 +246,7 @@ mcor_status mcor_check_input(
   MCOR_RETURN_IF(
     !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
   /* Those of a search grid that holds have been checked before. */
-  if (!context->grid_valid || !mcor_same_particles(input, &context->last_input))
+  if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input))
   {
     MCOR_TRY(mcor_check_particles(context, input));
   }

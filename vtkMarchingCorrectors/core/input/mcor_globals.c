@@ -64,8 +64,8 @@ static mcor_status mcor_measure_components(
         mcor_find_range(input, a, c, range);
         found->low = range[0];
         found->high = range[1];
-        MCOR_TRY(context->options->ranks ? mcor_merge_component(context, input, array, c, found)
-                                         : MCOR_OK);
+        MCOR_TRY(context->run.options->ranks ? mcor_merge_component(context, input, array, c, found)
+                                             : MCOR_OK);
       }
     }
   }
@@ -84,8 +84,8 @@ static mcor_status mcor_measure_all(
   const mcor_globals_call* call = data;
   mcor_globals* globals = call->globals;
   mcor_free_globals(globals); /* of an attempt before */
-  context->grid_valid = context->value_valid = context->nodes_valid = false;
-  context->uses_solids = call->uses_solids;
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
+  context->kept.uses_solids = call->uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
   int64_t particles = input->count;
   MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));

@@ -342,7 +342,7 @@ void mcor_read_smoothing_length(
   const mcor_array estimate = { .constant = context->measure.h_estimate };
   const double scale =
     input->smoothing_length_is_support_radius && !input->estimate_smoothing_length
-    ? 1 / mcor_support_factor(context->options->sph_kernel)
+    ? 1 / mcor_support_factor(context->run.options->sph_kernel)
     : 1;
   mcor_read_array(
     input->estimate_smoothing_length ? &estimate : &input->smoothing_length, first, count, 0, out);

@@ -24,7 +24,7 @@ static inline double mcor_array_at(const mcor_array* array, int64_t i, int compo
 /* Solid particles take no part where they are ignored, nor in the free surface. */
 static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
 {
-  return context->uses_solids || !input->solid || !input->solid[i];
+  return context->kept.uses_solids || !input->solid || !input->solid[i];
 }
 
 #define MCOR_CHUNK 1024

@@ -34,7 +34,7 @@ static void mcor_read_chunk(
 {
   mcor_read_positions(input, first, chunk->count, chunk->x);
   mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
-  if (context->options->field != MCOR_WEIGHT_SUM)
+  if (context->run.options->field != MCOR_WEIGHT_SUM)
   {
     mcor_read_scalar(input, first, chunk->count, chunk->scalar);
   }
@@ -223,7 +223,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
 {
   mcor_measuring* job = data;
   const mcor_input* input = job->input;
-  const bool has_scalar = job->context->options->field != MCOR_WEIGHT_SUM;
+  const bool has_scalar = job->context->run.options->field != MCOR_WEIGHT_SUM;
   mcor_measure m = mcor_nothing;
   mcor_chunk chunk;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
@@ -311,18 +311,6 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
     "The magnitude of array %s at particle %lld is too large for a double. Use another unit, or "
     "remove such particles.",
     name, i);
-  return MCOR_OK;
-}
-
-#define MCOR_FARTHEST 1e15 /* from the origin, in cubes: nodes are whole numbers of them */
-
-mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube)
-{
-  const double farthest = fmax(fabs(low), fabs(high));
-  MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
-    "The particles are about %g away from the origin, where a double cannot resolve cubes of size "
-    "%g. Move the particles towards the origin.",
-    farthest, cube);
   return MCOR_OK;
 }
 

@@ -188,7 +188,7 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
   }
   *begun = watch;
   watch->reached = reached;
-  watch->support = mcor_support_factor(context->options->sph_kernel);
+  watch->support = mcor_support_factor(context->run.options->sph_kernel);
   MCOR_TRY(mcor_choose_watched(context, input, watch));
   mcor_place_watch(watch);
   for (int s = 0; s < watch->count; ++s)

@@ -86,7 +86,7 @@ static int mcor_wall_first(const mcor_wall* wall, double x)
 
 static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[3], double h)
 {
-  const mcor_options* options = wall->context->options;
+  const mcor_options* options = wall->context->run.options;
   const bool solid = wall->input->solid && wall->input->solid[i];
   const double scaled = h * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0;
   double weight = 0;
@@ -180,7 +180,7 @@ static mcor_status mcor_place_samples(mcor_context* context, mcor_wall* wall)
   wall->axis = -1;
   for (int a = 2; a >= 0; --a)
   {
-    const double* period = context->options->periodic + 2 * a;
+    const double* period = context->run.options->periodic + 2 * a;
     wall->period[a] = period[1] - period[0];
     wall->axis = wall->period[a] > 0 ? wall->axis : a;
   }
@@ -224,14 +224,14 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
 {
   mcor_measure* m = &context->measure;
-  if (mcor_asked_share(context->options) >= 0 || m->wall_share > 0 || m->solid_count == 0 ||
-    !context->uses_solids)
+  if (mcor_asked_share(context->run.options) >= 0 || m->wall_share > 0 || m->solid_count == 0 ||
+    !context->kept.uses_solids)
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(context->options->globals, context, MCOR_INVALID_ARGUMENT,
+  MCOR_RETURN_IF(context->run.options->globals, context, MCOR_INVALID_ARGUMENT,
     "options.globals has no wall share. Measure it with the same options.");
-  if (context->options->field == MCOR_WEIGHT_SUM)
+  if (context->run.options->field == MCOR_WEIGHT_SUM)
   {
     m->wall_share = MCOR_FREE_WALL_SHARE;
     return MCOR_OK;

@@ -66,7 +66,7 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
 double mcor_size_scale(const mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   if (mcor_is_given(&input->volume) ||
     (mcor_is_given(&input->mass) && mcor_is_given(&input->density)))
   {
@@ -373,18 +373,19 @@ static mcor_status mcor_stage_particles(
     : 0;
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
   context->largest_weight =
-    mcor_needs_density(input) ? 100 * pow(context->options->h_scale, -3) : 0;
+    mcor_needs_density(input) ? 100 * pow(context->run.options->h_scale, -3) : 0;
   MCOR_RETURN_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
     MCOR_INVALID_ARGUMENT,
     "The h scale factor is %g, too small for computed volumes. Provide volumes, or choose a larger "
     "factor.",
-    context->options->h_scale);
+    context->run.options->h_scale);
   for (int s = 0; s < slices; ++s)
   {
     MCOR_RETURN_IF(job->changed[s], context, MCOR_INVALID_DATA,
       "The particle arrays were changed during the call%s. No other thread may write to them until "
       "the call returns.",
-      context->options->globals ? ", or options.globals was measured over other particles" : "");
+      context->run.options->globals ? ", or options.globals was measured over other particles"
+                                    : "");
     if (job->heavy[s] >= 0)
     {
       return mcor_refuse_heavy(context, input, staging, job->heavy[s]);
@@ -398,8 +399,8 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
 {
   mcor_stage_job job = { .context = context, .input = input, .staging = staging };
   staging->size_scale = mcor_size_scale(context, input);
-  job.h_max = 1.000001 * context->measure.support_max / context->options->h_scale /
-    mcor_support_factor(context->options->sph_kernel);
+  job.h_max = 1.000001 * context->measure.support_max / context->run.options->h_scale /
+    mcor_support_factor(context->run.options->sph_kernel);
   mcor_reach_box reach;
   if (mcor_find_reach(context, input, &reach))
   {

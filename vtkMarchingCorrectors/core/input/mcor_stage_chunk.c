@@ -80,7 +80,7 @@ double mcor_weight_limit(const mcor_context* context)
 
 double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
 {
-  const double inv_h = context->lattice.cube / context->options->h_scale / chunk->h[i];
+  const double inv_h = context->lattice.cube / context->run.options->h_scale / chunk->h[i];
   return chunk->size[i] * inv_h * inv_h * inv_h;
 }
 
@@ -102,7 +102,7 @@ int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
 
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level)
 {
-  const int digits = context->options->precision == MCOR_FLOAT64 ? DBL_MANT_DIG : FLT_MANT_DIG;
+  const int digits = context->run.options->precision == MCOR_FLOAT64 ? DBL_MANT_DIG : FLT_MANT_DIG;
   int exponent;
   frexp(1.0001 * support / cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
   const int bits = exponent + context->lattice.fix_bits - digits;
@@ -175,8 +175,9 @@ void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input
   mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to)
 {
   const mcor_measure* m = &context->measure;
-  const double h_scale = context->options->h_scale, scaled_cube = context->lattice.cube / h_scale;
-  const double reach = mcor_support_factor(context->options->sph_kernel) * h_scale;
+  const double h_scale = context->run.options->h_scale,
+               scaled_cube = context->lattice.cube / h_scale;
+  const double reach = mcor_support_factor(context->run.options->sph_kernel) * h_scale;
   uint8_t* level = (uint8_t*)staging->level + to;
   if (mcor_spared_bits(context, m->support_max, context->lattice.cube, context->lattice.top) > 0)
   {

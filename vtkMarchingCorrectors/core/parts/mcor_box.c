@@ -412,7 +412,8 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     return false;
   }
   const bool pairs = mcor_uses_pairs(context) && !box->of_points;
-  reach->support = mcor_support_factor(context->options->sph_kernel) * context->options->h_scale;
+  reach->support =
+    mcor_support_factor(context->run.options->sph_kernel) * context->run.options->h_scale;
   reach->support =
     (pairs ? fmax(reach->support, MCOR_PAIR_REACH) : reach->support) / context->lattice.cube;
   mcor_find_evaluated(context, reach->low, reach->high);
@@ -422,7 +423,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     reach->period[a] = context->lattice.period[a] * edge;
     reach->first[a] = context->lattice.period_first[a] * edge;
   }
-  if (mcor_needs_density(input) || context->options->nearest_particle || pairs)
+  if (mcor_needs_density(input) || context->run.options->nearest_particle || pairs)
   {
     mcor_reach_job job = { .context = context, .input = input, .box = reach };
     const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
@@ -431,7 +432,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     {
       farthest = fmax(farthest, job.farthest[s]);
     }
-    reach->radius = mcor_reach_beyond(context->options, input, farthest);
+    reach->radius = mcor_reach_beyond(context->run.options, input, farthest);
   }
   return true;
 }

@@ -8,9 +8,9 @@
 
 #include "mcor_internal.h"
 
-/* Whether numbers have the digits for cubes so far from the origin. */
+/* mcor_period.c. Whether numbers have the digits for cubes so far from the origin. */
 mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
-/* mcor_period.c. Periods in cubes, or cells with an edge for each axis, which are made smaller so that these
+/* Periods in cubes, or cells with an edge for each axis, which are made smaller so that these
  * are whole numbers, and the bounds of all images that may be needed. */
 mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double cube);
 /* The edges in fixed-point units, and a cube as a length. */

@@ -18,6 +18,8 @@
 /* Adaptive cubes may become smaller by this factor to have all their levels. */
 #define MCOR_FINER_CUBES 1.3
 
+#define MCOR_FARTHEST 1e15 /* from the origin, in cubes: nodes are whole numbers of them */
+
 /* Supports beyond so many periods would take too many images. */
 #define MCOR_MOST_PERIODS 2
 
@@ -114,6 +116,16 @@ static mcor_status mcor_fit_edges(
     return MCOR_OK;
   }
   edge[0] = edge[1] = edge[2] = length[axis] / (double)count;
+  return MCOR_OK;
+}
+
+mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube)
+{
+  const double farthest = fmax(fabs(low), fabs(high));
+  MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
+    "The particles are about %g away from the origin, where a double cannot resolve cubes of size "
+    "%g. Move the particles towards the origin.",
+    farthest, cube);
   return MCOR_OK;
 }
 

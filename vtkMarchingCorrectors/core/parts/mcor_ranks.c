@@ -17,7 +17,7 @@ static mcor_status mcor_heard(mcor_context* context, int failed)
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {
-  const mcor_ranks* ranks = context->options->ranks;
+  const mcor_ranks* ranks = context->run.options->ranks;
   return ranks ? mcor_heard(context, ranks->reduce_doubles(ranks->user, reduction, values, count))
                : MCOR_OK;
 }
@@ -25,7 +25,7 @@ mcor_status mcor_reduce_doubles(
 mcor_status mcor_reduce_counts(
   mcor_context* context, mcor_reduction reduction, int64_t* values, int count)
 {
-  const mcor_ranks* ranks = context->options->ranks;
+  const mcor_ranks* ranks = context->run.options->ranks;
   return ranks ? mcor_heard(context, ranks->reduce_counts(ranks->user, reduction, values, count))
                : MCOR_OK;
 }
@@ -43,7 +43,7 @@ mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, i
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count)
 {
-  const mcor_ranks* ranks = context->options->ranks;
+  const mcor_ranks* ranks = context->run.options->ranks;
   *all = records;
   *all_count = count;
   return ranks
@@ -54,7 +54,7 @@ mcor_status mcor_gather(mcor_context* context, const void* records, int64_t coun
 mcor_status mcor_pass(mcor_context* context, const void* records, int64_t count, size_t width,
   const double* places, double reach, const void** all, int64_t* all_count)
 {
-  const mcor_ranks* ranks = context->options->ranks;
+  const mcor_ranks* ranks = context->run.options->ranks;
   return ranks && ranks->pass
     ? mcor_heard(
         context, ranks->pass(ranks->user, records, count, width, places, reach, all, all_count))

@@ -121,7 +121,7 @@ static void mcor_measure_lines(mcor_surface* surface)
 static void mcor_line_normals(
   const mcor_context* context, const mcor_joining* j, mcor_surface* surface)
 {
-  const bool all = context->options->preview || context->options->triangle_normals;
+  const bool all = context->run.options->preview || context->run.options->triangle_normals;
   for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
   {
     float* n = surface->normals + 3 * i;

@@ -36,7 +36,7 @@ static void mcor_list_varying(
   mcor_context* context, const mcor_input* input, int a, int* next, int64_t* not_finite)
 {
   mcor_attributes* attributes = &context->attributes;
-  const mcor_globals* globals = context->options->globals;
+  const mcor_globals* globals = context->run.options->globals;
   const mcor_array* array = &input->attributes[a];
   *not_finite = globals ? globals->components[*next].not_finite
                         : mcor_find_not_finite(array, input->solid, input->count);
@@ -85,7 +85,7 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
 
 static mcor_status mcor_check_components(mcor_context* context, const mcor_input* input)
 {
-  const mcor_globals* globals = context->options->globals;
+  const mcor_globals* globals = context->run.options->globals;
   const int components = (int)mcor_count_components(input);
   MCOR_RETURN_IF(globals && globals->component_count != components, context, MCOR_INVALID_ARGUMENT,
     "options.globals was measured for %d components of attributes, but the input has %d.",
@@ -176,7 +176,7 @@ mcor_status mcor_list_components(
   mcor_attributes* attributes = &context->attributes;
   MCOR_TRY(mcor_clear_components(context, input));
   MCOR_TRY(mcor_check_components(context, input));
-  const mcor_globals* globals = context->options->globals;
+  const mcor_globals* globals = context->run.options->globals;
   int next = 0;
   for (int a = 0; a < input->attribute_count; ++a)
   {
@@ -207,7 +207,7 @@ mcor_status mcor_list_components(
 /* Whether something is left to be evaluated at the finished mesh's vertices. */
 bool mcor_attributes_remain(const mcor_context* context)
 {
-  return context->options->nearest_particle ||
+  return context->run.options->nearest_particle ||
     context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT;
 }
 
@@ -396,7 +396,7 @@ mcor_status mcor_add_attributes(
   {
     MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
   }
-  if (context->options->nearest_particle)
+  if (context->run.options->nearest_particle)
   {
     MCOR_TRY(mcor_add_nearest(context, scanned, surface));
   }

@@ -30,35 +30,6 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-int mcor_cap_plane(const mcor_context* context, int axis, int upper)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const mcor_box* box = &context->box;
-  const mcor_options* options = context->options;
-  const bool periodic = lattice->period[axis] > 0;
-  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
-  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
-  const int *lower_side = options->ranks ? box->whole_first : box->first,
-            *upper_side = options->ranks ? box->whole_last : box->last;
-  const int side = upper ? upper_side[axis] : lower_side[axis];
-  const int last = (int)(upper ? end : begin);
-  if (options->capping == MCOR_CAP_BOX && side != last)
-  {
-    return side;
-  }
-  return options->capping && periodic ? last : -1;
-}
-
-bool mcor_makes_caps(const mcor_context* context)
-{
-  bool makes = false;
-  for (int i = 0; i < 6; ++i)
-  {
-    makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
-  }
-  return makes;
-}
-
 /* Of a node; the virtual grid has not more than 2^20 + 64 along an axis. */
 static uint64_t mcor_cap_key(const cl_int node[3])
 {
@@ -467,7 +438,7 @@ mcor_status mcor_cap(mcor_context* context, double iso)
   if (status == MCOR_OK && job.triangle_count > 0)
   {
     status = mcor_append_caps(&job, iso);
-    context->statistics->cap_triangles += job.owned_count;
+    context->run.statistics->cap_triangles += job.owned_count;
   }
   mcor_cap_map* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes,
     &job.cuts };

@@ -13,11 +13,6 @@
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
 mcor_status mcor_cap(mcor_context* context, double iso);
 
-/* The nodes along an axis of its lower or upper side that is closed; of ranks, of the whole box; -1: there is none. */
-int mcor_cap_plane(const mcor_context* context, int axis, int upper);
-/* Whether they are asked for. */
-bool mcor_makes_caps(const mcor_context* context);
-
 /* The last two numbers of the key of a cap's vertex. */
 void mcor_store_cap_key(const mcor_context* context, int64_t v, uint64_t key[2]);
 void mcor_end_caps(mcor_context* context);
@@ -74,7 +69,11 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
     u % MCOR_CAP_TILE;
 }
 
-/* mcor_cap_tile.c. iso_value: of the field itself. */
+/* mcor_cap_tile.c. Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole
+ * box); -1: none does. */
+int mcor_cap_plane(const mcor_context* context, int axis, int upper);
+bool mcor_makes_caps(const mcor_context* context);
+/* iso_value: of the field itself. */
 mcor_status mcor_make_cap_face(
   mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face);
 /* Whether there is room for the caps. */

@@ -81,7 +81,7 @@ static mcor_status mcor_take_bricks(mcor_context* context, mcor_cap_face* face)
 {
   const mcor_brick_data* now = &context->bricks.now;
   const size_t n = (size_t)now->count;
-  const bool resolved = context->options->topology == MCOR_TOPOLOGY_FIELD;
+  const bool resolved = context->run.options->topology == MCOR_TOPOLOGY_FIELD;
   const mcor_buffer* buffers[MCOR_CAP_VIEWS] = { &now->bricks, &now->known, &now->above,
     &now->valid, &context->mesh.used, &context->topology.decisions };
   const size_t bytes[MCOR_CAP_VIEWS] = { 4 * n * sizeof(cl_int), n * sizeof(cl_ulong),
@@ -153,20 +153,20 @@ static double mcor_cap_margin(const mcor_context* context, const mcor_cap_values
   const double fluid =
     context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
   const double quantity = v->eigenvalue ? mcor_get_real(context, v->eigenvalue, i) : weight;
-  const double threshold = context->options->field == MCOR_WEIGHT_SUM
+  const double threshold = context->run.options->field == MCOR_WEIGHT_SUM
     ? DBL_MAX
     : quantity - mcor_real_of(context, mcor_vertex_threshold(context));
   const double ends = share > 0 ? fluid - share * weight : DBL_MAX;
   const double margin = threshold < ends ? threshold : ends;
   return fluid > mcor_real_of(context, mcor_least_fluid(context)) ||
-      context->options->field != MCOR_SHEPARD
+      context->run.options->field != MCOR_SHEPARD
     ? margin
     : fmin(margin, 0);
 }
 
 static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
 {
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   const double weight = mcor_get_real(context, v->weight, i);
   const double fluid =
     context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;

@@ -86,7 +86,7 @@ static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
 static mcor_status mcor_keep_cap_keys(mcor_cap_job* job)
 {
   mcor_mesh* mesh = &job->context->mesh;
-  if (!job->context->options->point_keys)
+  if (!job->context->run.options->point_keys)
   {
     return MCOR_OK;
   }

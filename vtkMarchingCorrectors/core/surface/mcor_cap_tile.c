@@ -14,6 +14,35 @@
 #define MCOR_CAP_TILE_LIMIT (1 << 18)
 #define MCOR_CAP_PLACE_LIMIT (1 << 24)
 
+int mcor_cap_plane(const mcor_context* context, int axis, int upper)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const mcor_options* options = context->run.options;
+  const bool periodic = lattice->period[axis] > 0;
+  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
+  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
+  const int *lower_side = options->ranks ? box->whole_first : box->first,
+            *upper_side = options->ranks ? box->whole_last : box->last;
+  const int side = upper ? upper_side[axis] : lower_side[axis];
+  const int last = (int)(upper ? end : begin);
+  if (options->capping == MCOR_CAP_BOX && side != last)
+  {
+    return side;
+  }
+  return options->capping && periodic ? last : -1;
+}
+
+bool mcor_makes_caps(const mcor_context* context)
+{
+  bool makes = false;
+  for (int i = 0; i < 6; ++i)
+  {
+    makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
+  }
+  return makes;
+}
+
 void mcor_free_cap_face(mcor_cap_face* face)
 {
   free(face->tile);
@@ -83,7 +112,7 @@ static mcor_status mcor_note_particle(
 {
   const mcor_lattice* lattice = &context->lattice;
   const double away = fabs(x[face->axis] - face->plane) * mcor_edge_of(lattice, face->axis);
-  const bool is_cube = context->options->sph_kernel == MCOR_M_PRIME_4;
+  const bool is_cube = context->run.options->sph_kernel == MCOR_M_PRIME_4;
   if (away > reach)
   {
     return MCOR_OK;
@@ -125,7 +154,7 @@ static mcor_status mcor_map_particles(
 static mcor_status mcor_note_particles(
   mcor_context* context, const mcor_cap_particles* particles, mcor_cap_face* face)
 {
-  const double support = mcor_support_factor(context->options->sph_kernel);
+  const double support = mcor_support_factor(context->run.options->sph_kernel);
   for (int64_t i = 0; i < context->grid.count; ++i)
   {
     double x[3];
@@ -145,7 +174,7 @@ static mcor_status mcor_note_particles(
 /* Finds the tiles: those that particles reach, or all where empty space is above the iso value. */
 static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_cap_face* face)
 {
-  const bool empty_is_above = context->options->field != MCOR_SHEPARD && iso_value <= 0;
+  const bool empty_is_above = context->run.options->field != MCOR_SHEPARD && iso_value <= 0;
   const double low[2] = { 0, 0 }, high[2] = { face->count[0], face->count[1] };
   const size_t places = (size_t)face->tiles[0] * (size_t)face->tiles[1];
   MCOR_RETURN_IF(places > MCOR_CAP_PLACE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
@@ -193,7 +222,7 @@ mcor_status mcor_make_cap_face(
 
 mcor_status mcor_check_caps(mcor_context* context)
 {
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   const mcor_box* box = &context->box;
   double least = INFINITY;
   for (int i = 0; i < options->iso_count; ++i)

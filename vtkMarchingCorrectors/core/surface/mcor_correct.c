@@ -26,7 +26,7 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
 /* owners: see mcor_find_counted. */
 static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* owners)
 {
-  mcor_statistics* s = context->statistics;
+  mcor_statistics* s = context->run.statistics;
   const mcor_buffer* buffer = &context->mesh.evaluations;
   const size_t n = (size_t)context->mesh.march_count;
   void* view;
@@ -39,7 +39,7 @@ static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* o
     if (!owners || owners[i] == MCOR_OWN)
     {
       ++s->vertices_corrected;
-      context->evaluations_counted += evaluations[i];
+      context->run.evaluations_counted += evaluations[i];
     }
     most = evaluations[i] > most ? evaluations[i] : most;
   }
@@ -52,7 +52,7 @@ static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* o
 mcor_status mcor_correct(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   int count = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_reserve_vertices(context, count));

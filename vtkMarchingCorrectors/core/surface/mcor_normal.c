@@ -74,7 +74,7 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
   frexp(context->lattice.cube, &exponent);
   mcor_normals job = { .surface = surface,
     .scale = ldexp(1, -exponent),
-    .all = context->options->preview || context->options->triangle_normals };
+    .all = context->run.options->preview || context->run.options->triangle_normals };
   const int slices =
     mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_find_missing, &job);
   bool some = job.all;

@@ -114,7 +114,7 @@ static mcor_status mcor_grow(
 static mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points)
 {
-  const mcor_options* o = context->options;
+  const mcor_options* o = context->run.options;
   const int64_t n = s->point_count;
   const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
     o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
@@ -183,7 +183,7 @@ static void mcor_count_correction(
   const mcor_context* context, const mcor_download* d, int64_t v, mcor_tally* tally)
 {
   const double tolerance =
-    context->options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
+    context->run.options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
   const int flag = mcor_flag_of(context, d, v);
   if (flag == 1 || flag == 2)
   {
@@ -203,13 +203,13 @@ static void mcor_count_correction(
 
 static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
 {
-  mcor_statistics* s = context->statistics;
+  mcor_statistics* s = context->run.statistics;
   s->trim_vertices += tally->trim_vertices;
   s->trim_vertices_linear += tally->linear;
   s->vertices_above_tolerance += tally->above_tolerance;
-  context->correction_count += tally->count;
-  context->correction_sum += tally->sum;
-  context->correction_squares += tally->squares;
+  context->run.correction_count += tally->count;
+  context->run.correction_sum += tally->sum;
+  context->run.correction_squares += tally->squares;
   s->correction_max = fmax(s->correction_max, tally->correction_max);
   s->residual_max = fmax(s->residual_max, tally->residual_max);
 }
@@ -366,7 +366,7 @@ static mcor_status mcor_add_boundary_eigenvalue(
 {
   const mcor_mesh* mesh = &context->mesh;
   const int vertices = mesh->vertex_count;
-  if (vertices == 0 || !context->options->boundary_eigenvalue)
+  if (vertices == 0 || !context->run.options->boundary_eigenvalue)
   {
     return MCOR_OK;
   }
@@ -418,7 +418,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
 /* Whether the output still needs particles on the device. */
 bool mcor_output_evaluates(const mcor_context* context)
 {
-  return context->options->boundary_eigenvalue || mcor_attributes_remain(context);
+  return context->run.options->boundary_eigenvalue || mcor_attributes_remain(context);
 }
 
 /* Gives back what only making the mesh needed, so that the output finds room. */

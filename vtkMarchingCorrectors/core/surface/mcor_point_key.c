@@ -16,7 +16,7 @@ mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
 {
   const mcor_mesh* mesh = &context->mesh;
   const int count = mesh->cap_first - mesh->march_count;
-  if (!context->options->point_keys || count == 0)
+  if (!context->run.options->point_keys || count == 0)
   {
     return MCOR_OK;
   }
@@ -72,7 +72,7 @@ void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, cons
 {
   const int64_t cut = v - context->mesh.march_count;
   const bool of_cap = mcor_is_cap(context, v);
-  key[0] = 3 * (uint64_t)context->iso_number + (of_cap ? 2 : cut >= 0);
+  key[0] = 3 * (uint64_t)context->run.iso_number + (of_cap ? 2 : cut >= 0);
   if (of_cap)
   {
     mcor_store_cap_key(context, v, key + 1);

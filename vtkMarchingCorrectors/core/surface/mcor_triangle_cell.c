@@ -15,7 +15,7 @@
 
 bool mcor_follows_cells(const mcor_context* context)
 {
-  return context->box.is_part || context->options->triangle_keys;
+  return context->box.is_part || context->run.options->triangle_keys;
 }
 
 /* ---- Mesh ---- */
@@ -24,7 +24,7 @@ mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit)
 {
   mcor_box* box = &context->box;
   MCOR_TRY(emit(context, box->halves, &box->cells));
-  if (!box->is_part || !context->options->ranks)
+  if (!box->is_part || !context->run.options->ranks)
   {
     return MCOR_OK;
   }
@@ -88,7 +88,7 @@ static mcor_status mcor_extend_kept(mcor_context* context, mcor_surface* surface
     box->kept = kept ? kept : box->kept;
     good = kept != NULL;
   }
-  if (context->options->triangle_keys)
+  if (context->run.options->triangle_keys)
   {
     uint64_t* keys = realloc(surface->triangle_keys, count * MCOR_TRIANGLE_KEY * sizeof *keys + 1);
     surface->triangle_keys = keys ? keys : surface->triangle_keys;
@@ -126,7 +126,7 @@ mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
     if (surface->triangle_keys)
     {
       uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (base + i);
-      key[0] = (uint64_t)context->iso_number;
+      key[0] = (uint64_t)context->run.iso_number;
       key[1] = cells[i];
     }
   }

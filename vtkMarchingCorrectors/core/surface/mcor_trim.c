@@ -32,8 +32,8 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor
 /* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
 bool mcor_trims_by_eigenvalue(const mcor_context* context)
 {
-  return context->options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE &&
-    context->options->field != MCOR_WEIGHT_SUM;
+  return context->run.options->boundary_detection == MCOR_BOUNDARY_EIGENVALUE &&
+    context->run.options->field != MCOR_WEIGHT_SUM;
 }
 
 /* What the vertex threshold applies to, at the vertices on lattice edges. */
@@ -57,8 +57,8 @@ double mcor_fluid_share(const mcor_context* context)
 
 double mcor_least_fluid(const mcor_context* context)
 {
-  return context->options->field == MCOR_SHEPARD
-    ? MCOR_LEAST_VERTEX_WEIGHT(context->options->sph_kernel == MCOR_M_PRIME_4)
+  return context->run.options->field == MCOR_SHEPARD
+    ? MCOR_LEAST_VERTEX_WEIGHT(context->run.options->sph_kernel == MCOR_M_PRIME_4)
     : 0;
 }
 
@@ -72,7 +72,7 @@ static bool mcor_may_lack_fluid(const mcor_context* context)
 /* Of the weight or the boundary eigenvalue. */
 double mcor_vertex_threshold(const mcor_context* context)
 {
-  const double threshold = context->options->vertex_threshold;
+  const double threshold = context->run.options->vertex_threshold;
   return mcor_may_lack_fluid(context) ? threshold : fmax(threshold, mcor_least_fluid(context));
 }
 
@@ -92,7 +92,7 @@ double mcor_trim_threshold(const mcor_context* context)
 /* The free surface has no threshold. */
 bool mcor_is_trimmed(const mcor_context* context)
 {
-  return context->options->field != MCOR_WEIGHT_SUM || mcor_ends_at_solids(context);
+  return context->run.options->field != MCOR_WEIGHT_SUM || mcor_ends_at_solids(context);
 }
 
 /* Evaluates it where that is not done yet. */
@@ -176,7 +176,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
 {
   mcor_mesh* mesh = &context->mesh;
   mcor_trim_data* trim = &context->trim;
-  const mcor_options* options = context->options;
+  const mcor_options* options = context->run.options;
   const int vertices = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_RETURN_IF(cut_count > MCOR_COUNT_LIMIT - vertices, context, MCOR_OUT_OF_CAPACITY,

@@ -19,6 +19,7 @@
 #include "SafeText.h"
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
+#include "Walls.h"
 #if MCOR_HAS_RANKS
 #include "RankRun.h"
 #endif
@@ -71,7 +72,7 @@ void CheckFiles(const Job& job, MessageCapture* messages)
       outputs.push_back(file);
     }
   }
-  CheckOutputs(ListFiles(job.Inputs, messages), outputs);
+  CheckOutputs(ListFiles(job.ParticleFiles(), messages), outputs);
 }
 
 /// The last of the runs, and what is known of all.
@@ -101,7 +102,8 @@ Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
 void MakeSurface(const Job& job, MessageCapture* messages)
 {
   CheckFiles(job, messages);
-  vtkSmartPointer<vtkPointSet> particles = ReadParticles(job.Inputs.front(), messages);
+  vtkSmartPointer<vtkPointSet> particles =
+    AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));
   SetUpSurface(job, particles);
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
   std::vector<double> wallSeconds;

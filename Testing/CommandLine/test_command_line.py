@@ -51,7 +51,7 @@ class Usage(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(self.run_program("-h").stdout, result.stdout)
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
-                --mass --density --dp --coefh --kernel --fluid --solids --wall-share --h-scale --cube-factor --cube-size
+                --mass --density --dp --coefh --kernel --fluid --walls --solids --wall-share --h-scale --cube-factor --cube-size
                 --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
                 --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
                 --memory-limit --list-devices --stats --screenshot --repeat --quiet --help

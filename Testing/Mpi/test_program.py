@@ -92,6 +92,12 @@ class Program(unittest.TestCase):
         self.check_same_file(*trimmed, "--capping", "--box=-1,inf,-inf,inf,-inf,0.5", "--periodic", "0,0,3.1")
         self.check_same_file(*trimmed, "--capping", "--periodic=-1,1,-0.5,1.1,-1.05,1.05", "--cube-size", "0.04")
 
+    def test_walls(self):
+        """In files of their own, which the first process reads: here some of the fluid's places."""
+        write_pieces(PARTICLES, self.folder.name, 4)
+        walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
+        self.check_same_file("--scalar", "Speed", "--iso", "1", "--no-attributes", "--solids", "wall", *walls)
+
     def test_period_of_data(self):
         """The field data of one piece tell of the period, those of two tell of different ones."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)

@@ -18,6 +18,7 @@ import numpy as np
 
 import marchingcorrectors as mc
 from marchingcorrectors import io
+from marchingcorrectors.io._particles import find_kernel
 
 SPACING, H = 0.1, 0.13
 LINE = np.arange(-9, 10) * SPACING
@@ -267,12 +268,34 @@ class Layouts(Case):
         for name, chosen in (("WaterBody_1.vtp", ~WALL), ("WallBoundary_1.vtp", WALL)):
             body = pyvista.PolyData(X[chosen])
             body["Density"] = DENSITY[chosen]
+            if name.startswith("Water"):  # as SPHinXsys does
+                body["Pressure"], body["Velocity"] = DENSITY[chosen] + 1, X[chosen]
+                body.field_data["TimeValue"] = [0.25]
             body.save(self.at(name))
         both = [self.at("WaterBody_1.vtp"), self.at("WallBoundary_1.vtp")]
         for particles in (io.read(both), io.read(both[0], walls=both[1:])):
             self.assertEqual(particles.positions.tobytes(), np.concatenate([X[~WALL], X[WALL]]).tobytes())
             self.assertEqual(particles.solid.sum(), WALL.sum())
             self.assertTrue(particles.solid[-1])
+            self.assertEqual(particles.time, 0.25)
+            pressure, velocity = particles.arrays["Pressure"], particles.arrays["Velocity"]
+            self.assertEqual(pressure[~particles.solid].tolist(), (DENSITY[~WALL] + 1).tolist())
+            self.assertEqual(set(pressure[particles.solid]), {np.sort(DENSITY[~WALL] + 1)[((~WALL).sum() - 1) // 2]})
+            self.assertEqual(velocity.shape, (len(X), 3))
+            self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
+
+    def test_legacy(self):
+        """SPlisHSPlasH's ParticleData_Fluid_1.vtk: an unstructured grid, binary."""
+        import pyvista
+
+        grid = pyvista.PolyData(X.astype(np.float32)).cast_to_unstructured_grid()
+        grid["id"], grid["velocity"] = np.arange(len(X), dtype=np.uint32), X.astype(np.float32)
+        grid.save(self.at("ParticleData_Fluid_1.vtk"), binary=True)
+        particles = io.read(self.at("ParticleData_Fluid_1.vtk"))
+        self.assertEqual(particles.positions.tobytes(), X.astype(np.float32).tobytes())
+        self.assertEqual(particles.arrays["velocity"].tobytes(), X.astype(np.float32).tobytes())
+        self.assertEqual(particles.arrays["id"].tolist(), list(range(len(X))))
+        self.assertIsNone(particles.solid)
 
     def test_lazy(self):
         """No array is read before it is used."""
@@ -282,11 +305,40 @@ class Layouts(Case):
         particles.positions
         self.assertEqual(list(particles._all._kept), [""])
 
+    def test_kernels(self):
+        """Each as its code writes it: the surface of sph_kernel, and half of the support radius, or what it is."""
+        swift = {"Cubic spline (M4)": "cubic", "Quartic spline (M5)": "quartic", "Quintic spline (M6)": "quintic",
+                 "Wendland C2": "wendland", "Wendland C4": "wendland_c4", "Wendland C6": "wendland_c6"}
+        gizmo = {3: "cubic", 4: "quartic", 5: "quintic", 6: "wendland", 7: "wendland_c4", 9: "wendland_c6"}
+        gadget = {"CUBIC_SPLINE_KERNEL": "cubic", "WENDLAND_C2_KERNEL": "wendland", "WENDLAND_C4_KERNEL": "wendland_c4",
+                  "WENDLAND_C6_KERNEL": "wendland_c6"}
+        for group, names in (("HydroScheme", swift), ("Header", gizmo), ("Config", gadget)):
+            write_gadget(self.at("snap.hdf5"), swift=group == "HydroScheme")
+            density = "Densities" if group == "HydroScheme" else "Density"
+            for name, word in names.items():
+                with self.subTest(name):
+                    with h5py.File(self.at("snap.hdf5"), "a") as file:
+                        attributes = file.require_group(group).attrs
+                        if group == "Config":
+                            attributes.clear()
+                        attributes.update({"HydroScheme": {"Kernel function": np.bytes_(str(name))},
+                                           "Header": {"Kernel_Function_ID": name}, "Config": {str(name): 1}}[group])
+                    particles = io.read(self.at("snap.hdf5"))
+                    self.assert_surface(
+                        quietly(mc.isosurface, particles, density, 1.5), sph_kernel=word, mass=MASS, density=DENSITY,
+                        smoothing_length=particles.quantity("smoothing_length"), smoothing_length_is_support_radius=True)
+                    factor = {"quartic": 2.5, "quintic": 3}.get(word, 2)
+                    h = np.ravel(mc.read_pyvista(self.at("snap.hdf5"))["SmoothingLength"])
+                    self.assertLess(np.abs(h * factor - 2 * H).max(), 1e-12)
+        pysph = {"WendlandQuintic": "wendland", "WendlandQuinticC4": "wendland_c4", "WendlandQuinticC6": "wendland_c6",
+                 "WendlandQuinticC2_1D": None, "SuperGaussian": None}
+        self.assertEqual({name: find_kernel(name) for name in [*pysph, "sinc_6"]}, {**pysph, "sinc_6": "sinc6"})
+
     def test_unknown_kernel_is_said(self):
         write_gadget(self.at("swift.hdf5"), swift=True)
         with h5py.File(self.at("swift.hdf5"), "a") as file:
-            file["HydroScheme"].attrs["Kernel function"] = b"Quartic spline (M5)"
-        with self.assertWarnsRegex(mc.InputWarning, "Quartic spline"):
+            file["HydroScheme"].attrs["Kernel function"] = b"Super-Gaussian"
+        with self.assertWarnsRegex(mc.InputWarning, "Super-Gaussian"):
             mc.isosurface(io.read(self.at("swift.hdf5")), "Densities", 1.5)
 
 

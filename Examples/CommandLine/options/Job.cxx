@@ -195,6 +195,8 @@ void Check(const Job& job)
   {
     throw UsageError("needs INPUT and OUTPUT");
   }
+  Exclude("--walls tells which particles are fluid; leave out ",
+    { { !job.Walls.empty() && *job.Surface->GetFluidArrayName(), "--fluid" } });
   if (job.IsGauge())
   {
     CheckGauge(job);
@@ -351,6 +353,14 @@ private:
 };
 
 } // namespace
+
+//------------------------------------------------------------------------------
+std::vector<std::string> Job::ParticleFiles() const
+{
+  std::vector<std::string> files = this->Inputs;
+  files.insert(files.end(), this->Walls.begin(), this->Walls.end());
+  return files;
+}
 
 //------------------------------------------------------------------------------
 bool Job::IsFilm() const

@@ -57,10 +57,13 @@ struct Job
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
+  /// All files of particles.
+  std::vector<std::string> ParticleFiles() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 
   std::vector<std::string> Inputs;
+  std::vector<std::string> Walls; ///< files whose particles are walls, at all times
   std::string Output;
   std::vector<double> Times; ///< of a film or gauges, ascending; empty: all that are stored
   double TimeStep = 1.0;     ///< between the steps of a film of particle files

@@ -193,6 +193,9 @@ const Options TheParticles = {
     [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
   { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others are solid",
     SetFluid },
+  { "--walls", "FILE",
+    "its particles are walls, beside those of INPUT; may be given more than once",
+    [](Job& j, Text, Text v) { j.Walls.push_back(v); }, true },
   { "--solids", "auto|weight|ignore|wall",
     "solids count in the weight used for trimming, are ignored, or end the surface; auto "
     "(default): wall for a scalar, weight for the free surface",

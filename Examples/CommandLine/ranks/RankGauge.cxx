@@ -20,7 +20,7 @@ bool ShareGauges(Job& job, RankSession& session, MessageCapture* messages)
   sharing.Read = [&](const std::vector<std::string>& files)
   {
     const vtkSmartPointer<vtkPointSet> particles =
-      ReadParticlesDistributed(session, files, messages);
+      ReadParticlesDistributed(session, files, job.Walls, messages);
     job.Periodic = periodic; // of each step anew
     job.DetectPeriod = detect;
     ResolvePeriod(job, session, particles);

@@ -6,6 +6,7 @@
 #include "ParticleFile.h"
 #include "PeriodOfData.h"
 #include "RankSession.h"
+#include "Walls.h"
 
 #include "vtkMPIController.h"
 #include "vtkPointData.h"
@@ -56,21 +57,22 @@ vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet*
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
-  RankSession& session, const std::vector<std::string>& files, MessageCapture* messages)
+vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(RankSession& session,
+  const std::vector<std::string>& files, const std::vector<std::string>& walls,
+  MessageCapture* messages)
 {
   vtkSmartPointer<vtkPointSet> particles = vtkSmartPointer<vtkPolyData>::New();
   session.RunOnAll(
     [&]
     {
-      if (files.size() == 1)
+      if (files.size() == 1 && walls.empty())
       {
         particles =
           ReadParticlesPart(files.front(), session.GetRank(), session.GetCount(), messages);
       }
       else if (session.IsFirst())
       {
-        particles = ReadParticles(files, messages);
+        particles = AddWalls(ReadParticles(files, messages), ReadWalls(walls, messages));
       }
     });
   return GiveArrays(session, particles);

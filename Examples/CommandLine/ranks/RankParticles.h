@@ -13,11 +13,12 @@ class RankSession;
 class vtkPointSet;
 struct Job;
 
-/// Each process's part of a file, with the same arrays in all of them; a single file, and several that are parts of one
-/// set, are the first one's.
+/// Each process's part of a file, with the same arrays in all of them; a single file, several that are parts of one
+/// set, and all where there are walls, are the first one's.
 /// Throws std::runtime_error on all of them alike.
 vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
-  RankSession& session, const std::vector<std::string>& files, MessageCapture* messages);
+  RankSession& session, const std::vector<std::string>& files,
+  const std::vector<std::string>& walls, MessageCapture* messages);
 
 /// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
 void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles);

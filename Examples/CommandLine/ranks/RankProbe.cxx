@@ -49,7 +49,7 @@ void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
       }
     });
   const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesDistributed(session, { job.Inputs.front() }, messages);
+    ReadParticlesDistributed(session, { job.Inputs.front() }, job.Walls, messages);
   ResolvePeriod(job, session, particles);
   double bounds[6];
   FindBounds(session, particles, bounds);

@@ -67,7 +67,7 @@ void CheckUse(const Job& job, const RankSession& session, MessageCapture* messag
       outputs.push_back(file);
     }
   }
-  CheckOutputs(ListFiles(job.Inputs, messages), outputs);
+  CheckOutputs(ListFiles(job.ParticleFiles(), messages), outputs);
 }
 
 /// Puts what this process writes beside its places.
@@ -129,7 +129,7 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
 {
   Run run;
   const vtkSmartPointer<vtkPointSet> particles =
-    ReadParticlesDistributed(session, { job.Inputs.front() }, messages);
+    ReadParticlesDistributed(session, { job.Inputs.front() }, job.Walls, messages);
   ResolvePeriod(job, session, particles);
   session.RunOnAll([&] { SetUpSurface(job, particles); });
   session.RunOnAll([&] { run = Extract(job, messages); });

@@ -379,6 +379,13 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
 }
 
 //------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> ReadWalls(
+  const std::vector<std::string>& files, MessageCapture* messages)
+{
+  return files.empty() ? nullptr : ReadParticles(files, messages);
+}
+
+//------------------------------------------------------------------------------
 std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages)
 {
   std::vector<std::string> all = files;

@@ -25,6 +25,10 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCaptu
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages);
 
+/// What --walls names, as one set; null where that is nothing. Throws std::runtime_error.
+vtkSmartPointer<vtkPointSet> ReadWalls(
+  const std::vector<std::string>& files, MessageCapture* messages);
+
 /// These files, and those that they list as pieces: all that is read, as far as lists can be.
 std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages);
 

@@ -108,7 +108,7 @@ public:
 private:
   void CheckFiles() const
   {
-    std::vector<std::string> inputs = this->Options.Inputs;
+    std::vector<std::string> inputs = this->Options.ParticleFiles();
     const std::vector<std::string> stored = this->Times.ListFiles();
     inputs.insert(inputs.end(), stored.begin(), stored.end());
     if (!this->Options.GaugeFile.empty())

@@ -5,6 +5,8 @@
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
+#include "ParticleFile.h"
+#include "Walls.h"
 
 #include "vtkPolyData.h"
 #include "vtkSPHTemporalInterpolator.h"
@@ -60,6 +62,7 @@ ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
   : Messages(messages)
   , Stored(ListSteps(job, messages))
   , Times(ListTimes(job, this->Stored))
+  , WallFiles(job.Walls)
 {
   this->Reset();
 }
@@ -115,5 +118,6 @@ vtkSmartPointer<vtkPointSet> ParticleTimes::At(double time, std::vector<std::str
   warnings = this->Messages->GetWarnings();
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->ShallowCopy(this->Interpolator->GetOutput());
-  return particles;
+  this->Walls = this->Walls ? this->Walls : ReadWalls(this->WallFiles, this->Messages);
+  return AddWalls(particles, this->Walls);
 }

@@ -47,6 +47,8 @@ private:
   MessageCapture* const Messages;
   const Steps Stored;
   const std::vector<double> Times;
+  const std::vector<std::string> WallFiles;
+  vtkSmartPointer<vtkPointSet> Walls; ///< read once
   vtkSmartPointer<ParticleSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };

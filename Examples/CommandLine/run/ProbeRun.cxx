@@ -11,6 +11,7 @@
 #include "Picture.h"
 #include "SafeText.h"
 #include "SurfaceRun.h"
+#include "Walls.h"
 
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
@@ -150,7 +151,8 @@ void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
 //------------------------------------------------------------------------------
 void CheckProbeFiles(const Job& job, MessageCapture* messages)
 {
-  std::vector<std::string> inputs = ListFiles(job.Inputs, messages), outputs = { job.Output };
+  std::vector<std::string> inputs = ListFiles(job.ParticleFiles(), messages),
+                           outputs = { job.Output };
   if (!job.ProbeFile.empty())
   {
     inputs.push_back(job.ProbeFile);
@@ -213,7 +215,8 @@ void ProbePoints(const Job& job, MessageCapture* messages)
 {
   CheckProbeFiles(job, messages);
   vtkSmartPointer<vtkDataSet> points = ReadPoints(job, messages);
-  vtkSmartPointer<vtkPointSet> particles = ReadParticles(job.Inputs.front(), messages);
+  vtkSmartPointer<vtkPointSet> particles =
+    AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));
   points = points ? points : MakePoints(job, particles->GetBounds());
   SetUpProbe(job, points, particles);
   ReportProbe(job, RunProbe(job, messages), messages);

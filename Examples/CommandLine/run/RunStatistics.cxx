@@ -31,12 +31,12 @@ const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "Part
   "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
   "FlatLoops", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
   "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume", "Pieces",
-  "Dimension", "Lines", "Length",
-  "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
-  "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
-  "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices",
-  "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing", "RankParticles",
-  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "Dimension", "Lines", "Length", "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean",
+  "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance",
+  "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError",
+  "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
+  "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles",
+  "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {
@@ -248,6 +248,14 @@ void WriteList(JsonText& json, const char* key, const std::vector<std::string>& 
   }
   json.EndList();
 }
+
+void WriteWalls(JsonText& json, const Job& job)
+{
+  if (!job.Walls.empty())
+  {
+    WriteList(json, "walls", job.Walls);
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -300,6 +308,7 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
   json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
   json.Value("input", job.Inputs.front());
+  WriteWalls(json, job);
   json.Value("output", job.Output);
   WriteSetting(json, job, last);
   WriteGroup(json, last, "statistics", StatisticNames);
@@ -366,6 +375,7 @@ std::string FilmAsJson(
   json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
   json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
   WriteList(json, "inputs", job.Inputs);
+  WriteWalls(json, job);
   json.Value("output", job.Output);
   if (!setting.empty())
   {

@@ -8,6 +8,7 @@
 #include "OptionValue.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
+#include "Walls.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"
@@ -88,6 +89,11 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   {
     filter->SetDensityArrayName(job.Density.c_str());
   }
+  if (!job.Walls.empty())
+  {
+    filter->SetFluidArrayName(WallArrayName);
+    filter->SetFluidValue(0);
+  }
   const std::vector<double> period = job.DetectPeriod ? DetectPeriod(particles) : job.Periodic;
   if (!period.empty())
   {
@@ -124,6 +130,10 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   const std::vector<std::string>& names = job.AttributeNames;
   vtkPointData* data = particles->GetPointData();
   filter->ClearExcludedArrays(); // of the step before
+  if (!job.Walls.empty())
+  {
+    filter->AddExcludedArray(WallArrayName); // the same on the whole surface
+  }
   for (const std::string& name : names)
   {
     if (!data->HasArray(name.c_str()))

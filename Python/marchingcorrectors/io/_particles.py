@@ -5,13 +5,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .._library import Error
-from .._options import did_you_mean
+from .._library import Error, lib
+from .._options import did_you_mean, words_of
 from .._warnings import warn
 
-# What solvers call their kernels begins so, letters and digits alone; the first that fits counts.
-KERNELS = {"cubic": "cubic", "quintic": "quintic", "wendlandc2": "wendland", "wendlandquinticc": None,
-           "wendlandquintic": "wendland"}
+# What solvers call their kernels begins so, letters and digits alone; the first that fits counts. Wendland's are PySPH's,
+# too: WendlandQuintic is C2.
+KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
+           "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
+           "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}
 
 
 class FileError(Error, ValueError):
@@ -27,6 +29,12 @@ def find_kernel(name):
     """The word of sph_kernel for what a file calls its kernel; None where it is none of ours."""
     plain = "".join(letter for letter in str(name).lower() if letter.isalnum())
     return next((word for start, word in KERNELS.items() if plain.startswith(start)), None)
+
+
+def support_factor(name):
+    """Support radius / smoothing length of what a file calls its kernel; of one that is unknown, 2, as of most."""
+    known = find_kernel(name)
+    return lib.mcor_support_factor(words_of("mcor_sph_kernel").index(known)) if known else 2.0
 
 
 class Lazy(Mapping):

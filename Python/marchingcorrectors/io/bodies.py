@@ -43,14 +43,30 @@ def load(path):
     return points, arrays, time.GetTuple1(0) if time and time.GetNumberOfTuples() else None
 
 
+def column(name, bodies, fluids):
+    """One array of all bodies. Walls without it have the fluid's median there: they take part in no field, so only
+    smoothing lengths, and what volumes are made of, count."""
+    shape = fluids[0][1][name].shape[1:]
+    parts = [arrays.get(name) for _, arrays, _ in bodies]
+    parts = [part if part is not None and part.shape[1:] == shape else None for part in parts]
+    if any(part is None for part in parts):
+        values = join([arrays[name] for _, arrays, _ in fluids])
+        middle = (len(values) - 1) // 2
+        median = np.partition(values, middle, axis=0)[middle]
+        parts = [np.broadcast_to(median, (len(points), *shape)) if part is None else part
+                 for part, (points, _, _) in zip(parts, bodies)]
+    return join(parts)
+
+
 def read_bodies(paths, walls):
     every = paths + [path for path in walls if path not in paths]
     bodies = [load(path) for path in every]
     marked = [path in walls or not walls and len(every) > 1 and bool(WALL.search(path.stem)) for path in every]
     counts = [len(points) for points, _, _ in bodies]
-    common = [name for name in bodies[0][1] if all(
-        name in arrays and arrays[name].shape[1:] == bodies[0][1][name].shape[1:] for _, arrays, _ in bodies)]
-    arrays = {name: lambda n=name: join([body[1][n] for body in bodies]) for name in common}
+    fluids = [body for body, wall in zip(bodies, marked) if not wall] or bodies
+    common = [name for name in fluids[0][1] if all(
+        name in arrays and arrays[name].shape[1:] == fluids[0][1][name].shape[1:] for _, arrays, _ in fluids)]
+    arrays = {name: lambda n=name: column(n, bodies, fluids) for name in common}
     lower = {name.lower(): name for name in reversed(common)}
 
     def find(*names):

@@ -7,12 +7,12 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from . import FileError, read
-from ._particles import find_kernel
+from ._particles import support_factor
 
 
 def to_vtk(particles):
     """Arrays as in the file; beside them SmoothingLength as this package means it (half of the support radius, of the
-    quintic spline a third), Mass and ParticleType (0 fluid, 1 wall) where the file tells them in another way."""
+    quintic spline a third, of the quartic 2/5), Mass and ParticleType (0 fluid, 1 wall) where the file tells them in another way."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -33,7 +33,7 @@ def to_vtk(particles):
     if h is not None:
         if isinstance(particles.smoothing_length, str):
             arrays.pop(particles.smoothing_length)
-        factor = (3 if find_kernel(particles.kernel) == "quintic" else 2) if particles.support_radius else 1
+        factor = support_factor(particles.kernel) if particles.support_radius else 1
         arrays["SmoothingLength"] = np.broadcast_to(np.asarray(h, float) / factor, len(positions))
     if isinstance(particles.mass, float):
         arrays.setdefault("Mass", np.full(len(positions), particles.mass))

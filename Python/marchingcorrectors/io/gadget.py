@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from ._particles import FileError, Particles
+from ._particles import FileError, Particles, find_kernel
 from .hdf5 import Part, get, is_numbers, load, names_of
 
 TYPES = {"gas": 0, "dark_matter": 1, "disk": 2, "bulge": 3, "stars": 4, "black_holes": 5, "boundary": 5, "sinks": 3,
@@ -79,6 +79,22 @@ def period_of(file, box):
     return [bound for side in box for bound in (0.0, side)]
 
 
+# GIZMO's numbers, those of a kernel that is here.
+GIZMO_KERNELS = {3: "cubic", 4: "quartic", 5: "quintic", 6: "Wendland C2", 7: "Wendland C4", 9: "Wendland C6"}
+
+
+def kernel_of(file, header):
+    """As SWIFT names it, by GIZMO's number, or by GADGET-4's macro; None where the file does not tell."""
+    scheme, config = get(file, "HydroScheme"), get(file, "Config")
+    if scheme is not None and "Kernel function" in scheme.attrs:
+        return text(scheme.attrs["Kernel function"])
+    identity = number(header, "Kernel_Function_ID")
+    if identity is not None:
+        return GIZMO_KERNELS.get(int(identity), f"GIZMO's number {identity}")
+    macros = [] if config is None else [name for name in config.attrs if name.endswith("_KERNEL")]
+    return next(filter(find_kernel, macros), None)
+
+
 def read_gadget(path, types):
     import h5py
 
@@ -89,8 +105,7 @@ def read_gadget(path, types):
         period = period_of(file, parameters["box_size"])
         scheme = get(file, "HydroScheme")
         gamma = number(scheme.attrs, "Kernel gamma") if scheme is not None else None
-        kernel = text(scheme.attrs["Kernel function"]) if scheme is not None and "Kernel function" in scheme.attrs \
-            else None
+        kernel = kernel_of(file, header)
         dimension = number(header, "Dimension", 3)
     parts, names = [], None
     for kind in wanted:

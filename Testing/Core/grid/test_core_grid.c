@@ -4,7 +4,9 @@
 /* Search grid: queries against all particles one by one, volumes against double sums. */
 
 #include "core_fixture.h"
+#include "mcor_input.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -336,6 +338,24 @@ static void test_volumes_of_solids(void** state)
   }
 }
 
+/* Of cubes exactly, else to two units of rounding, and with the bits that IEEE's operations give. */
+static void test_cube_root(void** state)
+{
+  (void)state;
+  uint64_t seed = 34;
+  for (int i = 0; i < 10000; ++i)
+  {
+    const double root = ldexp(1 + random_unit(&seed), (int)(600 * random_unit(&seed)) - 300);
+    const double found = mcor_cube_root(root * root * root);
+    CORE_CHECK(fabs(found / root - 1) < 2 * DBL_EPSILON, "%.17g, not %.17g", found, root);
+    const double whole = i + 1;
+    CORE_CHECK(mcor_cube_root(whole * whole * whole) == whole, "of %g cubed", whole);
+  }
+  const double volume = 4.0 / 3.0 * 3.14159265358979323846;
+  CORE_CHECK(mcor_cube_root(volume / 33) == 0x1.01501895415edp-1, "other bits");
+  CORE_CHECK(mcor_cube_root(volume / 2) == 0x1.47894e24991b8p+0, "other bits");
+}
+
 /* 1.3 times the spacing of a lattice, most of whose particles are far from its faces. */
 static void test_estimate(void** state)
 {
@@ -517,7 +537,8 @@ static void test_crowds(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_query), cmocka_unit_test(test_volumes),
-    cmocka_unit_test(test_volumes_of_solids), cmocka_unit_test(test_estimate),
-    cmocka_unit_test(test_smoothing_lengths), cmocka_unit_test(test_crowds) };
+    cmocka_unit_test(test_volumes_of_solids), cmocka_unit_test(test_cube_root),
+    cmocka_unit_test(test_estimate), cmocka_unit_test(test_smoothing_lengths),
+    cmocka_unit_test(test_crowds) };
   return cmocka_run_group_tests_name("grid", tests, core_set_up, core_tear_down);
 }

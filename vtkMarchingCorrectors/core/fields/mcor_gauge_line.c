@@ -21,10 +21,23 @@
 
 /* ---- lines -------------------------------------------------------------------------------- */
 
+/* hypot has not the same bits everywhere. */
 double mcor_gauge_length(const mcor_gauge_line* line)
 {
-  return hypot(
-    hypot(line->to[0] - line->from[0], line->to[1] - line->from[1]), line->to[2] - line->from[2]);
+  double way[3], most = 0, sum = 0;
+  int exponent;
+  for (int a = 0; a < 3; ++a)
+  {
+    way[a] = line->to[a] - line->from[a];
+    most = fmax(most, fabs(way[a]));
+  }
+  frexp(most, &exponent);
+  for (int a = 0; a < 3; ++a)
+  {
+    way[a] = ldexp(way[a], -exponent);
+    sum += way[a] * way[a];
+  }
+  return ldexp(sqrt(sum), exponent);
 }
 
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number)

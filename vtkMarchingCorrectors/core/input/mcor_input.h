@@ -112,6 +112,8 @@ mcor_status mcor_choose_samples(
 /* One for all particles, from their spacing. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
+/* Of a number above 0; the same bits everywhere, which cbrt and pow of C libraries have not. */
+double mcor_cube_root(double value);
 /* Of `count` numbers, which it sorts; 0 of none. */
 double mcor_median_of(double* values, int count);
 

@@ -148,6 +148,21 @@ static mcor_status mcor_scale_positions(
   return MCOR_OK;
 }
 
+double mcor_cube_root(double value)
+{
+  int exponent;
+  double rest = frexp(value, &exponent), root = 1;
+  for (; exponent % 3; ++exponent)
+  {
+    rest /= 2;
+  }
+  for (int i = 0; i < 9; ++i) /* Newton's, from above; rest is from 1/8 to 1 */
+  {
+    root = (2 * root + rest / (root * root)) / 3;
+  }
+  return ldexp(root, exponent / 3);
+}
+
 /* 1.3 times the median, over the samples, of the spacing of a lattice that has as many particles
  * within the distance of the 32nd neighbour. */
 static mcor_status mcor_find_spacing(
@@ -164,8 +179,8 @@ static mcor_status mcor_find_spacing(
   for (int s = 0; s < count; ++s)
   {
     const double pi = 3.14159265358979323846, n = (double)neighbours[s];
-    spacing[s] =
-      sqrt(spacing[s]) * (mcor_is_plane(context) ? sqrt(pi / n) : cbrt(4.0 / 3.0 * pi / n));
+    spacing[s] = sqrt(spacing[s]) *
+      (mcor_is_plane(context) ? sqrt(pi / n) : mcor_cube_root(4.0 / 3.0 * pi / n));
   }
   *estimate = 1.3 * mcor_median_of(spacing, count) / job->scale;
   return MCOR_OK;

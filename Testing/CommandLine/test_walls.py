@@ -1,0 +1,106 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Walls in files of their own, --walls of the program marching-correctors: test_walls.py PROGRAM PRELOAD."""
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+HOW = ["--scalar", "Radius", "--iso", "0.3", "--no-attributes"]
+WRITERS = {".vtp": files.write_vtp, ".vtu": files.write_vtu, ".vtk": files.write_legacy}
+
+
+class Walls(CommandLineTest):
+    """The block's Kind 0 as fluid, its Kind 1 as walls: a file each is as good as one of both and --fluid."""
+
+    def setUp(self):
+        super().setUp()
+        self.fluid = self.write("WaterBody_3.vtp", lambda kind, point: kind == 0)
+        self.wall = self.write("WallBoundary_0.vtp", lambda kind, point: kind == 1)
+
+    def write(self, name, chosen, without=()):
+        picked = [i for i, (kind, point) in enumerate(zip(self.arrays["Kind"], self.points)) if chosen(kind, point)]
+        path = self.directory / name
+        WRITERS[path.suffix](path, [self.points[i] for i in picked],
+                             {array: [values[i] for i in picked] for array, values in self.arrays.items()
+                              if array not in without})
+        return path
+
+    def surface(self, *options, source=None):
+        self.succeed(*options, source=source)
+        return self.output.read_bytes()
+
+    def test_surfaces(self):
+        for more in ([], ["--solids", "weight"], ["--solids", "wall", "--derive", "Velocity"], ["--gradients"]):
+            wanted = self.surface(*HOW, *more, "--fluid", "Kind=0")
+            found = self.surface(*HOW, *more, "--walls", self.wall, source=self.fluid)
+            self.assertEqual(found, wanted, more)
+            self.assertNotEqual(found, self.surface(*HOW, *more, source=self.fluid))
+        free = ["--free-surface", "--no-attributes"]
+        self.assertEqual(self.surface(*free, "--walls", self.wall, source=self.fluid),
+                         self.surface(*free, "--fluid", "Kind=0"))
+
+    def test_several_bodies(self):
+        """In all formats, in any order; what walls lack is the fluid's, as all of it is alike here."""
+        wanted = self.surface(*HOW, "--fluid", "Kind=0")
+        lacking = ["Density", "Velocity", "SmoothingLength", "Mass", "Radius"]
+        low = self.write("Left.vtu", lambda kind, point: kind == 1 and point[1] < 0, lacking[:2])
+        high = self.write("Right.vtk", lambda kind, point: kind == 1 and point[1] >= 0, lacking)
+        for order in ((low, high), (high, low)):
+            walls = [word for path in order for word in ("--walls", path)]
+            self.assertEqual(self.surface(*HOW, *walls, source=self.fluid), wanted)
+
+    def test_attributes_and_statistics(self):
+        statistics = self.succeed(*HOW[:4], "--walls", self.wall, source=self.fluid)
+        self.assertEqual(statistics["walls"], [str(self.wall)])
+        self.assertEqual((statistics["statistics"]["fluid_particles"], statistics["statistics"]["solid_particles"]),
+                         (self.arrays["Kind"].count(0), self.arrays["Kind"].count(1)))
+        text = self.output.read_text()
+        self.assertIn('Name="Velocity"', text)
+        self.assertNotIn("IsWall", text)
+
+    def test_film(self):
+        """Between two steps, too, though walls have the fluid's numbers: each body counts from 0."""
+        numbers = {0: 0, 1: 0}
+        self.arrays["Idp"] = []
+        for kind in self.arrays["Kind"]:
+            self.arrays["Idp"].append(float(numbers[kind]))
+            numbers[kind] += 1
+        still = ["Velocity"]
+        self.fluid = self.write(self.fluid.name, lambda kind, point: kind == 0, still)
+        self.wall = self.write(self.wall.name, lambda kind, point: kind == 1, still)
+        frame = [self.directory / f"surface_{i:04d}.vtp" for i in range(3)]
+        wanted = self.surface(*HOW, "--fluid", "Kind=0")
+        done = self.run_program(self.fluid, self.fluid, self.directory / "surface_%04d.vtp", *HOW, "--walls", self.wall,
+                                "--times", "0,0.5,1")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual([path.read_bytes() for path in frame], [wanted] * 3)
+
+    def test_slice_and_gauge(self):
+        for name, options in (("surface.vti", ["--slice", "z=0.01", "--resolution", "40"]),
+                              ("surface.csv", ["--gauge", "a=0.31,0,-1:0.31,0,1"])):
+            output, found = self.directory / name, []
+            for source, walls in ((self.input, ["--fluid", "Kind=0"]), (self.fluid, ["--walls", self.wall]),
+                                  (self.input, [])):
+                done = self.run_program(source, output, *options, *walls, "--quiet", "--no-attributes"
+                                        if name.endswith("i") else "--quiet")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                found.append(output.read_bytes().replace(bytes(source.name, "ascii"), b""))
+            self.assertEqual(found[0], found[1])
+            self.assertNotEqual(found[0], found[2])
+
+    def test_mistakes(self):
+        there = list(self.directory.iterdir())
+        cases = ((2, r"--walls tells .*; leave out --fluid", ["--walls", self.wall, "--fluid", "Kind=0"]),
+                 (1, r"nowhere.vtp cannot be read: No such file", ["--walls", "nowhere.vtp"]),
+                 (2, r"--walls needs", ["--walls"]))
+        for status, sentence, options in cases:
+            self.refuse(self.extract(*HOW, *options, source=self.fluid), status, sentence)
+        self.refuse(self.run_program(self.fluid, self.wall, *HOW, "--walls", self.wall), 2,
+                    r"WallBoundary_0.vtp would overwrite the input")
+        self.arrays["IsWall"] = self.arrays["Kind"]
+        files.write_vtp(self.input, self.points, self.arrays)
+        self.refuse(self.extract(*HOW, "--walls", self.wall), 1, "have an array 'IsWall'")
+        self.assertEqual(sorted(self.directory.iterdir()), sorted(there))
+
+
+if __name__ == "__main__":
+    main()

@@ -4,60 +4,13 @@
 /* Periodic boxes, against the same particles with all their images as an input that is not periodic;
  * and the surface at opposite sides, against itself. */
 
-#include "core_fixture.h"
+#include "core_period.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
-
-/* Particles of spacing 1 in a box at the origin with sides of these lengths; a scalar that repeats. */
-static core_set make_period(const int length[3], uint64_t seed)
-{
-  core_set set = core_make_set((int64_t)length[0] * length[1] * length[2]);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    double* x = set.position + 3 * i;
-    const int64_t at[3] = { i % length[0], i / length[0] % length[1], i / length[0] / length[1] };
-    for (int a = 0; a < 3; ++a)
-    {
-      x[a] = (double)at[a] + 0.5 + 0.2 * (2 * random_unit(&seed) - 1);
-      set.scalar[i] += sin(2 * PI * x[a] / length[a] + a);
-    }
-    set.smoothing_length[i] = 1.3 * (1 + 0.4 * random_unit(&seed));
-    set.volume[i] = 1;
-  }
-  return set;
-}
-
-/* The set and its images in all 27 periods, or those along the axes that have one. */
-static core_set add_images(const core_set* set, const double period[6])
-{
-  core_set all = core_make_set(27 * set->count);
-  all.count = 0;
-  for (int image = 0; image < 27; ++image)
-  {
-    const int at[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
-    int open = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      open = open || (at[a] != 0 && period[2 * a] == period[2 * a + 1]);
-    }
-    for (int64_t i = 0; i < set->count && !open; ++i, ++all.count)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        all.position[3 * all.count + a] =
-          set->position[3 * i + a] + at[a] * (period[2 * a + 1] - period[2 * a]);
-      }
-      all.smoothing_length[all.count] = set->smoothing_length[i];
-      all.volume[all.count] = set->volume[i];
-      all.scalar[all.count] = set->scalar[i];
-    }
-  }
-  return all;
-}
 
 /* A point of the surface at x to within 1e-4, from number `from` on, or -1. */
 static int64_t find_point_from(const mcor_surface* s, const double x[3], int64_t from)
@@ -170,14 +123,6 @@ static void check_sides(const char* name, mcor_surface* s, const double period[6
   mesh_free_report(&report);
 }
 
-static mcor_options period_options(const double* iso, const double period[6])
-{
-  mcor_options options = core_options(iso);
-  memcpy(options.periodic, period, sizeof options.periodic);
-  options.boundary_flag = options.gradients = options.weight_sum = options.residual = 1;
-  return options;
-}
-
 static void check_images(mcor_context* context, const char* name, const core_set* set,
   const mcor_options* options, int computed)
 {
@@ -185,7 +130,7 @@ static void check_images(mcor_context* context, const char* name, const core_set
   input.volume = computed ? (mcor_array){ 0 } : input.volume;
   mcor_surface surface = core_extract(context, &input, options);
   check_sides(name, &surface, options->periodic);
-  core_set all = add_images(set, options->periodic);
+  core_set all = core_add_images(set, options->periodic);
   mcor_input other = core_input(&all);
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
@@ -210,21 +155,21 @@ static void images_count(void** state)
   const double iso = 0.2, half = 0.5;
   const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
-  core_set set = make_period(cube, 5);
-  mcor_options options = period_options(&iso, around);
+  core_set set = core_make_period(cube, 5);
+  mcor_options options = core_period_options(&iso, around);
   check_images(*state, "all axes", &set, &options, 0);
   options.nearest_particle = 1;
   check_images(*state, "computed volumes", &set, &options, 1);
   options.sph_kernel = MCOR_M_PRIME_4;
   check_images(*state, "computed volumes, tensor kernel", &set, &options, 1);
   core_free_set(&set);
-  set = make_period(slab, 6);
-  options = period_options(&iso, along);
+  set = core_make_period(slab, 6);
+  options = core_period_options(&iso, along);
   check_images(*state, "two axes", &set, &options, 0);
   options.field = MCOR_WEIGHT_SUM;
   options.iso_values = &half;
   check_images(*state, "free surface", &set, &options, 0);
-  options = period_options(&iso, along);
+  options = core_period_options(&iso, along);
   options.seeds = MCOR_PAIRS;
   options.h_scale = 2;
   for (int64_t i = 0; i < set.count; ++i)
@@ -247,7 +192,7 @@ static void adaptive_cubes(void** state)
   const double along[6] = { 0, 16, 0, 16, 0, 0 }, around[6] = { 0, 14, 0, 14, 0, 14 };
   for (int i = 0; i < 3; ++i)
   {
-    core_set set = make_period(i < 2 ? length : cube, 5);
+    core_set set = core_make_period(i < 2 ? length : cube, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
@@ -256,7 +201,7 @@ static void adaptive_cubes(void** state)
       const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 4) * (x[2] - 4)) / 2.5);
       set.smoothing_length[p] = h < 3.3 ? h : 3.3;
     }
-    mcor_options options = period_options(i == 1 ? &half : &iso, i < 2 ? along : around);
+    mcor_options options = core_period_options(i == 1 ? &half : &iso, i < 2 ? along : around);
     options.level_limit = MCOR_CUBE_LEVELS - 1;
     options.cube_size = 0.3;
     options.field = i == 1 ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
@@ -287,14 +232,14 @@ static void adaptive_pairs(void** state)
   const double iso = 0.27;
   const int length[3] = { 16, 16, 8 };
   const double along[6] = { 0, 16, 0, 16, 0, 0 };
-  core_set set = make_period(length, 6);
+  core_set set = core_make_period(length, 6);
   for (int64_t i = 0; i < set.count; ++i)
   {
     const double x = set.position[3 * i];
     set.smoothing_length[i] = x > 4 && x < 6 ? 1.3 : x > 13 || x < 1 ? 0.3 : 0.6;
     set.scalar[i] = sin(2 * PI * (x + set.position[3 * i + 1]) / 16);
   }
-  mcor_options options = period_options(&iso, along);
+  mcor_options options = core_period_options(&iso, along);
   options.level_limit = MCOR_CUBE_LEVELS - 1;
   options.seeds = MCOR_PAIRS;
   options.h_scale = 3;
@@ -316,8 +261,8 @@ static void shifts(void** state)
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, step[3] = { 1.5, -3.5, 21 };
-  core_set set = make_period(cube, 7);
-  mcor_options options = period_options(&iso, around);
+  core_set set = core_make_period(cube, 7);
+  mcor_options options = core_period_options(&iso, around);
   options.cube_size = 0.5;
   mcor_input input = core_input(&set);
   mcor_surface surface = core_extract(*state, &input, &options);
@@ -358,9 +303,9 @@ static void boxes(void** state)
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 };
-  core_set set = make_period(cube, 5);
+  core_set set = core_make_period(cube, 5);
   const mcor_input input = core_input(&set);
-  mcor_options options = period_options(&iso, around);
+  mcor_options options = core_period_options(&iso, around);
   mcor_surface surface = core_extract(*state, &input, &options);
   int64_t triangles = 0, cells = 0;
   for (int part = 0; part < 2; ++part)
@@ -398,12 +343,12 @@ static void lengths(void** state)
     { { 0, NAN, 0, 8, 0, 8 }, { 0 }, "period along x goes from 0 to nan" } };
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
-  core_set set = make_period(cube, 5);
+  core_set set = core_make_period(cube, 5);
   mcor_input input = core_input(&set);
   input.smoothing_length = (mcor_array){ .constant = 1.3 };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
-    const mcor_options options = period_options(&iso, cases[i].period);
+    const mcor_options options = core_period_options(&iso, cases[i].period);
     mcor_surface surface = { 0 };
     const mcor_status status = mcor_extract(*state, &input, &options, &surface);
     if (cases[i].sentence)
@@ -427,181 +372,6 @@ static void lengths(void** state)
     mcor_free_surface(&surface);
   }
   core_free_set(&set);
-}
-
-/* The set's scalar as an attribute, which is all that is evaluated. */
-static mcor_input attribute_input(const core_set* set, mcor_array* attribute)
-{
-  mcor_input input = core_input(set);
-  *attribute = input.scalar;
-  input.scalar = (mcor_array){ 0 };
-  input.attributes = attribute;
-  input.attribute_count = 1;
-  return input;
-}
-
-enum
-{
-  POINTS = 1500
-};
-
-static void check_equal(const double* values, const double* expected, int count, double limit)
-{
-  for (int i = 0; i < count; ++i)
-  {
-    CORE_CHECK(fabs(values[i] - expected[i]) <= limit, "number %d is %.17g, expected %.17g", i,
-      values[i], expected[i]);
-  }
-}
-
-/* The field at points, and of those that are in the period with all images as particles. */
-static void check_points(
-  mcor_context* context, const core_set* set, mcor_options* options, uint64_t version)
-{
-  double points[2][3 * POINTS];
-  uint64_t seed = 9;
-  for (int i = 0; i < 3 * POINTS; ++i)
-  {
-    /* Some on the sides; numbers that a period leaves exact. */
-    const double length = options->periodic[2 * (i % 3) + 1];
-    const double at = i % 7 == 0 ? 0 : floor(random_unit(&seed) * 1024) / 1024;
-    points[0][i] = at * fmax(length, 8);
-    points[1][i] = points[0][i] + length * (i % 5 == 0 ? 1 : i % 5 - 2);
-  }
-  mcor_array attribute, images_attribute, at = core_array(points[0], 3);
-  mcor_input input = attribute_input(set, &attribute);
-  input.particles_version = input.scalar_version = version;
-  mcor_samples samples, moved, expected;
-  CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &samples));
-  core_set all = add_images(set, options->periodic);
-  const mcor_input other = attribute_input(&all, &images_attribute);
-  mcor_options plain = *options;
-  memset(plain.periodic, 0, sizeof plain.periodic);
-  CORE_OK(context, mcor_probe(context, &other, &plain, &at, POINTS, &expected));
-  at.data = points[1];
-  CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &moved));
-  for (int i = 0; i < POINTS; ++i)
-  {
-    CORE_CHECK(samples.weight_sum[i] > 0.3 &&
-        fabs(samples.weight_sum[i] - expected.weight_sum[i]) < 1e-5 &&
-        fabs(samples.values[0][i] - expected.values[0][i]) < 1e-5,
-      "point %d: %g of weight %g, expected %g of %g", i, samples.values[0][i],
-      samples.weight_sum[i], expected.values[0][i], expected.weight_sum[i]);
-    for (int a = 0; a < 3; ++a)
-    {
-      assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
-    }
-  }
-  /* Halfway between two places of the device, rounding decides for one: here, in double precision, of some. */
-  const int halves = options->cube_size > 0 && options->precision == MCOR_FLOAT64;
-  check_equal(moved.weight_sum, samples.weight_sum, POINTS, halves ? 1e-10 : 0);
-  check_equal(moved.values[0], samples.values[0], POINTS, halves ? 1e-10 : 0);
-  check_equal(moved.gradients[0], samples.gradients[0], 3 * POINTS, halves ? 1e-10 : 0);
-  mcor_free_samples(&samples);
-  mcor_free_samples(&moved);
-  mcor_free_samples(&expected);
-  core_free_set(&all);
-}
-
-/* Stretches particles and periods, so that no cube divides two of these; by numbers that keep positions exact
- * a period away. */
-static void stretch(core_set* set, double period[6])
-{
-  static const double factors[3] = { 1, 1 + 5.0 / 128, 1 + 3.0 / 128 };
-  for (int64_t i = 0; i < 3 * set->count; ++i)
-  {
-    set->position[i] *= factors[i % 3];
-  }
-  for (int side = 0; side < 6; ++side)
-  {
-    period[side] *= factors[side / 2];
-  }
-}
-
-static void points_see_images(void** state)
-{
-  const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
-  const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
-  for (int i = 0; i < 8; ++i)
-  {
-    core_set set = make_period(i % 2 ? slab : cube, 5);
-    mcor_options options = period_options(NULL, i % 2 ? along : around);
-    options.iso_count = 0;
-    options.precision = i % 4 < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
-    if (i >= 4)
-    {
-      options.cube_size = 0.5;
-      stretch(&set, options.periodic);
-    }
-    check_points(*state, &set, &options, i == 1 ? 77 : 0);
-    core_free_set(&set);
-  }
-}
-
-/* Gradients at particles, of which some are given periods away, with images and with these as
- * particles. */
-static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
-{
-  const int cube[3] = { 8, 8, 8 };
-  double around[6] = { 0, 8, 0, 8, 0, 8 };
-  core_set set = make_period(cube, 8);
-  for (int64_t i = 0; i < 3 * set.count; ++i)
-  {
-    set.position[i] = i % 11 == 0 ? 0 : floor(set.position[i] * 1024) / 1024;
-  }
-  if (unequal)
-  {
-    stretch(&set, around);
-  }
-  core_set all = add_images(&set, around);
-  mcor_array attribute, images_attribute;
-  const mcor_input input = attribute_input(&set, &attribute);
-  const mcor_input other = attribute_input(&all, &images_attribute);
-  mcor_options options = period_options(NULL, around), plain = options;
-  options.iso_count = plain.iso_count = 0;
-  options.sph_kernel = plain.sph_kernel = kernel;
-  options.cube_size = unequal ? 0.5 : 0;
-  memset(plain.periodic, 0, sizeof plain.periodic);
-  mcor_derivatives found, expected, moved;
-  CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &found));
-  CORE_OK(*state, mcor_derive(*state, &other, &plain, MCOR_GRADIENT_CORRECTED, &expected));
-  for (int64_t i = 0; i < 3 * set.count; ++i)
-  {
-    const double is = found.gradients[0][i], was = expected.gradients[0][3 * 13 * set.count + i];
-    CORE_CHECK(fabs(is - was) < 1e-4, "gradient %lld is %g, expected %g", (long long)i, is, was);
-    set.position[i] += around[2 * (i % 3) + 1] * (double)(i % 5 - 2);
-  }
-  CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
-  assert_memory_equal(
-    moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
-  mcor_free_derivatives(&moved);
-  /* Wherever in the period: next to its sides, too. */
-  for (int shift = 1; shift < 4; ++shift)
-  {
-    for (int64_t i = 0; i < 3 * set.count; ++i)
-    {
-      set.position[i] += 0.25;
-    }
-    CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
-    for (int64_t i = 0; i < 3 * set.count; ++i)
-    {
-      const double is = moved.gradients[0][i], was = found.gradients[0][i];
-      CORE_CHECK(fabs(is - was) < 1e-4, "shift %d: gradient %lld is %g, expected %g", shift,
-        (long long)i, is, was);
-    }
-    mcor_free_derivatives(&moved);
-  }
-  mcor_free_derivatives(&found);
-  mcor_free_derivatives(&expected);
-  core_free_set(&all);
-  core_free_set(&set);
-}
-
-static void derivatives_see_images(void** state)
-{
-  check_derivatives(state, 0, MCOR_CUBIC_SPLINE);
-  check_derivatives(state, 1, MCOR_CUBIC_SPLINE);
-  check_derivatives(state, 1, MCOR_QUADRATIC);
 }
 
 static double measure_area(const mcor_surface* s)
@@ -635,7 +405,7 @@ static void adaptive_unequal(void** state)
   for (int i = 0; i < 4; ++i)
   {
     double around[6] = { 0, 16, 0, 16, 0, 16 };
-    core_set set = make_period(length, 5);
+    core_set set = core_make_period(length, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
@@ -643,10 +413,10 @@ static void adaptive_unequal(void** state)
       const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 8) * (x[2] - 8)) / 2.5);
       set.smoothing_length[p] = h < 3 ? h : 3;
     }
-    stretch(&set, around);
+    core_stretch_period(&set, around);
     around[4] = i == 0 ? around[4] : 0;
     around[5] = i == 0 ? around[5] : 0;
-    mcor_options options = period_options(i == 1 ? &half : &iso, around);
+    mcor_options options = core_period_options(i == 1 ? &half : &iso, around);
     options.level_limit = MCOR_CUBE_LEVELS - 1;
     options.cube_size = 0.3;
     options.field = i == 1 ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
@@ -681,7 +451,7 @@ static void rounded_length(void** state)
   const double iso = 0.5;
   core_set set = core_make_random(60, 4, 0.3, 0.3, 4);
   const mcor_input input = core_input(&set);
-  mcor_options options = period_options(&iso, around);
+  mcor_options options = core_period_options(&iso, around);
   assert_true(around[1] / 0.1 > 48);
   options.field = MCOR_WEIGHT_SUM;
   options.cube_size = 0.1;
@@ -700,7 +470,7 @@ static void large_sides(void** state)
   core_set set = core_make_random(200, 1, 0.05, 0.05, 9);
   mcor_input input = core_input(&set);
   const double around[6] = { -0.5, 0.5, -0.5, 0.5, -0.5, 0.5 };
-  mcor_options options = period_options(&half, around);
+  mcor_options options = core_period_options(&half, around);
   mcor_surface surface;
   options.field = MCOR_WEIGHT_SUM;
   options.capping = 1;
@@ -741,7 +511,6 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
     cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_unequal),
     cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
-    cmocka_unit_test(lengths), cmocka_unit_test(rounded_length), cmocka_unit_test(large_sides),
-    cmocka_unit_test(points_see_images), cmocka_unit_test(derivatives_see_images) };
+    cmocka_unit_test(lengths), cmocka_unit_test(rounded_length), cmocka_unit_test(large_sides) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

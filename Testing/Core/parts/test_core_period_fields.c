@@ -1,0 +1,176 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Probes and derivatives of periodic particles, against the same particles with all their images. */
+
+#include "core_period.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The set's scalar as an attribute, which is all that is evaluated. */
+static mcor_input attribute_input(const core_set* set, mcor_array* attribute)
+{
+  mcor_input input = core_input(set);
+  *attribute = input.scalar;
+  input.scalar = (mcor_array){ 0 };
+  input.attributes = attribute;
+  input.attribute_count = 1;
+  return input;
+}
+
+enum
+{
+  POINTS = 1500
+};
+
+static void check_equal(const double* values, const double* expected, int count, double limit)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    CORE_CHECK(fabs(values[i] - expected[i]) <= limit, "number %d is %.17g, expected %.17g", i,
+      values[i], expected[i]);
+  }
+}
+
+/* The field at points, and of those that are in the period with all images as particles. */
+static void check_points(
+  mcor_context* context, const core_set* set, mcor_options* options, uint64_t version)
+{
+  double points[2][3 * POINTS];
+  uint64_t seed = 9;
+  for (int i = 0; i < 3 * POINTS; ++i)
+  {
+    /* Some on the sides; numbers that a period leaves exact. */
+    const double length = options->periodic[2 * (i % 3) + 1];
+    const double at = i % 7 == 0 ? 0 : floor(random_unit(&seed) * 1024) / 1024;
+    points[0][i] = at * fmax(length, 8);
+    points[1][i] = points[0][i] + length * (i % 5 == 0 ? 1 : i % 5 - 2);
+  }
+  mcor_array attribute, images_attribute, at = core_array(points[0], 3);
+  mcor_input input = attribute_input(set, &attribute);
+  input.particles_version = input.scalar_version = version;
+  mcor_samples samples, moved, expected;
+  CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &samples));
+  core_set all = core_add_images(set, options->periodic);
+  const mcor_input other = attribute_input(&all, &images_attribute);
+  mcor_options plain = *options;
+  memset(plain.periodic, 0, sizeof plain.periodic);
+  CORE_OK(context, mcor_probe(context, &other, &plain, &at, POINTS, &expected));
+  at.data = points[1];
+  CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &moved));
+  for (int i = 0; i < POINTS; ++i)
+  {
+    CORE_CHECK(samples.weight_sum[i] > 0.3 &&
+        fabs(samples.weight_sum[i] - expected.weight_sum[i]) < 1e-5 &&
+        fabs(samples.values[0][i] - expected.values[0][i]) < 1e-5,
+      "point %d: %g of weight %g, expected %g of %g", i, samples.values[0][i],
+      samples.weight_sum[i], expected.values[0][i], expected.weight_sum[i]);
+    for (int a = 0; a < 3; ++a)
+    {
+      assert_true(fabs(samples.gradients[0][3 * i + a] - expected.gradients[0][3 * i + a]) < 1e-4);
+    }
+  }
+  /* Halfway between two places of the device, rounding decides for one: here, in double precision, of some. */
+  const int halves = options->cube_size > 0 && options->precision == MCOR_FLOAT64;
+  check_equal(moved.weight_sum, samples.weight_sum, POINTS, halves ? 1e-10 : 0);
+  check_equal(moved.values[0], samples.values[0], POINTS, halves ? 1e-10 : 0);
+  check_equal(moved.gradients[0], samples.gradients[0], 3 * POINTS, halves ? 1e-10 : 0);
+  mcor_free_samples(&samples);
+  mcor_free_samples(&moved);
+  mcor_free_samples(&expected);
+  core_free_set(&all);
+}
+
+static void points_see_images(void** state)
+{
+  const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
+  const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
+  for (int i = 0; i < 8; ++i)
+  {
+    core_set set = core_make_period(i % 2 ? slab : cube, 5);
+    mcor_options options = core_period_options(NULL, i % 2 ? along : around);
+    options.iso_count = 0;
+    options.precision = i % 4 < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
+    if (i >= 4)
+    {
+      options.cube_size = 0.5;
+      core_stretch_period(&set, options.periodic);
+    }
+    check_points(*state, &set, &options, i == 1 ? 77 : 0);
+    core_free_set(&set);
+  }
+}
+
+/* Gradients at particles, of which some are given periods away, with images and with these as
+ * particles. */
+static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
+{
+  const int cube[3] = { 8, 8, 8 };
+  double around[6] = { 0, 8, 0, 8, 0, 8 };
+  core_set set = core_make_period(cube, 8);
+  for (int64_t i = 0; i < 3 * set.count; ++i)
+  {
+    set.position[i] = i % 11 == 0 ? 0 : floor(set.position[i] * 1024) / 1024;
+  }
+  if (unequal)
+  {
+    core_stretch_period(&set, around);
+  }
+  core_set all = core_add_images(&set, around);
+  mcor_array attribute, images_attribute;
+  const mcor_input input = attribute_input(&set, &attribute);
+  const mcor_input other = attribute_input(&all, &images_attribute);
+  mcor_options options = core_period_options(NULL, around), plain = options;
+  options.iso_count = plain.iso_count = 0;
+  options.sph_kernel = plain.sph_kernel = kernel;
+  options.cube_size = unequal ? 0.5 : 0;
+  memset(plain.periodic, 0, sizeof plain.periodic);
+  mcor_derivatives found, expected, moved;
+  CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &found));
+  CORE_OK(*state, mcor_derive(*state, &other, &plain, MCOR_GRADIENT_CORRECTED, &expected));
+  for (int64_t i = 0; i < 3 * set.count; ++i)
+  {
+    const double is = found.gradients[0][i], was = expected.gradients[0][3 * 13 * set.count + i];
+    CORE_CHECK(fabs(is - was) < 1e-4, "gradient %lld is %g, expected %g", (long long)i, is, was);
+    set.position[i] += around[2 * (i % 3) + 1] * (double)(i % 5 - 2);
+  }
+  CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
+  assert_memory_equal(
+    moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
+  mcor_free_derivatives(&moved);
+  /* Wherever in the period: next to its sides, too. */
+  for (int shift = 1; shift < 4; ++shift)
+  {
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      set.position[i] += 0.25;
+    }
+    CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &moved));
+    for (int64_t i = 0; i < 3 * set.count; ++i)
+    {
+      const double is = moved.gradients[0][i], was = found.gradients[0][i];
+      CORE_CHECK(fabs(is - was) < 1e-4, "shift %d: gradient %lld is %g, expected %g", shift,
+        (long long)i, is, was);
+    }
+    mcor_free_derivatives(&moved);
+  }
+  mcor_free_derivatives(&found);
+  mcor_free_derivatives(&expected);
+  core_free_set(&all);
+  core_free_set(&set);
+}
+
+static void derivatives_see_images(void** state)
+{
+  check_derivatives(state, 0, MCOR_CUBIC_SPLINE);
+  check_derivatives(state, 1, MCOR_CUBIC_SPLINE);
+  check_derivatives(state, 1, MCOR_QUADRATIC);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(points_see_images),
+    cmocka_unit_test(derivatives_see_images) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

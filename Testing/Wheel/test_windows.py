@@ -58,7 +58,7 @@ def make_python(folder):
 
 def run(*command, **more):
     done = subprocess.run([*map(str, command)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, **more)
+                          stderr=subprocess.PIPE, text=True, errors="replace", **more)
     print(done.stderr[-3000:])
     assert done.returncode == 0, (done.returncode, done.stdout[-3000:])
     return [line.strip() for line in done.stdout.splitlines() if line.strip()]
@@ -86,7 +86,8 @@ def main():
                             folder / "dist"], check=True)
             wheel, = glob.glob(f"{folder}/dist/*-win_amd64.whl")
         python = make_python(folder)
-        environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
+        # wine reads names of files by the locale
+        environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8"}
         environment.pop("PYTHONPATH", None)
         try:
             install(python, folder / "wheels", wheel, environment)

@@ -47,6 +47,30 @@ def write_gadget(path, part=slice(None), files=1, table=False, swift=False, peri
             file.create_group("Parameters").attrs["InitialConditions:periodic"] = b"1"
 
 
+def complete_swift(path):
+    """All else that swiftsimio wants to see."""
+    counts, one, zero = np.array([len(X), 5, 0, 0, 0, 0, 0]), [1.0], [0.0]
+    units = {f"Unit {name} in cgs (U_{letter})": one for name, letter in (
+        ("mass", "M"), ("length", "L"), ("time", "t"), ("current", "I"), ("temperature", "T"))}
+    exponents = {f"{name} exponent": zero for name in ("U_M", "U_t", "U_I", "U_T", "a-scale", "h-scale")}
+    more = {
+        "Units": units, "InternalCodeUnits": units, "SubgridScheme": {"NamedColumns": b""},
+        "Code": {"Code": b"SWIFT", "Git Revision": b"x"}, "HydroScheme": {"Scheme": b"SPHENIX", "Hydro gamma": [5 / 3]},
+        "Cosmology": {"Cosmological run": [0], "Scale-factor": one, "Redshift": zero},
+        "Header": {"NumPart_ThisFile": counts, "NumPart_Total": counts, "NumPart_Total_HighWord": 0 * counts, "Time": [0.25],
+                   "BoxSize": [4.0, 4.0, 4.0], "Dimension": [3], "Scale-factor": one, "Redshift": zero, "Code": b"SWIFT",
+                   "NumFilesPerSnapshot": [1], "OutputType": b"FullVolume", "NumPartTypes": [7], "Virtual": [0],
+                   "SnapshotDate": b"2026-11-24 00:00:00", "RunName": b"test", "SystemName": b"test", "ThisFile": [0]}}
+    with h5py.File(path, "a") as file:
+        for group, attributes in more.items():
+            file.require_group(group).attrs.update(attributes)
+        for data in (data for kind in ("PartType0", "PartType1") for data in file[kind].values()):
+            data.attrs.update({
+                **exponents, "U_L exponent": one, "Description": b"-", "Expression for physical CGS units": b"-",
+                "Conversion factor to CGS (not including cosmological corrections)": one,
+                "Conversion factor to physical CGS (including cosmological corrections)": one})
+
+
 def write_phantom(path):
     with h5py.File(path, "w") as file:
         header, gas = file.create_group("header"), file.create_group("particles")
@@ -204,6 +228,24 @@ class Layouts(Case):
         self.assertEqual((particles.layout, particles.kernel, particles.period),
                          ("SWIFT", "Cubic spline (M4)", [0.0, 4.0] * 3))
         self.assertLess(np.abs(particles.quantity("smoothing_length") - 2 * H).max(), 1e-12)
+
+    def test_swiftsimio(self):
+        """SWIFT's own reader of its files reads the same."""
+        if not importlib.util.find_spec("swiftsimio"):
+            self.skipTest("swiftsimio, which wheel.swift installs, is not here")
+        import swiftsimio
+
+        write_gadget(self.at("swift.hdf5"), swift=True, periodic=True)
+        complete_swift(self.at("swift.hdf5"))
+        theirs, ours = swiftsimio.load(str(self.at("swift.hdf5"))), io.read(self.at("swift.hdf5"))
+        gamma = theirs.metadata.hydro_scheme["Kernel gamma"][0]
+        for wanted, found in ((theirs.gas.coordinates, ours.positions), (theirs.gas.densities, ours.quantity("density")),
+                              (theirs.gas.smoothing_lengths * gamma, ours.quantity("smoothing_length")),
+                              (theirs.gas.masses, ours.quantity("mass"))):
+            self.assertEqual(np.asarray(wanted).tolist(), found.tolist())
+        self.assertEqual((float(theirs.metadata.time), ours.time), (0.25, 0.25))
+        self.assertEqual([float(side) for side in theirs.metadata.boxsize], ours.parameters["box_size"])
+        self.assertEqual(theirs.metadata.hydro_scheme["Kernel function"], ours.kernel)
 
     def test_phantom(self):
         write_phantom(self.at("dump.h5"))

@@ -199,6 +199,7 @@ bool ParseAndExecute(int argc, char* argv[])
               << ")\n";
     return true;
   }
+  const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
   return Execute(job);
 }
 

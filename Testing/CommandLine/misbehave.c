@@ -9,6 +9,7 @@
 //   MCOR_TAKES_HANGUPS=1                  they do nothing any more, as with UCX, which some MPI loads
 //   MCOR_READER=abort|recursion|fault     what the XML library does when VTK asks for it
 //   MCOR_READER_CALL=N                    when it is asked for the Nth time (default 1)
+//   MCOR_DRIVER=abort                     as a driver of OpenCL, not preloaded: it crashes when it is loaded
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -30,8 +31,12 @@ static void do_nothing(int number)
   (void)number;
 }
 
-__attribute__((constructor)) static void take_hangups(void)
+__attribute__((constructor)) static void begin(void)
 {
+  if (is_variable("MCOR_DRIVER", "abort"))
+  {
+    abort();
+  }
   if (is_variable("MCOR_TAKES_HANGUPS", "1"))
   {
     signal(SIGHUP, do_nothing);

@@ -126,6 +126,20 @@ class DamagedFiles(CommandLineTest):
                 self.refuse(result, 1, "the reader of VTK failed on .*particles.vtp: the program crashed there "
                             rf"\({why}\); the file may be damaged$")
 
+    def test_crash_of_a_driver(self):
+        """As PoCL's over a damaged file that it has kept, which crashes every run: the folder is named."""
+        drivers, kept = self.directory / "drivers", self.directory / "kept"
+        drivers.mkdir()
+        kept.mkdir()
+        (drivers / "mad.icd").write_text(self.preload + "\n")
+        environment = {**os.environ, "OCL_ICD_VENDORS": str(drivers), "MCOR_DRIVER": "abort", "POCL_CACHE_DIR": str(kept)}
+        for options, folder in (((), rf"files that PoCL keeps may be damaged \(remove the folder {kept}\), "),
+                                (("--device", "built in"), "")):
+            with self.subTest(options):
+                result = self.extract("--free-surface", "--quiet", *options, env=environment)
+                self.refuse(result, 1, r"the run failed: the program crashed there \(Aborted\); the OpenCL driver may be at "
+                                       rf"fault, {folder}or memory ran out$")
+
     def test_wrong_sizes(self):
         """An array of fewer entries than points never reaches the filter."""
         data = self.forms["ascii.vtk"].replace(b"POINTS 27", b"POINTS 26")

@@ -137,6 +137,58 @@ static void test_cancel_between_launches(void** state)
   core_free_set(&set);
 }
 
+/* Calls of progress in each phase. */
+typedef struct phase_calls
+{
+  int calls[MCOR_PHASE_COUNT];
+} phase_calls;
+
+static int count_phase(void* user, double fraction, const char* phase)
+{
+  phase_calls* counts = user;
+  (void)fraction;
+  for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
+  {
+    counts->calls[p] += strcmp(phase, mcor_phase_name((mcor_phase)p)) == 0;
+  }
+  return 0;
+}
+
+/* Each phase may be cancelled at many places, those too that hardly launch anything: loops of the host and
+ * what is filled ask, too. */
+static void test_all_phases_ask(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = core_make_block(12, 0.2, 3, core_slope);
+  const double iso = 0, interval = context->report_interval;
+  const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 4,
+    [MCOR_PHASE_SEARCH_GRID] = 25,
+    [MCOR_PHASE_SEEDS] = 40,
+    [MCOR_PHASE_EXTRACTION] = 18,
+    [MCOR_PHASE_CORRECTION] = 6,
+    [MCOR_PHASE_TRIMMING] = 30,
+    [MCOR_PHASE_OUTPUT] = 11 };
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  context->report_interval = 0;
+  options.progress = count_phase;
+  for (int levels = 0; levels < 2; ++levels)
+  {
+    phase_calls counts = { { 0 } };
+    options.level_limit = levels;
+    options.progress_user = &counts;
+    mcor_release_memory(context);
+    hash_of(context, &input, &options);
+    for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
+    {
+      CORE_CHECK(counts.calls[p] >= expected[p], "%s: asked %d times",
+        mcor_phase_name((mcor_phase)p), counts.calls[p]);
+    }
+  }
+  context->report_interval = interval;
+  core_free_set(&set);
+}
+
 /* Where sums have very many terms, a launch is cut into parts, each worth a report; no bit changes. */
 static void test_long_launches_are_cut(void** state)
 {
@@ -172,6 +224,7 @@ static void test_long_launches_are_cut(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_cancel_in_every_phase),
-    cmocka_unit_test(test_cancel_between_launches), cmocka_unit_test(test_long_launches_are_cut) };
+    cmocka_unit_test(test_cancel_between_launches), cmocka_unit_test(test_all_phases_ask),
+    cmocka_unit_test(test_long_launches_are_cut) };
   return cmocka_run_group_tests_name("progress", tests, core_set_up, core_tear_down);
 }

@@ -107,6 +107,17 @@ class TestFieldXml(unittest.TestCase):
         grouped = [e.get("name") for e in proxy.findall("PropertyGroup/Property")]
         self.assertEqual(sorted(grouped), sorted(e.get("name") for e in elements if e.tag != "InputProperty"))
 
+    def test_places(self):
+        """ParaView fits what nobody has set to the particles' bounds, and takes a value for that which equals the
+        default: where there is none, every value is a wish."""
+        found = 0
+        for path in sorted(PLUGIN.glob("*.xml")):
+            for element in xml.etree.ElementTree.parse(path).iter("DoubleVectorProperty"):
+                if element.find("BoundsDomain") is not None:
+                    self.assertEqual(element.get("default_values"), "none", element.get("name"))
+                    found += 1
+        self.assertEqual(found, 7)
+
     def test_shapes(self):
         """SPH Slice, SPH Line and SPH Volume: the same filter with its shape chosen, where the panel says."""
         root = xml.etree.ElementTree.parse(PLUGIN / "SPHResample.xml")

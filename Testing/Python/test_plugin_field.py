@@ -134,8 +134,9 @@ def check_slices(reader):
 
 def check_gauge(reader):
     """A line upright through the particles, over time as the guide says."""
-    gauge = SPHGauge(Particles=reader)  # noqa: F821
-    gauge.Point1, gauge.Point2 = [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]
+    gauge = SPHGauge(Particles=reader, Point1=[0.0, 0.0, 0.0], Point2=[0.0, 0.0, 1.0])  # noqa: F821
+    assert list(gauge.Point1) == [0.0, 0.0, 0.0] and list(gauge.Point2) == [0.0, 0.0, 1.0]  # not the bounds
+    gauge.Point1 = [0.0, 0.0, -1.0]
     over_time = PlotDataOverTime(Input=gauge, FieldAssociation="Rows", OnlyReportSelectionStatistics=0)
     over_time.UpdatePipeline()
     rows = over_time.GetDataInformation().GetRowDataInformation()

@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the snippets of a section of README.md, or of another page, as they stand there.
 
-test_readme.py SOURCE BUILD SCRATCH PAGE SECTION       "-": what stands before the first section
+test_readme.py SOURCE BUILD SCRATCH PAGE SECTION [PAGE SECTION]   "-": what stands before the first section
 test_readme.py SOURCE --links          all links between pages lead somewhere
 
 SCRATCH becomes what the page calls "this folder": it shows the source tree's files and, as "build",
 the build tree. Fenced blocks with a file name behind the language are written to that file; then the
 blocks of language sh are run. They must succeed, leave every .vtp and .png that the section names, and
-print every "N triangles" that stands in a comment.
+print every "N triangles" that stands in a comment. Of a second section the files alone are written.
 """
 import os
 import re
@@ -91,11 +91,14 @@ def dead_links(source):
                 yield f"{os.path.relpath(path, source)}: {target}"
 
 
-def main(source, build, scratch, page, title):
-    with open(os.path.join(source, page), encoding="utf-8") as file:
-        blocks = section_of(file.read(), title)
+def main(source, build, scratch, *sections):
     make_scratch(source, build, scratch)
-    write_files(blocks, scratch)
+    written = []
+    for page, title in zip(sections[::2], sections[1::2]):
+        with open(os.path.join(source, page), encoding="utf-8") as file:
+            written.append(section_of(file.read(), title))
+        write_files(written[-1], scratch)
+    blocks = written[0]
     found = list(faults(blocks, scratch, run(blocks, scratch)))
     sys.exit("\n".join(found) if found else 0)
 
@@ -103,6 +106,6 @@ def main(source, build, scratch, page, title):
 if __name__ == "__main__":
     if len(sys.argv) == 3 and sys.argv[2] == "--links":
         sys.exit("\n".join(dead_links(sys.argv[1])) or 0)
-    if len(sys.argv) != 6:
+    if len(sys.argv) not in (6, 8):
         sys.exit(__doc__)
     main(*sys.argv[1:])

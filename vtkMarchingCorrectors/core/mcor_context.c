@@ -37,7 +37,7 @@ void mcor_set_default_options(mcor_options* options)
 }
 
 /* Between signs of life, so that cancelling is answered at once and reports cost nothing. */
-#define MCOR_REPORT_SECONDS 0.05
+#define MCOR_REPORT_SECONDS 0.03
 
 mcor_status mcor_create_context(const char* device, mcor_context** context)
 {

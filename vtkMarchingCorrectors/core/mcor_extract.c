@@ -81,7 +81,7 @@ static mcor_status mcor_extract_all(
     surface->statistics.triangles_of_level[0] = surface->statistics.triangles_before_trimming;
   }
   MCOR_TRY(mcor_is_plane(context) ? mcor_finish_lines(context, surface) : MCOR_OK);
-  mcor_measure_surface(surface);
+  MCOR_TRY(mcor_measure_surface(context, surface));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }

@@ -556,7 +556,7 @@ void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, cons
   int64_t v, uint64_t key[MCOR_POINT_KEY]);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 /* mcor_area.c. Into its statistics. */
-void mcor_measure_surface(mcor_surface* surface);
+mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
 /* 256 rows of 16: up to 15 edges, 3 a triangle, see mcor_cell_row; then the number of triangles. */
 void mcor_make_case_table(uint8_t table[256][16]);

@@ -51,7 +51,7 @@ const bool FoundAwaited = (FindAwaited(), true);
 
 /// Plain memory, for a handler that must not allocate any.
 char Failure[PATH_MAX + 256] = "the run failed";
-char Hint[256] = "the OpenCL driver may be at fault, or memory ran out";
+char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
 char StackOfHandler[1 << 16]; // that of a recursion without end is full
 volatile std::sig_atomic_t IsFinished = 0;
 volatile std::sig_atomic_t FinalStatus = 0;
@@ -182,6 +182,27 @@ int Finish(int status)
   FinalStatus = status;
   IsFinished = 1;
   return status;
+}
+
+//------------------------------------------------------------------------------
+std::string FaultsOfDrivers(const std::string& device)
+{
+  const auto variable = [](const char* name) -> std::string
+  {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+  };
+  const std::string own = variable("POCL_CACHE_DIR"), shared = variable("XDG_CACHE_HOME"),
+                    home = variable("HOME");
+  const std::string folder = !own.empty() ? own
+    : !shared.empty()                     ? shared + "/pocl/kcache"
+                                          : home + "/.cache/pocl/kcache";
+  const bool isNamed = device.rfind("built", 0) != 0 && access(folder.c_str(), F_OK) == 0;
+  return "the OpenCL driver may be at fault" +
+    (isNamed
+        ? ", files that PoCL keeps may be damaged (remove the folder " + Printable(folder) + ")"
+        : "") +
+    ", or memory ran out";
 }
 
 //------------------------------------------------------------------------------

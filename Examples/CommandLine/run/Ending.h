@@ -12,6 +12,10 @@ void PrepareForEnding();
 /// All is done: a driver that crashes later, when it is unloaded, changes this status no more.
 int Finish(int status);
 
+/// What a run that crashes may be blamed on. A file that PoCL has kept half-written makes it crash whenever it
+/// loads that: its folder is named where there is one, and `device` does not name the built-in one.
+std::string FaultsOfDrivers(const std::string& device);
+
 /// For as long as it lives, what is said if the program crashes: "FAILURE: ...; HINT".
 class Activity
 {

@@ -118,8 +118,8 @@ public:
     bool isGood = true;
     for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
     {
-      const Activity making(this->Label(i) + ": the run failed",
-        "the OpenCL driver may be at fault, or memory ran out");
+      const Activity making(
+        this->Label(i) + ": the run failed", FaultsOfDrivers(this->Options.Surface->GetDevice()));
       isGood = this->TryStep(i) && isGood;
     }
     this->List(true);

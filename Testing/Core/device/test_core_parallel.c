@@ -5,7 +5,7 @@
  * threads. */
 
 #if defined(__linux__) && !defined(_GNU_SOURCE)
-#define _GNU_SOURCE /* for sched_setaffinity */
+#define _GNU_SOURCE /* for sched_setaffinity, setenv */
 #endif
 
 #include "core_fixture.h"
@@ -95,6 +95,63 @@ static void* check_all(void* good)
   return NULL;
 }
 #endif
+
+#ifndef _WIN32
+typedef struct cancelled_loop
+{
+  int asked, asked_most;
+} cancelled_loop;
+
+static int ask(void* user, double fraction, const char* phase)
+{
+  cancelled_loop* loop = user;
+  (void)fraction, (void)phase;
+  return loop->asked++ == loop->asked_most;
+}
+#endif
+
+/* A loop of a call asks after each of its own slices, and leaves out what no thread has begun: of one thread,
+ * all that follow. */
+static void test_cancelled(void** state)
+{
+#ifdef _WIN32
+  (void)state;
+  skip();
+#else
+  mcor_context* context = *state;
+  const double iso = 0, interval = context->report_interval;
+  const int64_t count = MCOR_SLICES * 64;
+  mcor_options options = core_options(&iso);
+  options.progress = ask;
+  context->run.options = &options;
+  context->run.doing = "a loop";
+  const char* before = getenv("MCOR_THREADS");
+  setenv("MCOR_THREADS", "1", 1);
+  context->report_interval = 0;
+  for (int most = 0; most < 3; ++most)
+  {
+    visits v = { .count = count, .elements = calloc((size_t)count, 1) };
+    cancelled_loop loop = { .asked_most = most };
+    int slices = 0, made = 0;
+    assert_non_null(v.elements);
+    options.progress_user = &loop;
+    const mcor_status status = mcor_parallel_run(context, count, 64, visit, &v, &slices);
+    for (int s = 0; s < MCOR_SLICES; ++s)
+    {
+      made += v.sizes[s] == 64;
+    }
+    assert_int_equal(slices, MCOR_SLICES);
+    assert_int_equal(status, MCOR_CANCELLED);
+    assert_int_equal(loop.asked, most + 1);
+    assert_int_equal(made, most + 1);
+    assert_false(v.strange);
+    free(v.elements);
+  }
+  before ? setenv("MCOR_THREADS", before, 1) : unsetenv("MCOR_THREADS");
+  context->run.options = NULL;
+  context->report_interval = interval;
+#endif
+}
 
 static void test_several_at_once(void** state)
 {
@@ -253,7 +310,8 @@ static void test_first_bad_particle(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_element_once),
-    cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_one_processor),
-    cmocka_unit_test(test_solids_left_out), cmocka_unit_test(test_first_bad_particle) };
+    cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_cancelled),
+    cmocka_unit_test(test_one_processor), cmocka_unit_test(test_solids_left_out),
+    cmocka_unit_test(test_first_bad_particle) };
   return cmocka_run_group_tests_name("parallel", tests, core_set_up, core_tear_down);
 }

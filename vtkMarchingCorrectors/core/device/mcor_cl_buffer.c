@@ -202,6 +202,13 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
   return MCOR_OK;
 }
 
+/* Of so many bytes those to fill or copy between two reports: about 10 ms of memory not touched yet. */
+static size_t mcor_step_of(size_t bytes)
+{
+  const size_t most = (size_t)1 << 25;
+  return bytes < most ? bytes : most;
+}
+
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes)
 {
   return mcor_fill_range(context, buffer, byte, 0, bytes);
@@ -211,12 +218,14 @@ mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last)
 {
   MCOR_TRY(mcor_reserve(context, buffer, last));
-  if (last > first)
+  for (size_t at = first, bytes; at < last; at += bytes)
   {
+    bytes = mcor_step_of(last - at);
     MCOR_CL_TRY(context,
       clEnqueueFillBuffer(
-        context->cl.queue, buffer->mem, &byte, sizeof byte, first, last - first, 0, NULL, NULL),
+        context->cl.queue, buffer->mem, &byte, sizeof byte, at, bytes, 0, NULL, NULL),
       "clEnqueueFillBuffer");
+    MCOR_TRY(mcor_report_launch(context));
   }
   return MCOR_OK;
 }
@@ -224,12 +233,14 @@ mcor_status mcor_fill_range(
 mcor_status mcor_copy(
   mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t to_offset, size_t bytes)
 {
-  if (bytes > 0)
+  for (size_t at = 0, step; at < bytes; at += step)
   {
+    step = mcor_step_of(bytes - at);
     MCOR_CL_TRY(context,
       clEnqueueCopyBuffer(
-        context->cl.queue, from->mem, to->mem, 0, to_offset, bytes, 0, NULL, NULL),
+        context->cl.queue, from->mem, to->mem, at, to_offset + at, step, 0, NULL, NULL),
       "clEnqueueCopyBuffer");
+    MCOR_TRY(mcor_report_launch(context));
   }
   return MCOR_OK;
 }

@@ -132,7 +132,7 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
 
 /* Drivers of GPUs end a launch that takes seconds, and whoever watches a run waits for it to answer: a
  * heavy launch is cut into parts, each to take about so long, as far as single work-items allow. */
-#define MCOR_PART_SECONDS 0.1
+#define MCOR_PART_SECONDS 0.04
 #define MCOR_FIRST_PART 65536 /* work-items of a GPU */
 /* Terms of sums of each compute unit of a CPU, in single precision; in double it has fewer lanes, and more
  * to do. Usual launches are in one part. More are not tried, as work-items beyond the next may have far
@@ -141,10 +141,22 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
 #define MCOR_FIRST_SHARE 32 /* of these, until it is known how long a kernel takes */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
+/* Work-items of the first part, and of one at most. */
+typedef struct mcor_parts
+{
+  double first, limit;
+} mcor_parts;
+
+static bool mcor_is_native(const mcor_context* context)
+{
+  return context->cl.platform == mcor_native_platform();
+}
+
 static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 {
   const mcor_options* options = context->run.options;
-  return load == MCOR_HEAVY && (!context->cl.is_cpu || (options && options->progress));
+  const bool watched = options && options->progress;
+  return load == MCOR_HEAVY ? !context->cl.is_cpu || watched : watched && mcor_is_native(context);
 }
 
 /* Work-items of a part at most. What one does goes with the particles that reach a point. */
@@ -157,6 +169,23 @@ static double mcor_part_limit(const mcor_context* context)
   const int limit =
     context->cl.real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
   return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(terms, 1) : INFINITY;
+}
+
+/* On the built-in device parts cost nothing, where a driver may compile a kernel once more for what does not begin
+ * at 0: so each launch begins with small ones, and they do not become large. */
+static mcor_parts mcor_parts_of(
+  const mcor_context* context, const mcor_kernel* kernel, mcor_load load)
+{
+  const double limit = mcor_part_limit(context);
+  if (mcor_is_native(context))
+  {
+    const double units = context->cl.units;
+    return load == MCOR_HEAVY ? (mcor_parts){ 32 * units, fmin(2048 * units, limit) }
+      : load == MCOR_MEDIUM   ? (mcor_parts){ 1024 * units, 16384 * units }
+                              : (mcor_parts){ (1 << 17) * units, (1 << 20) * units };
+  }
+  const double first = context->cl.is_cpu ? limit / MCOR_FIRST_SHARE : MCOR_FIRST_PART;
+  return (mcor_parts){ kernel->part > 0 ? kernel->part : first, limit };
 }
 
 /* Launches `count` work-items from `offset` on. Drivers compile a kernel for few and for many, from 0 on
@@ -182,11 +211,10 @@ static mcor_status mcor_enqueue_part(
 
 /* Launches all work-items in parts. */
 static mcor_status mcor_enqueue_cut(
-  mcor_context* context, mcor_kernel* kernel, size_t global, size_t group)
+  mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)
 {
-  const double limit = mcor_part_limit(context);
-  const double first = context->cl.is_cpu ? limit / MCOR_FIRST_SHARE : MCOR_FIRST_PART;
-  double part = fmin(kernel->part > 0 ? kernel->part : first, limit);
+  const mcor_parts parts = mcor_parts_of(context, kernel, load);
+  double part = fmin(parts.first, parts.limit);
   size_t count = 0;
   for (size_t offset = 0; offset < global; offset += count)
   {
@@ -202,7 +230,7 @@ static mcor_status mcor_enqueue_cut(
     MCOR_TRY(mcor_enqueue_part(context, kernel, offset, count, group));
     MCOR_TRY(mcor_finish(context));
     const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
-    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest ? fmin(2 * part, limit)
+    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest ? fmin(2 * part, parts.limit)
       : seconds > 2 * MCOR_PART_SECONDS ? fmax(part * MCOR_PART_SECONDS / seconds, (double)group)
                                         : part;
     kernel->part = part;
@@ -241,7 +269,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   }
   const size_t group = mcor_group_size(cl, load);
   const size_t global = (items + group - 1) / group * group;
-  return mcor_is_cut(context, load) ? mcor_enqueue_cut(context, kernel, global, group)
+  return mcor_is_cut(context, load) ? mcor_enqueue_cut(context, kernel, load, global, group)
                                     : mcor_enqueue_part(context, kernel, 0, global, group);
 }
 

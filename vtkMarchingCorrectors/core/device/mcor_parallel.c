@@ -4,6 +4,7 @@
 /* Threads live for one loop: there is no pool to be shared, ended, or lost in a fork. */
 
 #include "mcor_parallel.h"
+#include "mcor_internal.h"
 #include "mcor_system.h"
 
 #include <pthread.h>
@@ -34,15 +35,38 @@ typedef struct mcor_loop
   atomic_int next; /* slice */
 } mcor_loop;
 
-static void* mcor_run_slices(void* data)
+/* False: none is left. */
+static bool mcor_run_slice(mcor_loop* loop)
 {
-  mcor_loop* loop = data;
-  const int slices = loop->slices;
-  for (int s = atomic_fetch_add(&loop->next, 1); s < slices; s = atomic_fetch_add(&loop->next, 1))
+  const int slices = loop->slices, s = atomic_fetch_add(&loop->next, 1);
+  if (s < slices)
   {
     loop->body(loop->data, s, loop->count * s / slices, loop->count * (s + 1) / slices);
   }
+  return s < slices;
+}
+
+static void* mcor_run_slices(void* data)
+{
+  while (mcor_run_slice(data))
+  {
+  }
   return NULL;
+}
+
+/* Progress is told by the calling thread alone. */
+static mcor_status mcor_run_own_slices(mcor_context* context, mcor_loop* loop)
+{
+  mcor_status status = MCOR_OK;
+  while (status == MCOR_OK && mcor_run_slice(loop))
+  {
+    status = context ? mcor_report_launch(context) : MCOR_OK;
+  }
+  if (status != MCOR_OK)
+  {
+    atomic_store(&loop->next, loop->slices);
+  }
+  return status;
 }
 
 int mcor_processors(int count)
@@ -59,7 +83,8 @@ static int mcor_thread_limit(void)
   return threads < MCOR_LOOP_THREADS ? threads : MCOR_LOOP_THREADS;
 }
 
-int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
+mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
+  mcor_slice_body body, void* data, int* slices)
 {
   mcor_loop loop = {
     .count = count, .slices = mcor_slice_count(count, grain), .body = body, .data = data
@@ -74,10 +99,21 @@ int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* 
   {
     ++made;
   }
-  mcor_run_slices(&loop);
+  const mcor_status status = mcor_run_own_slices(context, &loop);
   for (int t = 0; t < made; ++t)
   {
     pthread_join(threads[t], NULL);
   }
-  return loop.slices;
+  if (slices)
+  {
+    *slices = loop.slices;
+  }
+  return status;
+}
+
+int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
+{
+  int slices;
+  mcor_parallel_run(NULL, count, grain, body, data, &slices);
+  return slices;
 }

@@ -5,6 +5,8 @@
 
 /* Loops of the host on all processors that the calling thread may use. */
 
+#include "mcor.h"
+
 #include <stdint.h>
 
 #define MCOR_SLICES 32 /* at most */
@@ -23,6 +25,11 @@ typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t la
  * adds up for each and then in order is the same whatever the number of threads. Returns the number
  * of slices. */
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data);
+
+/* The same in a call, which asks between slices whether it is cancelled: then some are left out. `slices`
+ * becomes their number; NULL: not wanted. A context that is NULL, or in no call, is not asked. */
+mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
+  mcor_slice_body body, void* data, int* slices);
 
 /* The share of one of `count` processes in the machine's processors, of those that the calling thread
  * may use; at least 1. */

@@ -94,8 +94,10 @@ static mcor_status mcor_load_fix(mcor_derive_run* run, mcor_buffer* raw, int c)
   const size_t bytes = (size_t)count * context->cl.fix_size;
   MCOR_TRY(mcor_reserve(context, raw, bytes));
   MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
-  mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_put_fix_slice, &job);
+  const mcor_status status =
+    mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_put_fix_slice, &job, NULL);
   MCOR_TRY(mcor_unmap(context, raw, &job.values));
+  MCOR_TRY(status);
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(raw), MCOR_BUFFER(&run->arrays), MCOR_INT(c));
 }
@@ -280,7 +282,8 @@ static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
   if (status == MCOR_OK)
   {
     mcor_derive_job job = { run, order, moments, slopes };
-    mcor_parallel_for(run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job);
+    status =
+      mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL);
   }
   const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.order, &order),
     mcor_unmap(context, &run->moments, &moments), mcor_unmap(context, &run->slopes, &slopes) };

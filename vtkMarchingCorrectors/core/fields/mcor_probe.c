@@ -177,7 +177,8 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
   }
   if (status == MCOR_OK)
   {
-    mcor_parallel_for(run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job);
+    status =
+      mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL);
   }
   for (int i = 0; i < count; ++i)
   {

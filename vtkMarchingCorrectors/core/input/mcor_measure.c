@@ -252,9 +252,14 @@ static mcor_status mcor_measure_particles(
 {
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
   mcor_status status = mcor_begin_watch(context, input, &job.watch);
+  int slices;
   if (status == MCOR_OK)
   {
-    const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job);
+    status =
+      mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices);
+  }
+  if (status == MCOR_OK)
+  {
     for (int s = 0; s < slices; ++s)
     {
       mcor_merge_measure(&context->measure, &job.measures[s]);

@@ -83,7 +83,9 @@ static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
 {
   mcor_bin* all = job->bins[0];
   mcor_fill_bins(job, 0, 0, 0); /* where there are no particles, nobody does */
-  const int slices = mcor_parallel_for(job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job);
+  int slices;
+  MCOR_TRY(
+    mcor_parallel_run(context, job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job, &slices));
   for (int s = 1; s < slices; ++s)
   {
     for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)

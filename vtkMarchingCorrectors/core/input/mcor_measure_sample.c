@@ -141,8 +141,10 @@ mcor_status mcor_choose_samples(
     job.found[s].count = 0;
     job.found[s].most = chosen->most;
   }
-  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, &job);
-  const mcor_status status = mcor_merge_samples(context, job.found, slices);
+  int slices;
+  mcor_status status =
+    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, &job, &slices);
+  status = status == MCOR_OK ? mcor_merge_samples(context, job.found, slices) : status;
   *chosen = job.found[0];
   free(job.found);
   return status;

@@ -174,7 +174,7 @@ static mcor_status mcor_find_spacing(
   MCOR_TRY(mcor_scale_positions(context, input, job));
   MCOR_TRY(mcor_choose_samples(context, input, MCOR_ALL_PARTICLES, &job->samples));
   const int count = job->samples.count;
-  mcor_parallel_for(count, 1, mcor_near_slice, job);
+  MCOR_TRY(mcor_parallel_run(context, count, 1, mcor_near_slice, job, NULL));
   MCOR_TRY(mcor_find_farthest(context, job, spacing, neighbours));
   for (int s = 0; s < count; ++s)
   {

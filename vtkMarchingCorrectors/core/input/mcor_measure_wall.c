@@ -204,7 +204,9 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
   wall->mass_max =
     mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
-  const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_wall_slice, wall);
+  int slices;
+  MCOR_TRY(
+    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_wall_slice, wall, &slices));
   int64_t weights[MCOR_SAMPLES][2] = { { 0 } };
   for (int n = 0; n < slices * wall->count; ++n)
   {

@@ -339,8 +339,9 @@ static mcor_status mcor_refuse_heavy(
 static mcor_status mcor_make_room(mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
 {
   const int64_t count = job->input->count;
-  const int slices = mcor_parallel_for(count, MCOR_HEAVY_GRAIN, mcor_count_slice, job);
+  int slices;
   int64_t total = 0;
+  MCOR_TRY(mcor_parallel_run(context, count, MCOR_HEAVY_GRAIN, mcor_count_slice, job, &slices));
   for (int s = 0; s < slices; ++s)
   {
     job->to[s] = total;
@@ -368,9 +369,9 @@ static mcor_status mcor_stage_particles(
 {
   const mcor_input* input = job->input;
   MCOR_TRY(mcor_make_room(context, job, staging));
-  const int slices = staging->count > 0
-    ? mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_stage_slice, job)
-    : 0;
+  int slices;
+  MCOR_TRY(mcor_parallel_run(context, staging->count > 0 ? input->count : 0, MCOR_HEAVY_GRAIN,
+    mcor_stage_slice, job, &slices));
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
   context->largest_weight =
     mcor_needs_density(input) ? 100 * pow(context->run.options->h_scale, -3) : 0;

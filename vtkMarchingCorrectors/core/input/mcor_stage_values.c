@@ -57,8 +57,10 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   mcor_value_job job = { context, input, array, component, shift, scale, NULL };
   MCOR_TRY(mcor_reserve(context, raw, bytes));
   MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
-  mcor_parallel_for(grid->count, MCOR_LIGHT_GRAIN, mcor_store_value_slice, &job);
+  const mcor_status status =
+    mcor_parallel_run(context, grid->count, MCOR_LIGHT_GRAIN, mcor_store_value_slice, &job, NULL);
   MCOR_TRY(mcor_unmap(context, raw, &job.values));
+  MCOR_TRY(status);
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
     MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
     MCOR_INT(to_row));

@@ -193,7 +193,8 @@ static mcor_status mcor_flatten_positions(mcor_context* context, mcor_flat* flat
     "Host memory for %lld particles could not be allocated.", (long long)input->count);
   mcor_flatten_job job = { &context->plane, input->positions, flat->positions, false };
   job.positions.components = 3;
-  mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job);
+  MCOR_TRY(
+    mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job, NULL));
   flat->input.positions.data = flat->positions;
   flat->input.positions.type = MCOR_FLOAT64;
   flat->input.positions.components = 3;

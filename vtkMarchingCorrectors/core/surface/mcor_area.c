@@ -76,11 +76,14 @@ static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
+/* context: NULL outside of a call. */
+static mcor_status mcor_find_terms(
+  mcor_context* context, const mcor_surface* surface, mcor_measures* measures)
 {
   mcor_measure_job job = { .surface = surface, .all = measures };
-  const int slices =
-    mcor_parallel_for(surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_terms_slice, &job);
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_terms_slice, &job, &slices));
   measures->triangle_count = surface->triangle_count;
   measures->area_most = measures->volume_most = 0;
   for (int i = 0; i < slices; ++i)
@@ -88,6 +91,12 @@ void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
     measures->area_most = fmax(measures->area_most, job.slices[i].area_most);
     measures->volume_most = fmax(measures->volume_most, job.slices[i].volume_most);
   }
+  return MCOR_OK;
+}
+
+void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
+{
+  mcor_find_terms(NULL, surface, measures);
 }
 
 static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
@@ -116,12 +125,14 @@ static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = (mcor_measures){ .area = areas, .volume = volumes, .open = (int64_t)open };
 }
 
-void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
+static mcor_status mcor_find_sums(mcor_context* context, const mcor_surface* surface,
+  const int64_t* numbers, mcor_measures* measures)
 {
   mcor_measure_job job = { .surface = surface, .numbers = numbers, .all = measures };
-  const int slices =
-    mcor_parallel_for(surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_sums_slice, &job);
+  int slices;
   uint64_t open = 0;
+  MCOR_TRY(mcor_parallel_run(
+    context, surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_sums_slice, &job, &slices));
   measures->area = measures->volume = 0;
   for (int i = 0; i < slices; ++i)
   {
@@ -130,6 +141,12 @@ void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor
     open += (uint64_t)job.slices[i].open;
   }
   measures->open = (int64_t)open;
+  return MCOR_OK;
+}
+
+void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
+{
+  mcor_find_sums(NULL, surface, numbers, measures);
 }
 
 void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics)
@@ -140,18 +157,19 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
 }
 
 /* About one of the points, as coordinates may be large. Lines are measured where they are joined. */
-void mcor_measure_surface(mcor_surface* surface)
+mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
   mcor_measures measures = { .open = 0 };
   if (surface->line_offsets)
   {
-    return;
+    return MCOR_OK;
   }
   for (int d = 0; d < 3 && surface->point_count > 0; ++d)
   {
     measures.origin[d] = surface->points[d];
   }
-  mcor_measure_terms(surface, &measures);
-  mcor_measure_sums(surface, NULL, &measures);
+  MCOR_TRY(mcor_find_terms(context, surface, &measures));
+  MCOR_TRY(mcor_find_sums(context, surface, NULL, &measures));
   mcor_keep_measures(&measures, &surface->statistics);
+  return MCOR_OK;
 }

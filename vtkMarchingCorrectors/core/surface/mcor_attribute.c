@@ -269,16 +269,18 @@ static mcor_status mcor_store_attributes(
   void* view;
   MCOR_TRY(mcor_map(context, means,
     (size_t)vertices * (size_t)attributes->count * context->cl.real_size, false, &view));
-  for (int c = 0; c < attributes->count; ++c)
+  mcor_status status = MCOR_OK;
+  for (int c = 0; c < attributes->count && status == MCOR_OK; ++c)
   {
     const mcor_component* component = &attributes->varying[attributes->first + c];
     const int width = mcor_components(&input->attributes[component->attribute]);
     double* to = surface->attributes[component->attribute] + surface->point_count * width +
       component->component;
     mcor_means job = { context, scanned, view, c, width, component->scale, to };
-    mcor_parallel_for(vertices, MCOR_LIGHT_GRAIN, mcor_store_means, &job);
+    status = mcor_parallel_run(context, vertices, MCOR_LIGHT_GRAIN, mcor_store_means, &job, NULL);
   }
-  return mcor_unmap(context, means, &view);
+  MCOR_TRY(mcor_unmap(context, means, &view));
+  return status;
 }
 
 /* Hands over the components that do not vary: all that are not in the list, which has them in the
@@ -380,8 +382,10 @@ static mcor_status mcor_add_nearest(
   void* view;
   MCOR_TRY(mcor_map(context, indices, bytes, false, &view));
   mcor_nearest job = { context, scanned, view, surface->nearest_particle + surface->point_count };
-  mcor_parallel_for(mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_store_nearest, &job);
-  return mcor_unmap(context, indices, &view);
+  const mcor_status status = mcor_parallel_run(
+    context, mesh->vertex_count, MCOR_LIGHT_GRAIN, mcor_store_nearest, &job, NULL);
+  MCOR_TRY(mcor_unmap(context, indices, &view));
+  return status;
 }
 
 /* Of the vertices that are put out, see mcor_is_output. */

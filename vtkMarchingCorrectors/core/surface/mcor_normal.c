@@ -68,6 +68,27 @@ static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
+/* Triangles between two reports. */
+#define MCOR_NORMAL_STEP (1 << 18)
+
+/* One thread: the order in which a point's triangles are added must not change. */
+static mcor_status mcor_add_triangles(mcor_context* context, const mcor_normals* job)
+{
+  const mcor_surface* surface = job->surface;
+  for (int64_t i = 0; i < surface->triangle_count; ++i)
+  {
+    MCOR_TRY(i % MCOR_NORMAL_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+    const int32_t* t = surface->triangles + 3 * i;
+    double n[3];
+    mcor_triangle_normal(surface, t, job->scale, n);
+    for (int c = 0; c < 9; ++c)
+    {
+      job->sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
+    }
+  }
+  return MCOR_OK;
+}
+
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
 {
   int exponent = 0;
@@ -75,8 +96,9 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
   mcor_normals job = { .surface = surface,
     .scale = ldexp(1, -exponent),
     .all = context->run.options->preview || context->run.options->triangle_normals };
-  const int slices =
-    mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_find_missing, &job);
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, surface->point_count, MCOR_LIGHT_GRAIN, mcor_find_missing, &job, &slices));
   bool some = job.all;
   for (int s = 0; s < slices; ++s)
   {
@@ -89,18 +111,12 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
   job.sums = calloc((size_t)surface->point_count * 3 + 1, sizeof(double));
   MCOR_RETURN_IF(!job.sums, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for the normals could not be allocated.");
-  /* One thread: the order in which a point's triangles are added must not change. */
-  for (int64_t i = 0; i < surface->triangle_count; ++i)
+  mcor_status status = mcor_add_triangles(context, &job);
+  if (status == MCOR_OK)
   {
-    const int32_t* t = surface->triangles + 3 * i;
-    double n[3];
-    mcor_triangle_normal(surface, t, job.scale, n);
-    for (int c = 0; c < 9; ++c)
-    {
-      job.sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
-    }
+    status = mcor_parallel_run(
+      context, surface->point_count, MCOR_LIGHT_GRAIN, mcor_store_sums, &job, NULL);
   }
-  mcor_parallel_for(surface->point_count, MCOR_LIGHT_GRAIN, mcor_store_sums, &job);
   free(job.sums);
-  return MCOR_OK;
+  return status;
 }

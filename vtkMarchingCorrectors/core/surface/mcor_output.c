@@ -308,18 +308,20 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
   delivery->tallies[slice] = tally;
 }
 
-static void mcor_deliver_vertices(
+static mcor_status mcor_deliver_vertices(
   mcor_context* context, const mcor_download* download, double iso, mcor_surface* surface)
 {
   mcor_delivery delivery = {
     .context = context, .download = download, .iso = iso, .surface = surface
   };
-  const int slices =
-    mcor_parallel_for(context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery);
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery, &slices));
   for (int s = 0; s < slices; ++s)
   {
     mcor_add_tally(context, &delivery.tallies[s]);
   }
+  return MCOR_OK;
 }
 
 typedef struct mcor_corners
@@ -354,8 +356,10 @@ static mcor_status mcor_deliver_triangles(
   MCOR_TRY(mcor_map(context, buffer, (size_t)triangles * 3 * sizeof(cl_int), false, &view));
   mcor_corners corners = { view, scanned, surface->triangles + 3 * surface->triangle_count,
     (int32_t)surface->point_count };
-  mcor_parallel_for(3 * triangles, MCOR_LIGHT_GRAIN, mcor_renumber_slice, &corners);
+  const mcor_status status = mcor_parallel_run(
+    context, 3 * triangles, MCOR_LIGHT_GRAIN, mcor_renumber_slice, &corners, NULL);
   MCOR_TRY(mcor_unmap(context, buffer, &view));
+  MCOR_TRY(status);
   mcor_release(context, buffer);
   return MCOR_OK;
 }
@@ -406,7 +410,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
   {
-    mcor_deliver_vertices(context, download, iso, surface);
+    MCOR_TRY(mcor_deliver_vertices(context, download, iso, surface));
     MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->scanned, surface));
     MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));
   }

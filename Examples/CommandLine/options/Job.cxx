@@ -60,8 +60,6 @@ void CheckGauge(const Job& job)
     throw UsageError(
       "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual");
   }
-  Exclude("several processes measure at the times that are stored; leave out mpirun or ",
-    { { LaunchedCount() > 1 && !job.Times.empty(), "--times" } });
 }
 
 void CheckNumbers(const Job& job)

@@ -139,6 +139,7 @@ struct mcor_statistics;
 struct mcor_surface;
 struct vtkMarchingCorrectorsChoice;
 struct vtkMarchingCorrectorsRun;
+struct vtkSPHRanksRoute;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
@@ -696,6 +697,8 @@ private:
   std::vector<double> ListIsoValuesDistributed(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
   void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
+  void ExtractDistributed(vtkSPHRanks& ranks, vtkMarchingCorrectorsChoice& choice, vtkPolyData* own,
+    const vtkSPHRanksRoute& route, mcor_options options, std::int64_t count, vtkPolyData* output);
   void FinishDistributed(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,

@@ -349,8 +349,8 @@ public:
   ///@{
   /**
    * Close the surface at periodic sides and at those of the box's cells, off by default: by flat triangles around what
-   * is above the iso value, which share the points of the surface's border. What encloses the body is then closed,
-   * unless trimming leaves it open. Not with PAIRS.
+   * is above the iso value, which share the points of the surface's border. The free surface with SOLIDS_WALL is closed
+   * at the walls, too. What encloses the body is then closed, unless trimming leaves it open. Not with PAIRS.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);

@@ -71,7 +71,8 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
 {
   const auto measure = forSamples ? mcor_measure_probe_globals : mcor_measure_globals;
   if (!this->CallCoreDistributed(ranks, particles, options,
-        [&](mcor_context* context) { return measure(context, &particles.Core, &options, &globals); }))
+        [&](mcor_context* context)
+        { return measure(context, &particles.Core, &options, &globals); }))
   {
     return false;
   }

@@ -155,8 +155,7 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
   }
   vtkNew<vtkPointData> found;
   const bool hasRoom = wanted.AddTo(found, derivatives, input.Interpolated[0]);
-  if (!this->AgreeDistributed(
-        ranks, hasRoom ? "" : vtkWanted::DescribeNoMemory(derivatives.count)))
+  if (!this->AgreeDistributed(ranks, hasRoom ? "" : vtkWanted::DescribeNoMemory(derivatives.count)))
   {
     return false;
   }

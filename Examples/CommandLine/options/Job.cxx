@@ -219,10 +219,12 @@ void Check(const Job& job)
       " file, or .pvd for a film, not '" + job.Output + "'");
   }
   if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod &&
-    !job.Surface->GetUseBox())
+    !job.Surface->GetUseBox() &&
+    !(job.Surface->GetFreeSurface() &&
+      job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL))
   {
-    throw UsageError(
-      "--capping closes the surface at the sides of a period or a box; add --periodic or --box");
+    throw UsageError("--capping closes the surface at the sides of a period or a box, and the free "
+                     "surface at walls; add --periodic, --box or --solids wall");
   }
   const bool isFree = job.Surface->GetFreeSurface() != 0;
   if (isFree && !job.Scalar.empty())

@@ -217,8 +217,7 @@ private:
     {
       run.Surface = whole;
     }
-    this->Sharing.OnAll(
-      [&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
+    this->Sharing.OnAll([&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
     this->Sharing.OnFirst([&] { this->Keep(i, run, particles, warnings); });
     for (const std::string& warning : warnings)
     {

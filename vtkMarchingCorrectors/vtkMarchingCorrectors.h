@@ -139,6 +139,7 @@ struct mcor_statistics;
 struct mcor_surface;
 struct vtkMarchingCorrectorsChoice;
 struct vtkMarchingCorrectorsRun;
+struct vtkSPHRanksRoute;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
@@ -348,8 +349,8 @@ public:
   ///@{
   /**
    * Close the surface at periodic sides and at those of the box's cells, off by default: by flat triangles around what
-   * is above the iso value, which share the points of the surface's border. What encloses the body is then closed,
-   * unless trimming leaves it open. Not with PAIRS.
+   * is above the iso value, which share the points of the surface's border. The free surface with SOLIDS_WALL is closed
+   * at the walls, too. What encloses the body is then closed, unless trimming leaves it open. Not with PAIRS.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);
@@ -696,6 +697,8 @@ private:
   std::vector<double> ListIsoValuesDistributed(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
   void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
+  void ExtractDistributed(vtkSPHRanks& ranks, vtkMarchingCorrectorsChoice& choice, vtkPolyData* own,
+    const vtkSPHRanksRoute& route, mcor_options options, std::int64_t count, vtkPolyData* output);
   void FinishDistributed(
     vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,

@@ -16,10 +16,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkVersionMacros.h"
-#if MCOR_HAS_RANKS
-#include "vtkSPHRanks.h"
-#include "vtkSPHRanksCalls.h"
-#endif
 
 #include <algorithm>
 #include <cstdlib>
@@ -378,31 +374,6 @@ bool vtkSPHAlgorithm::CallCore(
   }
   return status == MCOR_OK;
 }
-
-#if MCOR_HAS_RANKS
-//------------------------------------------------------------------------------
-bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
-  mcor_options& options, const std::function<int(mcor_context*)>& call,
-  const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
-{
-  int place, count;
-  ranks.FindNeighbors(place, count);
-  vtkSPHRanksCalls calls(ranks, near);
-  options.ranks = calls.Get();
-  std::string message;
-  const int status = this->RunCore(particles, options, call, message, place, count);
-  options.ranks = nullptr;
-  calls.End(status != MCOR_OK);
-  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
-  ranks.Reduce(vtkSPHRanks::GREATEST, &cancelled, 1);
-  const bool good = ranks.Agree(message);
-  if (!good)
-  {
-    this->Fail(message);
-  }
-  return good && cancelled == 0;
-}
-#endif
 
 //------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::IsShared() const

@@ -52,6 +52,7 @@ class vtkPointSet;
 class vtkSPHParticles;
 class vtkSPHRanks;
 struct mcor_context;
+struct mcor_globals;
 struct mcor_input;
 struct mcor_options;
 struct vtkSPHParticlesChoice;
@@ -468,6 +469,15 @@ protected:
     const std::function<int(mcor_context*)>& call,
     const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near =
       nullptr);
+
+  /** Of all ranks: false where one has a problem, which is reported. */
+  bool AgreeDistributed(vtkSPHRanks& ranks, std::string problem);
+  /** Whether any rank has fluid; the first one says so if not. */
+  bool HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
+    vtkSPHParticles& particles, const std::string& consequence);
+  /** What is global, for a surface, or for mcor_probe and mcor_derive. False if that failed, or in a plane. */
+  bool MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
+    mcor_options& options, bool forSamples, mcor_globals& globals);
 
   void FillChoice(vtkSPHParticlesChoice& choice) const;
   /** Names the fluid in the choice, where it is to be found, and is. */

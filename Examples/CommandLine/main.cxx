@@ -85,7 +85,7 @@ Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
   {
     run.Surface = nullptr; // not two at once
     run = Extract(job, messages);
-    warnings = Warnings(run.Surface, run.Statistics, messages);
+    warnings = Warnings(run, messages);
     pieces = ComponentTable(job);
     pieces.Add(run, particles, messages);
     runs.emplace_back(run.Statistics);

@@ -91,7 +91,8 @@ WORDS = {
     "box": "(x0, x1, y0, y1, z0, z1): only the cells with their middle in it; sides may be infinite.",
     "periodic": "(x0, x1, y0, y1, z0, z1): particles repeat with this period, along an axis with x0 < x1; or three "
                 "lengths, 0: open.",
-    "capping": "True: the surface is closed at the sides of the period and of the box.",
+    "capping": "True: the surface is closed at the sides of the period and of the box; the free surface at walls "
+               "where it ends there (wall_share).",
     "normals": "True: unit normals from the field's gradient.",
     "gradients": "True: the gradient of the field; probe(): of every attribute.",
     "weight_sum": "True: the sum of the weights at the points.",

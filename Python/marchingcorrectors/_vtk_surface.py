@@ -247,7 +247,7 @@ def add_parameters(data, particles, arguments, wall_share):
     periodic = any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3))
     if periodic:
         add_real(data, "PeriodicBounds", *o.periodic)
-    if periodic or o.capping == 2:  # MCOR_CAP_BOX
+    if periodic or o.capping:
         add_count(data, "Capping", o.capping > 0)
     add_real(data, "HScaleFactor", o.h_scale)
     add_real(data, "NodeThreshold", o.node_threshold)

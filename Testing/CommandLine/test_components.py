@@ -144,6 +144,23 @@ class Components(CommandLineTest):
         self.assertAlmostEqual(float(capped["volume"]), side + 0.5, delta=0.06)
         self.assertEqual(int(capped["particles"]), sum(x < side for x, y, z in self.points) - 4)
 
+    def test_walls(self):
+        """A block in a tank that is open above: what walls leave open, caps close, and all of the fluid is in it."""
+        points, arrays = files.lattice(16)
+        spacing = files.SPACING
+        layer = [any(abs(c) > 0.56 for c in (x, y)) or z < -0.56 for x, y, z in points]
+        kept = [i for i, (x, y, z) in enumerate(points) if layer[i] or z < 0.3]
+        arrays = {name: [values[i] for i in kept] for name, values in arrays.items()}
+        arrays["Kind"] = [int(layer[i]) for i in kept]
+        files.write_vtp(self.input, [points[i] for i in kept], arrays)
+        walls = ["--fluid", "Kind=0", "--solids", "wall", "--wall-share", "0.4"]
+        opened = self.pieces(*walls)
+        self.assertEqual({row["closed"] for row in opened}, {"0"})
+        water, = self.pieces(*walls, "--capping")
+        fluid = len(kept) - sum(arrays["Kind"])
+        self.assertEqual((water["closed"], water["particles"]), ("1", str(fluid)))
+        self.assertAlmostEqual(float(water["volume"]) / (fluid * spacing ** 3), 0.95, delta=0.05)
+
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
                                   ([*FREE, "--least-volume", "1"], "no use for --least-volume"),

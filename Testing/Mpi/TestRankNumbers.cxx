@@ -13,13 +13,16 @@
 #include "vtkMPIController.h"
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHComponents.h"
 #include "vtkSPHGauge.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
+#include "vtkVariant.h"
 #include "vtkXMLPolyDataReader.h"
 
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -192,6 +195,103 @@ int CheckPart(const Case& tried, int part, vtkPolyData* particles, const Result&
   return problem.empty() ? 0 : 1;
 }
 
+// ---- shifts --------------------------------------------------------------------------------------
+
+constexpr double Cube = 0.05, Period[6] = { -1.0, 1.0, 0.0, 0.0, -1.0, 0.5 };
+
+/// The pieces of all particles shifted by so many cubes along the periods.
+Result SplitShifted(
+  vtkPolyData* particles, const int cubes[3], vtkMultiProcessController* controller)
+{
+  vtkNew<vtkPolyData> shifted;
+  vtkNew<vtkPoints> points;
+  shifted->ShallowCopy(particles);
+  points->SetDataTypeToDouble();
+  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+  {
+    double at[3];
+    particles->GetPoint(i, at);
+    points->InsertNextPoint(at[0] + cubes[0] * Cube, at[1], at[2] + cubes[2] * Cube);
+  }
+  shifted->SetPoints(points);
+  vtkNew<vtkMarchingCorrectors> filter;
+  vtkNew<vtkSPHComponents> split;
+  filter->FreeSurfaceOn();
+  filter->SetCubeSizeModeToUniform();
+  filter->SetCubeSize(Cube);
+  filter->SetPeriodicBounds(Period);
+  split->SetPeriodicBounds(Period);
+  return Split(filter, split, shifted, controller);
+}
+
+/// Whether a piece is the other one, shifted: its number is that of the row.
+std::string CompareShifted(vtkTable* table, vtkTable* other, vtkIdType row, const int cubes[3])
+{
+  const auto differs = [&](const char* column, double tolerance)
+  {
+    const double a = table->GetValueByName(row, column).ToDouble(),
+                 b = other->GetValueByName(row, column).ToDouble();
+    return !(
+      std::abs(a - b) <= tolerance * (1e-3 + std::abs(b)) || (std::isnan(a) && std::isnan(b)));
+  };
+  for (const char* column : { "component", "parent", "closed", "particles" })
+  {
+    if (differs(column, 0.0))
+    {
+      return column;
+    }
+  }
+  for (const char* column : { "area", "volume", "diameter" })
+  {
+    if (differs(column, 1e-3))
+    {
+      return column;
+    }
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const char* column = a == 0 ? "x" : a == 1 ? "y" : "z";
+    const double d = table->GetValueByName(row, column).ToDouble() -
+      other->GetValueByName(row, column).ToDouble() - cubes[a] * Cube;
+    const double length = Period[2 * a + 1] - Period[2 * a];
+    if (table->GetValueByName(row, "closed").ToInt() == 1 &&
+      std::abs(length > 0.0 ? std::remainder(d, length) : d) > 1e-3)
+    {
+      return column;
+    }
+  }
+  return "";
+}
+
+/// Pieces have the numbers, wherever the period begins, and however many ranks share them.
+int CheckShifts(const std::string& folder, vtkMPIController* controller)
+{
+  const Data particles = Read(folder + "/double_dam_break_small.vtp");
+  const int none[3] = { 0, 0, 0 }, shifts[3][3] = { { 7, 0, 0 }, { -19, 0, 11 }, { 0, 0, -14 } };
+  const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
+  const Table alone = SplitShifted(particles, none, nullptr).Rows;
+  int failures = alone->GetNumberOfRows() < 5 ? 1 : 0;
+  for (const int* shift : shifts)
+  {
+    const Table table = SplitShifted(TakePart(particles, 0, rank, count), shift, controller).Rows;
+    if (rank > 0)
+    {
+      continue;
+    }
+    std::string problem =
+      table->GetNumberOfRows() == alone->GetNumberOfRows() ? "" : "another number of pieces";
+    for (vtkIdType row = 0; row < alone->GetNumberOfRows() && problem.empty(); ++row)
+    {
+      problem = CompareShifted(table, alone, row, shift);
+      problem += problem.empty() ? "" : " of piece " + std::to_string(row);
+    }
+    std::printf("%d pieces, shifted by %d %d %d: %s\n", static_cast<int>(alone->GetNumberOfRows()),
+      shift[0], shift[1], shift[2], problem.empty() ? "same" : problem.c_str());
+    failures += problem.empty() ? 0 : 1;
+  }
+  return failures;
+}
+
 int Check(int number, bool some, const std::string& folder, vtkMPIController* controller)
 {
   const Case& tried = Cases[static_cast<std::size_t>(number)];
@@ -231,6 +331,7 @@ int main(int argc, char* argv[])
   {
     failures += Check(number, argc > 2, argv[1], controller);
   }
+  failures += CheckShifts(argv[1], controller);
   controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
   controller->Finalize();
   return all == 0 ? 0 : 1;

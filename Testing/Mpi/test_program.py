@@ -18,8 +18,8 @@ import time
 import unittest
 
 import numpy as np
-from particle_pieces import corners, difference, read, write, write_pieces
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from particle_pieces import corners, difference, read, take, write, write_pieces
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
@@ -181,6 +181,59 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.csv"), "--gauge", "a=0,0,0:0,0,1", "--smoothing-length",
                                         "Nope"), "Nope")
         self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "could not be written")
+
+    def write_series(self):
+        """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""
+        particles = read(PARTICLES)
+        count = particles.GetNumberOfPoints()
+        ids = numpy_to_vtk(np.arange(count, dtype=np.int32), deep=True)
+        ids.SetName("ParticleId")
+        particles.GetPointData().AddArray(ids)
+        write(particles, self.path("first.vtp"))
+        write_pieces(self.path("first.vtp"), self.folder.name, 5)
+        velocity = vtk_to_numpy(particles.GetPointData().GetArray("Velocity"))
+        moved = take(particles, np.random.default_rng(3).permutation(count))
+        places = vtk_to_numpy(moved.GetPoints().GetData())
+        places += 0.02 * velocity[vtk_to_numpy(moved.GetPointData().GetArray("ParticleId"))]
+        write(moved, self.path("second.vtp"))
+        with open(self.path("third.vtp"), "w", encoding="ascii") as stream:
+            stream.write('<?xml version="1.0"?><VTKFile type="PolyData">')
+        files = enumerate(("pieces.pvtp", "second.vtp", "third.vtp"))
+        steps = "".join(f'<DataSet timestep="{0.02 * i}" file="{name}"/>' for i, name in files)
+        with open(self.path("steps.pvd"), "w", encoding="ascii") as stream:
+            stream.write(f'<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>{steps}</Collection></VTKFile>')
+        return self.path("steps.pvd")
+
+    def check_same_files(self, names):
+        for name in names:
+            self.assertGreater(os.path.getsize(self.path("alone/" + name)), 20)
+            self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
+
+    def test_film(self):
+        """A film with its tables, at stored times and between them, is that of one process, byte for byte; so are gauges. A step
+        that fails is named once, and the others are made."""
+        steps = self.write_series()
+        gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
+        for name, run in (("alone", self.run_alone), ("ranks", self.run_ranks)):
+            os.mkdir(self.path(name))
+            how = ["--free-surface", *gauges, "--components", self.path(name + "/pieces.csv"), "--least-particles", "2",
+                   "--numbers", self.path(name + "/numbers.csv"), "--periodic", "0,0,3.1"]
+            done = run(steps, self.path(name + "/film_%04d.ply"), *how, "--times", "0,0.007,0.02")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stdout.count(" triangles, "), 3, done.stdout)
+            done = run(steps, self.path(name + "/list.pvd"), "--free-surface")
+            self.check_fails(done, "third.vtp", "list_0002.vtp")
+            self.assertEqual(done.stdout.count(" triangles, "), 2, done.stdout)
+            done = run(steps, self.path(name + "/levels.csv"), *gauges, "--times", "0.007,0.02")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.check_same_files(["film_0000.ply", "film_0001.ply", "film_0002.ply", "pieces.csv", "numbers.csv", "list.pvd",
+                               "levels.csv"])
+        alone, ranks = (read(self.path(name + "/list_0001.vtp")) for name in ("alone", "ranks"))
+        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
+        with open(self.path("ranks/numbers.csv"), encoding="utf-8") as stream:
+            self.assertEqual(len(set(stream)), 4)
+        picture = self.run_ranks(steps, self.path("o.pvd"), "--free-surface", "--screenshot", self.path("o_%04d.png"))
+        self.check_fails(picture, "--screenshot")
 
     def test_components(self):
         """The table of pieces, and the numbers that points have, are those of one process, byte for byte."""

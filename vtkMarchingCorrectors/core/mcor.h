@@ -260,10 +260,11 @@ extern "C"
      * value; MCOR_CAP_BOX: at those of the box, too, which are the sides of its cells (of ranks, of whole_box). These
      * caps share the points of the surface's border; their other points are nodes of the
      * virtual grid, with normals pointing out of the period, boundary flag 8, and a meaningless
-     * residual. Trimming also cuts caps, and leaves its own border open. All cubes then have the
-     * smallest size. With a box and MCOR_CAP_PERIOD, those sides of its cells are closed that lie on a periodic side; a box
+     * residual. Trimming also cuts caps, and leaves its own border open; but where MCOR_WEIGHT_SUM ends at
+     * solids, see wall_share, caps with either value close it, by points on lattice edges whose normals are those of
+     * triangles. All cubes then have the smallest size. With a box and MCOR_CAP_PERIOD, those sides of its cells are closed that lie on a periodic side; a box
      * that no particle reaches gets no caps, though with the iso value 0 of a sum it counts as above.
-     * Not with MCOR_PAIRS; no effect without a period or box. */
+     * Not with MCOR_PAIRS; no effect without a period, box or walls. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, while

@@ -360,6 +360,16 @@ static inline double mcor_get_real(const mcor_context* context, const void* arra
                                                 : ((const double*)array)[i];
 }
 
+static inline void mcor_put_real(const mcor_context* context, void* array, int64_t i, double value)
+{
+  if (context->cl.real_size == sizeof(float))
+  {
+    ((float*)array)[i] = (float)value;
+    return;
+  }
+  ((double*)array)[i] = value;
+}
+
 /* As the device has it. */
 static inline double mcor_real_of(const mcor_context* context, double value)
 {
@@ -552,6 +562,9 @@ void mcor_list_surface_arrays(
   mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
 /* mcor_point_key.c */
 mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts);
+/* In the order of vertices: by block, brick and node, each by z, y, x. Fits 2^61, as the lattice has no more
+ * than 2^15 + 2 blocks along an axis. Of a cell's lowest node it is the cell's key. */
+uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
   int64_t v, uint64_t key[MCOR_POINT_KEY]);
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);

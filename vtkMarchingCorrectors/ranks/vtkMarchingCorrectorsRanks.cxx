@@ -87,21 +87,11 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   choice.Scalar = this->FindFirstRequestDistributed(ranks, own);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput mine(choice, own);
-  std::string message = mine.Collect() ? "" : mine.Error;
+  const bool isUsable = mine.Collect();
   this->SetUsedNames(&mine);
-  if (!ranks.Agree(message))
-  {
-    this->Fail(message);
-    return;
-  }
-  std::int64_t fluid = mine.FluidCount;
-  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-  if (ranks.GetRank() == 0)
-  {
-    fluid == 0 ? this->WarnOfNoFluid(choice, "no surface")
-               : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
-  }
-  if (fluid == 0 || !this->SetPeriodDistributed(ranks, own, options))
+  if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error) ||
+    !this->HasFluidDistributed(ranks, choice, mine, "no surface") ||
+    !this->SetPeriodDistributed(ranks, own, options))
   {
     return;
   }
@@ -114,15 +104,8 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreDistributed(ranks, mine, options,
-        [&](mcor_context* context)
-        { return mcor_measure_globals(context, &mine.Core, &options, &globals); }))
+  if (!this->MeasureGlobalsDistributed(ranks, mine, options, false, globals))
   {
-    return;
-  }
-  if (globals.measured.plane.axis > 0)
-  {
-    this->Fail(vtkSPHRanksNoPlane);
     return;
   }
   this->EstimateDistributed(ranks, mine.Core, options);
@@ -131,6 +114,16 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, globals)
                                             : vtkSPHCountWork(mine.Core, options);
   const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
+  options.globals = &globals;
+  this->ExtractDistributed(ranks, choice, own, route, options, counts[0], output);
+}
+
+//------------------------------------------------------------------------------
+// Of the particles that this rank has, `count` on all, to those that are near its box.
+void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanks& ranks,
+  vtkMarchingCorrectorsChoice& choice, vtkPolyData* own, const vtkSPHRanksRoute& route,
+  mcor_options options, std::int64_t count, vtkPolyData* output)
+{
   const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
   const bool isNamed =
     choice.Scalar.Name.empty() && choice.Scalar.Array && choice.Scalar.Array->GetName();
@@ -141,14 +134,11 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
     choice.Scalar.Array = near->GetPointData()->GetAbstractArray(scalarName.c_str());
   }
   vtkMarchingCorrectorsInput input(choice, near);
-  message = input.Collect() ? "" : input.Error;
-  if (!ranks.Agree(message))
+  if (!this->AgreeDistributed(ranks, input.Collect() ? "" : input.Error))
   {
-    this->Fail(message);
     return;
   }
   mcor_options boxed = options;
-  boxed.globals = &globals;
   std::copy(route.Box, route.Box + 6, boxed.box);
   mcor_surface surface = {};
   const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
@@ -166,7 +156,7 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
         [&route](const double at[3], double reach, std::vector<int>& found)
         { route.FindReached(at, reach, found); }))
   {
-    this->FinishDistributed(ranks, { input, options, route, surface, counts[0] }, output);
+    this->FinishDistributed(ranks, { input, options, route, surface, count }, output);
   }
 }
 

@@ -75,33 +75,25 @@ void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* 
   {
     return;
   }
-  std::int64_t fluid = 0;
+  bool hasFluid = false;
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
   this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
-    const bool usable =
+    const bool isUsable =
       mine.CollectArray(this->FindFirstRequestDistributed(ranks, own)) && mine.CollectParticles();
-    std::string message = usable ? "" : mine.Error;
     this->SetUsedNames(&mine);
-    if (!ranks.Agree(message))
+    if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
     {
-      this->Fail(message);
       return;
     }
-    fluid = mine.FluidCount;
-    ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-    if (ranks.GetRank() == 0)
-    {
-      fluid == 0 ? this->WarnOfNoFluid(choice, "there are no derivatives")
-                 : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
-    }
+    hasFluid = this->HasFluidDistributed(ranks, choice, mine, "there are no derivatives");
   }
   vtkNew<vtkPointData> found;
   const vtkIdType count = particles ? particles->GetNumberOfPoints() : 0;
-  if ((fluid == 0 || this->DeriveDistributed(ranks, own, mine, numbers, count, found)) &&
+  if ((!hasFluid || this->DeriveDistributed(ranks, own, mine, numbers, count, found)) &&
     particles && output)
   {
     output->ShallowCopy(particles);
@@ -128,15 +120,8 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreDistributed(ranks, mine, options,
-        [&](mcor_context* context)
-        { return mcor_measure_probe_globals(context, &mine.Core, &options, &globals); }))
+  if (!this->MeasureGlobalsDistributed(ranks, mine, options, true, globals))
   {
-    return false;
-  }
-  if (globals.measured.plane.axis > 0)
-  {
-    this->Fail(vtkSPHRanksNoPlane);
     return false;
   }
   const std::string name = mine.Interpolated[0].Name;
@@ -152,10 +137,9 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
   vtkSPHParticles input(mine.Description, near);
   const vtkSPHRequest request = { near->GetPointData()->GetAbstractArray(name.c_str()), name,
     true };
-  std::string message = input.CollectArray(request) && input.CollectParticles() ? "" : input.Error;
-  if (!ranks.Agree(message))
+  const bool isUsable = input.CollectArray(request) && input.CollectParticles();
+  if (!this->AgreeDistributed(ranks, isUsable ? "" : input.Error))
   {
-    this->Fail(message);
     return false;
   }
   options.globals = &globals;
@@ -170,12 +154,9 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
     return false;
   }
   vtkNew<vtkPointData> found;
-  message = wanted.AddTo(found, derivatives, input.Interpolated[0])
-    ? ""
-    : vtkWanted::DescribeNoMemory(derivatives.count);
-  if (!ranks.Agree(message))
+  const bool hasRoom = wanted.AddTo(found, derivatives, input.Interpolated[0]);
+  if (!this->AgreeDistributed(ranks, hasRoom ? "" : vtkWanted::DescribeNoMemory(derivatives.count)))
   {
-    this->Fail(message);
     return false;
   }
   vtkSPHReturnArrays(ranks, found, near->GetNumberOfPoints(),

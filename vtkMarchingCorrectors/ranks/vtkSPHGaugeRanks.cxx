@@ -103,21 +103,13 @@ void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
   this->FillChoice(choice);
   this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
-  std::string message = counts[0] == 0 || mine.CollectParticles() ? "" : mine.Error;
+  const bool isUsable = counts[0] == 0 || mine.CollectParticles();
   this->SetUsedNames(counts[0] > 0 ? &mine : nullptr);
-  if (!ranks.Agree(message))
+  if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
   {
-    this->Fail(message);
     return;
   }
-  std::int64_t fluid = mine.FluidCount;
-  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-  if (counts[0] > 0 && ranks.GetRank() == 0)
-  {
-    fluid == 0 ? this->WarnOfNoFluid(choice, "all gauges are dry")
-               : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
-  }
-  if (fluid > 0)
+  if (counts[0] > 0 && this->HasFluidDistributed(ranks, choice, mine, "all gauges are dry"))
   {
     this->MeasureDistributed(ranks, own, mine, gauges, output);
   }
@@ -160,10 +152,8 @@ void vtkSPHGauge::MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSP
   const vtkSmartPointer<vtkPolyData> near =
     vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
   vtkSPHParticles input(mine.Description, near);
-  std::string message = input.CollectParticles() ? "" : input.Error;
-  if (!ranks.Agree(message))
+  if (!this->AgreeDistributed(ranks, input.CollectParticles() ? "" : input.Error))
   {
-    this->Fail(message);
     return;
   }
   options.globals = &globals;

@@ -26,6 +26,8 @@
 
 namespace
 {
+using Lists = std::vector<std::vector<vtkIdType>>;
+
 /** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
 constexpr double MarginCubes = 4.0;
 
@@ -88,10 +90,36 @@ std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points, const vtkSPHRanksP
   return places;
 }
 
-/** Numbers one after the other, so many for each rank. */
-std::vector<std::vector<vtkIdType>> ListInTurn(const std::vector<vtkIdType>& counts)
+/** Of points, those that each rank owns. */
+Lists ListOwners(vtkPolyData* points, const vtkSPHRanksRoute& route, int ranks)
 {
-  std::vector<std::vector<vtkIdType>> lists;
+  Lists owners(static_cast<std::size_t>(ranks));
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double at[3];
+    points->GetPoint(i, at);
+    owners[static_cast<std::size_t>(route.FindOwner(at))].push_back(i);
+  }
+  return owners;
+}
+
+/** What stands at these places of the numbers. */
+Lists ListAt(Lists places, const std::vector<vtkIdType>& numbers)
+{
+  for (std::vector<vtkIdType>& list : places)
+  {
+    for (vtkIdType& place : list)
+    {
+      place = numbers[static_cast<std::size_t>(place)];
+    }
+  }
+  return places;
+}
+
+/** Numbers one after the other, so many for each rank. */
+Lists ListInTurn(const std::vector<vtkIdType>& counts)
+{
+  Lists lists;
   vtkIdType next = 0;
   for (const vtkIdType count : counts)
   {
@@ -137,11 +165,10 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
   {
-    std::string message = mine.CollectParticles() ? "" : mine.Error;
+    const bool isUsable = mine.CollectParticles();
     this->SetUsedNames(&mine);
-    if (!ranks.Agree(message))
+    if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
     {
-      this->Fail(message);
       return;
     }
     if (this->InterpolateAttributes)
@@ -149,14 +176,9 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
       mine.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
     }
   }
-  std::int64_t fluid = mine.FluidCount;
-  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-  if (counts[0] > 0 && ranks.GetRank() == 0)
-  {
-    fluid == 0 ? this->WarnOfNoFluid(choice, "no point is valid")
-               : this->WarnOnce(WARN_TYPE_ARRAY, mine.DescribeUnusedType());
-  }
-  if (fluid > 0 && counts[1] > 0)
+  const bool hasFluid =
+    counts[0] > 0 && this->HasFluidDistributed(ranks, choice, mine, "no point is valid");
+  if (hasFluid && counts[1] > 0)
   {
     this->ProbeDistributed(ranks, own, mine, points, output);
   }
@@ -184,15 +206,8 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreDistributed(ranks, mine, options,
-        [&](mcor_context* context)
-        { return mcor_measure_probe_globals(context, &mine.Core, &options, &globals); }))
+  if (!this->MeasureGlobalsDistributed(ranks, mine, options, true, globals))
   {
-    return false;
-  }
-  if (globals.measured.plane.axis > 0)
-  {
-    this->Fail(vtkSPHRanksNoPlane);
     return false;
   }
   std::vector<vtkIdType> numbers;
@@ -201,26 +216,15 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   FindBox(ranks, within, MarginCubes * globals.measured.cube, options.box);
   const vtkSPHRanksRoute route =
     vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, within });
-  const auto count = static_cast<std::size_t>(ranks.GetCount());
-  std::vector<std::vector<vtkIdType>> to(count), home(count);
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-  {
-    double at[3];
-    places->GetPoint(static_cast<vtkIdType>(i), at);
-    const auto owner = static_cast<std::size_t>(route.FindOwner(at));
-    to[owner].push_back(static_cast<vtkIdType>(i));
-    home[owner].push_back(numbers[i]);
-  }
+  const Lists to = ListOwners(places, route, ranks.GetCount());
   const vtkSmartPointer<vtkPolyData> near =
     vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
   std::vector<vtkIdType> from;
   const vtkSmartPointer<vtkPolyData> here = vtkSPHSendParticles(ranks, places, to, &from);
 
   vtkSPHParticles input(mine.Description, near);
-  std::string message = input.CollectParticles() ? "" : input.Error;
-  if (!ranks.Agree(message))
+  if (!this->AgreeDistributed(ranks, input.CollectParticles() ? "" : input.Error))
   {
-    this->Fail(message);
     return false;
   }
   if (this->InterpolateAttributes)
@@ -241,7 +245,7 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   }
   vtkNew<vtkPointData> found, came;
   samples.AddTo(found);
-  vtkSPHReturnArrays(ranks, found, here->GetNumberOfPoints(), ListInTurn(from), home,
+  vtkSPHReturnArrays(ranks, found, here->GetNumberOfPoints(), ListInTurn(from), ListAt(to, numbers),
     points ? points->GetNumberOfPoints() : 0, came);
   vtkSPHAddSampleShares(ranks, statistics, route, here->GetNumberOfPoints());
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))

@@ -430,7 +430,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   {
     vtkSPHAddReal(fieldData, "PeriodicBounds", { p[0], p[1], p[2], p[3], p[4], p[5] });
   }
-  if (isPeriodic || o.capping == MCOR_CAP_BOX)
+  if (isPeriodic || o.capping != MCOR_CAP_NONE)
   {
     vtkSPHAddCount(fieldData, "Capping", { o.capping != MCOR_CAP_NONE ? 1 : 0 });
   }

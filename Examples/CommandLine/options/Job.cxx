@@ -60,8 +60,6 @@ void CheckGauge(const Job& job)
     throw UsageError(
       "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual");
   }
-  Exclude("several processes measure at the times that are stored; leave out mpirun or ",
-    { { LaunchedCount() > 1 && !job.Times.empty(), "--times" } });
 }
 
 void CheckNumbers(const Job& job)
@@ -221,10 +219,12 @@ void Check(const Job& job)
       " file, or .pvd for a film, not '" + job.Output + "'");
   }
   if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod &&
-    !job.Surface->GetUseBox())
+    !job.Surface->GetUseBox() &&
+    !(job.Surface->GetFreeSurface() &&
+      job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL))
   {
-    throw UsageError(
-      "--capping closes the surface at the sides of a period or a box; add --periodic or --box");
+    throw UsageError("--capping closes the surface at the sides of a period or a box, and the free "
+                     "surface at walls; add --periodic, --box or --solids wall");
   }
   const bool isFree = job.Surface->GetFreeSurface() != 0;
   if (isFree && !job.Scalar.empty())

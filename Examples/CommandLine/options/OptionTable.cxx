@@ -255,7 +255,7 @@ const Options TheMethod = {
     SetPeriod },
   { "--capping", "",
     "close the surface at the sides of the period and of the box, where values are above the iso "
-    "value",
+    "value; the free surface at walls, too, with --solids wall",
     [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
   { "--seeds", "pairs|complete",
     "seeds as in the paper, or complete ones, which miss nothing (default)",

@@ -61,18 +61,30 @@ vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(RankSession& session,
   const std::vector<std::string>& files, const std::vector<std::string>& walls,
   MessageCapture* messages)
 {
+  if (files.size() > 1 || !walls.empty())
+  {
+    return ShareParticles(session,
+      [&] { return AddWalls(ReadParticles(files, messages), ReadWalls(walls, messages)); });
+  }
+  vtkSmartPointer<vtkPointSet> particles;
+  session.RunOnAll(
+    [&] {
+      particles = ReadParticlesPart(files.front(), session.GetRank(), session.GetCount(), messages);
+    });
+  return GiveArrays(session, particles);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> ShareParticles(
+  RankSession& session, const std::function<vtkSmartPointer<vtkPointSet>()>& make)
+{
   vtkSmartPointer<vtkPointSet> particles = vtkSmartPointer<vtkPolyData>::New();
   session.RunOnAll(
     [&]
     {
-      if (files.size() == 1 && walls.empty())
+      if (session.IsFirst())
       {
-        particles =
-          ReadParticlesPart(files.front(), session.GetRank(), session.GetCount(), messages);
-      }
-      else if (session.IsFirst())
-      {
-        particles = AddWalls(ReadParticles(files, messages), ReadWalls(walls, messages));
+        particles = make();
       }
     });
   return GiveArrays(session, particles);

@@ -5,6 +5,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct Job;
 vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
   RankSession& session, const std::vector<std::string>& files,
   const std::vector<std::string>& walls, MessageCapture* messages);
+
+/// The same of particles that the first process makes.
+vtkSmartPointer<vtkPointSet> ShareParticles(
+  RankSession& session, const std::function<vtkSmartPointer<vtkPointSet>()>& make);
 
 /// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
 void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles);

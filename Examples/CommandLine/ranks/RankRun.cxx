@@ -4,16 +4,18 @@
 
 #include "ColorScale.h"
 #include "ComponentRun.h"
+#include "Film.h"
+#include "GaugeRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "ProbeRun.h"
-#include "RankGauge.h"
 #include "RankOutput.h"
 #include "RankParticles.h"
 #include "RankProbe.h"
 #include "RankSession.h"
+#include "RankSteps.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
 #include "SurfaceFile.h"
@@ -35,14 +37,14 @@ namespace
 
 void CheckUse(const Job& job, const RankSession& session, MessageCapture* messages)
 {
-  if (job.IsFilm() || !job.Picture.File.empty() || job.Repeat > 1)
+  if (!job.Picture.File.empty() || job.Repeat > 1)
   {
-    throw std::runtime_error("several processes share a surface, a probe or gauges, but no film, "
+    throw std::runtime_error("several processes share a surface, a film, a probe or gauges, but no "
                              "--screenshot or --repeat; run these without mpirun");
   }
-  if (job.IsGauge())
+  if (job.IsGauge() || job.IsFilm())
   {
-    return; // looks for itself
+    return; // these look for themselves
   }
   if (job.IsProbe())
   {
@@ -133,10 +135,7 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
   ResolvePeriod(job, session, particles);
   session.RunOnAll([&] { SetUpSurface(job, particles); });
   session.RunOnAll([&] { run = Extract(job, messages); });
-  vtkDataArray* triangles = run.Statistics->GetArray("Triangles");
-  std::vector<std::string> warnings = triangles && triangles->GetComponent(0, 0) > 0
-    ? messages->GetWarnings()
-    : Warnings(run.Surface, run.Statistics, messages);
+  std::vector<std::string> warnings = Warnings(run, messages);
   const double peakResidentBytes = PeakResidentBytes();
   ComponentTable pieces(job);
   session.RunOnAll([&] { pieces.Add(run, particles, messages); });
@@ -186,7 +185,11 @@ bool RunDistributed(Job& job, MessageCapture* messages)
     session.RunOnAll([&] { CheckUse(job, session, messages); });
     if (job.IsGauge())
     {
-      return ShareGauges(job, session, messages);
+      return MakeGaugeTable(job, messages, ShareSteps(job, session, messages));
+    }
+    if (job.IsFilm())
+    {
+      return MakeFilm(job, messages, ShareSteps(job, session, messages));
     }
     job.IsProbe() ? ShareProbe(job, session, messages) : ShareSurface(job, session, messages);
   }

@@ -94,9 +94,10 @@ void CheckFiles(const Job& job, const std::vector<std::string>& stored,
 class Film
 {
 public:
-  Film(const Job& job, MessageCapture* messages)
+  Film(const Job& job, MessageCapture* messages, const StepSharing& sharing)
     : Options(job)
     , Messages(messages)
+    , Sharing(sharing)
     , Times(job, messages)
     , Surfaces(ListSurfaces(job.Output, this->Times.Get().size()))
     , Colors(job.Picture)
@@ -106,7 +107,7 @@ public:
     , PieceFile(job.ComponentFile)
     , NumberFile(job.NumbersFile)
   {
-    CheckFiles(job, this->Times.ListFiles(), this->Surfaces, messages);
+    sharing.OnFirst([&] { CheckFiles(job, this->Times.ListFiles(), this->Surfaces, messages); });
     if (!job.Picture.File.empty())
     {
       this->Drawn.reset(new Picture(job.Picture));
@@ -122,14 +123,13 @@ public:
         this->Label(i) + ": the run failed", FaultsOfDrivers(this->Options.Surface->GetDevice()));
       isGood = this->TryStep(i) && isGood;
     }
-    this->List(true);
-    this->Said.TellCounts();
-    if (!this->Options.StatisticsFile.empty())
-    {
-      std::cout.flush(); // the file may be /dev/stdout
-      WriteOutput(
-        this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Setting));
-    }
+    this->Sharing.OnFirst(
+      [this]
+      {
+        this->List(true);
+        this->Said.TellCounts();
+        this->WriteStatistics();
+      });
     return isGood;
   }
 
@@ -158,12 +158,20 @@ private:
     {
       std::fputs("\r\033[K", stderr);
     }
-    this->Said.Tell("", this->Label(i), sentence);
+    this->Tell("", i, sentence);
     FilmStep step = this->Describe(i);
     step.Error = sentence;
     this->Add(step, StepAsJson(step, nullptr, 0.0));
     this->Times.Reset();
     return false;
+  }
+
+  void Tell(const std::string& kind, std::size_t i, const std::string& sentence)
+  {
+    if (this->Sharing.IsFirst)
+    {
+      this->Said.Tell(kind, this->Label(i), sentence);
+    }
   }
 
   /// Without its statistics.
@@ -192,15 +200,35 @@ private:
       std::to_string(this->Times.Get().size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
     std::vector<std::string> warnings;
     const double time = this->Times.Get()[i];
-    const vtkSmartPointer<vtkPointSet> particles = this->Times.At(time, warnings);
-    SetUpSurface(this->Options, particles);
-    Run run = Extract(this->Options, this->Messages, progress);
-    for (const std::string& warning : Warnings(run.Surface, run.Statistics, this->Messages))
+    const vtkSmartPointer<vtkPointSet> particles = this->Sharing.Read(this->Times, time, warnings);
+    Run run;
+    this->Sharing.OnAll(
+      [&]
+      {
+        SetUpSurface(this->Options, particles);
+        run = Extract(this->Options, this->Messages, progress);
+      });
+    for (const std::string& warning : Warnings(run, this->Messages))
     {
       warnings.push_back(warning);
     }
-    this->Pieces.Add(run, particles, this->Messages, time);
-    this->Numbers.Add(run, particles, this->Messages, time, warnings);
+    this->Sharing.OnAll([&] { this->Pieces.Add(run, particles, this->Messages, time); });
+    if (const vtkSmartPointer<vtkPolyData> whole = this->Sharing.Merge(run.Surface))
+    {
+      run.Surface = whole;
+    }
+    this->Sharing.OnAll([&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
+    this->Sharing.OnFirst([&] { this->Keep(i, run, particles, warnings); });
+    for (const std::string& warning : warnings)
+    {
+      this->Tell("warning: ", i, WithOptions(this->Options, warning));
+    }
+  }
+
+  /// Writes what was made of a step.
+  void Keep(
+    std::size_t i, const Run& run, vtkPointSet* particles, std::vector<std::string>& warnings)
+  {
     if (i == 0)
     {
       AddHintOfPeriod(this->Options, particles, warnings);
@@ -216,10 +244,6 @@ private:
                 << " points, " << run.Surface->GetNumberOfCells()
                 << (run.Surface->GetNumberOfLines() > 0 ? " lines, " : " triangles, ")
                 << std::setprecision(3) << run.WallSeconds << " s" << std::endl;
-    }
-    for (const std::string& warning : warnings)
-    {
-      this->Said.Tell("warning: ", this->Label(i), WithOptions(this->Options, warning));
     }
   }
 
@@ -282,8 +306,19 @@ private:
     }
   }
 
+  void WriteStatistics() const
+  {
+    if (!this->Options.StatisticsFile.empty())
+    {
+      std::cout.flush(); // the file may be /dev/stdout
+      WriteOutput(
+        this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Setting));
+    }
+  }
+
   const Job& Options;
   MessageCapture* const Messages;
+  const StepSharing& Sharing;
   ParticleTimes Times;
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
@@ -299,8 +334,8 @@ private:
 }
 
 //------------------------------------------------------------------------------
-bool MakeFilm(const Job& job, MessageCapture* messages)
+bool MakeFilm(const Job& job, MessageCapture* messages, const StepSharing& sharing)
 {
   job.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one
-  return Film(job, messages).Make();
+  return Film(job, messages, sharing).Make();
 }

@@ -64,7 +64,7 @@ void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
 class GaugeTable
 {
 public:
-  GaugeTable(const Job& job, MessageCapture* messages, const GaugeSharing& sharing)
+  GaugeTable(const Job& job, MessageCapture* messages, const StepSharing& sharing)
     : Options(job)
     , Messages(messages)
     , Sharing(sharing)
@@ -72,14 +72,7 @@ public:
     , IsGrid(job.Grid.Counts[0] > 0)
     , File(job.Output)
   {
-    sharing.OnAll(
-      [&]
-      {
-        if (sharing.IsFirst)
-        {
-          this->CheckFiles();
-        }
-      });
+    sharing.OnFirst([this] { this->CheckFiles(); });
     if (this->IsGrid && this->Times.Get().size() > 1)
     {
       throw std::runtime_error(
@@ -155,9 +148,7 @@ private:
   {
     std::vector<std::string> warnings;
     const std::string label = this->Label(time);
-    const vtkSmartPointer<vtkPointSet> particles = this->Sharing.Read
-      ? this->Sharing.Read(this->Times.ListFiles(time))
-      : this->Times.At(time, warnings);
+    const vtkSmartPointer<vtkPointSet> particles = this->Sharing.Read(this->Times, time, warnings);
     vtkTable* table = nullptr;
     this->Sharing.OnAll(
       [&]
@@ -181,13 +172,9 @@ private:
 
   void Write(bool isLast)
   {
-    this->Sharing.OnAll(
+    this->Sharing.OnFirst(
       [&]
       {
-        if (!this->Sharing.IsFirst)
-        {
-          return;
-        }
         if (!this->IsGrid)
         {
           this->File.Write([this] { return this->Text; }, isLast);
@@ -201,7 +188,7 @@ private:
 
   const Job& Options;
   MessageCapture* const Messages;
-  const GaugeSharing& Sharing;
+  const StepSharing& Sharing;
   ParticleTimes Times;
   const bool IsGrid;
   GrowingFile File;
@@ -250,7 +237,7 @@ vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
 }
 
 //------------------------------------------------------------------------------
-bool MakeGaugeTable(const Job& job, MessageCapture* messages, const GaugeSharing& sharing)
+bool MakeGaugeTable(const Job& job, MessageCapture* messages, const StepSharing& sharing)
 {
   const std::vector<GaugeLine> gauges = ListGauges(job);
   AddGauges(job, gauges);

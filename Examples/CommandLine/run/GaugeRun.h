@@ -4,10 +4,8 @@
 #define GaugeRun_h
 
 #include "GaugeLine.h"
+#include "StepSharing.h"
 
-#include "vtkSmartPointer.h"
-
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,17 +13,6 @@ class MessageCapture;
 class vtkPointSet;
 class vtkTable;
 struct Job;
-
-/// What is different where processes share the run; as it is, there is one.
-struct GaugeSharing
-{
-  bool IsFirst = true; ///< the one that writes
-  /// All do this; what one throws, all throw.
-  std::function<void(const std::function<void()>&)> OnAll = [](const std::function<void()>& work)
-  { work(); };
-  /// Its part of the particles of a step that is stored.
-  std::function<vtkSmartPointer<vtkPointSet>(const std::vector<std::string>& files)> Read;
-};
 
 /// Those of the options, in their order. Throws UsageError or std::runtime_error with one sentence.
 std::vector<GaugeLine> ListGauges(const Job& job);
@@ -41,6 +28,6 @@ vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
 /// of lines, an image. False if a step failed, of which all was said; the table has the others. Throws
 /// UsageError or std::runtime_error with one sentence.
 bool MakeGaugeTable(
-  const Job& job, MessageCapture* messages, const GaugeSharing& sharing = GaugeSharing());
+  const Job& job, MessageCapture* messages, const StepSharing& sharing = StepSharing());
 
 #endif

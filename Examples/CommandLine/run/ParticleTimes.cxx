@@ -81,11 +81,17 @@ std::vector<std::string> ParticleTimes::ListFiles() const
 }
 
 //------------------------------------------------------------------------------
+bool ParticleTimes::IsStored(double time) const
+{
+  return FindStep(this->Stored, time)->Time == time;
+}
+
+//------------------------------------------------------------------------------
 std::vector<std::string> ParticleTimes::ListFiles(double time) const
 {
   std::vector<std::string> files;
   const auto next = FindStep(this->Stored, time);
-  for (auto used = next->Time == time ? next : next - 1; used <= next; ++used)
+  for (auto used = this->IsStored(time) ? next : next - 1; used <= next; ++used)
   {
     files.insert(files.end(), used->Files.begin(), used->Files.end());
   }

@@ -33,6 +33,9 @@ public:
 
   const std::vector<double>& Get() const { return this->Times; }
 
+  /// Whether that time is one of the series, and not between two.
+  bool IsStored(double time) const;
+
   /// All that are read.
   std::vector<std::string> ListFiles() const;
 

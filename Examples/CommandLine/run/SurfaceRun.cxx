@@ -283,17 +283,17 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::string> Warnings(
-  vtkPolyData* surface, vtkFieldData* statistics, MessageCapture* messages)
+std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
 {
-  if (surface->GetNumberOfCells() > 0)
-  {
-    return messages->GetWarnings();
-  }
   std::vector<std::string> all = messages->GetWarnings();
+  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
+  if (run.Surface->GetNumberOfCells() > 0 || (triangles && triangles->GetComponent(0, 0) > 0))
+  {
+    return all;
+  }
   if (all.empty())
   {
-    all.push_back(ReasonForNoSurface(statistics));
+    all.push_back(ReasonForNoSurface(run.Statistics));
   }
   all.front() = "the surface is empty" + (all.front().empty() ? "" : ": " + all.front());
   return all;

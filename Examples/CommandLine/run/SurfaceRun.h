@@ -45,8 +45,7 @@ double Update(vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages,
 Run Extract(const Job& job, MessageCapture* messages, const std::string& before = "");
 
 /// What the user should know of a run that went well, one sentence each.
-std::vector<std::string> Warnings(
-  vtkPolyData* surface, vtkFieldData* statistics, MessageCapture* messages);
+std::vector<std::string> Warnings(const Run& run, MessageCapture* messages);
 
 /// Where --periodic is not given, and the particles' field data may tell of a period: that.
 void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings);

@@ -150,9 +150,12 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     lattice->period[a] = 0;
     axis = length[a] > 0 ? a : axis;
   }
-  /* Large cubes stick out of periods and boxes: no flat side would be left to close. */
+  /* Large cubes stick out of periods and boxes: no flat side would be left to close. Caps at walls are made of
+   * equal ones. */
+  const bool walls =
+    options->field == MCOR_WEIGHT_SUM && mcor_asked_share(options) != 0 && m->solid_count > 0;
   lattice->top =
-    options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX) ? 0 : lattice->top;
+    options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX || walls) ? 0 : lattice->top;
   if (axis < 0)
   {
     return MCOR_OK;

@@ -7,7 +7,7 @@
 
 #include "mcor_internal.h"
 
-/* Boundary flag of a cap's nodes. */
+/* Boundary flag of vertices that caps alone have. */
 #define MCOR_CAP_FLAG 8
 
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
@@ -73,6 +73,8 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
  * box); -1: none does. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
+/* Whether the free surface is closed where it ends at solids, see mcor_cap_wall.c. */
+bool mcor_caps_walls(const mcor_context* context);
 /* iso_value: of the field itself. */
 mcor_status mcor_make_cap_face(
   mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face);
@@ -84,5 +86,20 @@ mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face);
 void mcor_free_cap_face(mcor_cap_face* face);
 void mcor_release_cap_points(mcor_context* context, mcor_cap_points* points);
+
+/* What was evaluated, on the host. */
+typedef struct mcor_cap_values
+{
+  void *value, *gradient, *weight, *eigenvalue;
+} mcor_cap_values;
+
+/* Evaluates at nodes, at least one, or at offsets from them (as in mesh.offset; NULL: 0); unmap *values after
+ * failures, too. */
+mcor_status mcor_evaluate_cap_points(mcor_context* context, const cl_int* nodes,
+  const void* offsets, int count, double iso, mcor_cap_points* points, mcor_cap_values* values);
+mcor_status mcor_unmap_cap_values(
+  mcor_context* context, const mcor_cap_points* points, mcor_cap_values* values);
+/* How far point i is inside of what trimming leaves. */
+double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* values, int64_t i);
 
 #endif

@@ -113,14 +113,15 @@ void mcor_release_cap_points(mcor_context* context, mcor_cap_points* p)
   MCOR_RELEASE(context, &p->node, &p->offset, &p->value, &p->gradient, &p->weight, &p->eigenvalue);
 }
 
-/* Evaluates at nodes. */
-static mcor_status mcor_evaluate_cap_nodes(
-  mcor_context* context, const cl_int* nodes, int count, double iso, mcor_cap_points* p)
+/* Evaluates at nodes, or off them. */
+static mcor_status mcor_evaluate_cap_nodes(mcor_context* context, const cl_int* nodes,
+  const void* offsets, int count, double iso, mcor_cap_points* p)
 {
   const size_t n = (size_t)count, real = context->cl.real_size;
   int groups;
   MCOR_TRY(mcor_write(context, &p->node, nodes, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, &p->offset, 0, n * 4 * real));
+  MCOR_TRY(offsets ? mcor_write(context, &p->offset, offsets, n * 4 * real)
+                   : mcor_fill(context, &p->offset, 0, n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &p->value, n * real));
   MCOR_TRY(mcor_reserve(context, &p->gradient, n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &p->weight, n * real));
@@ -140,14 +141,34 @@ static mcor_status mcor_evaluate_cap_nodes(
     MCOR_BUFFER(&p->offset), MCOR_INT(0), MCOR_BUFFER(&p->eigenvalue));
 }
 
-/* What was evaluated, on the host. */
-typedef struct mcor_cap_values
+mcor_status mcor_evaluate_cap_points(mcor_context* context, const cl_int* nodes,
+  const void* offsets, int count, double iso, mcor_cap_points* p, mcor_cap_values* v)
 {
-  void *value, *gradient, *weight, *eigenvalue;
-} mcor_cap_values;
+  const size_t n = (size_t)count * context->cl.real_size;
+  MCOR_TRY(mcor_evaluate_cap_nodes(context, nodes, offsets, count, iso, p));
+  MCOR_TRY(mcor_map(context, &p->value, n, false, &v->value));
+  MCOR_TRY(mcor_map(context, &p->gradient, 4 * n, false, &v->gradient));
+  MCOR_TRY(mcor_map(context, &p->weight, n, false, &v->weight));
+  return mcor_trims_by_eigenvalue(context)
+    ? mcor_map(context, &p->eigenvalue, n, false, &v->eigenvalue)
+    : MCOR_OK;
+}
 
-/* How far point i is inside of what trimming leaves. */
-static double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)
+mcor_status mcor_unmap_cap_values(
+  mcor_context* context, const mcor_cap_points* p, mcor_cap_values* v)
+{
+  const mcor_status unmapped[] = { mcor_unmap(context, &p->value, &v->value),
+    mcor_unmap(context, &p->gradient, &v->gradient), mcor_unmap(context, &p->weight, &v->weight),
+    mcor_unmap(context, &p->eigenvalue, &v->eigenvalue) };
+  mcor_status status = MCOR_OK;
+  for (int i = 0; i < 4; ++i)
+  {
+    status = status == MCOR_OK ? unmapped[i] : status;
+  }
+  return status;
+}
+
+double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)
 {
   const double weight = mcor_get_real(context, v->weight, i), share = mcor_fluid_share(context);
   const double fluid =
@@ -199,27 +220,14 @@ static mcor_status mcor_take_cap_nodes(mcor_context* context, const cl_int* node
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_evaluate_cap_nodes(context, nodes, count, iso, p));
-  const size_t n = (size_t)count * context->cl.real_size;
   mcor_cap_values v = { NULL, NULL, NULL, NULL };
-  mcor_status status = mcor_map(context, &p->value, n, false, &v.value);
-  status = status == MCOR_OK ? mcor_map(context, &p->gradient, 4 * n, false, &v.gradient) : status;
-  status = status == MCOR_OK ? mcor_map(context, &p->weight, n, false, &v.weight) : status;
-  if (status == MCOR_OK && mcor_trims_by_eigenvalue(context))
-  {
-    status = mcor_map(context, &p->eigenvalue, n, false, &v.eigenvalue);
-  }
+  mcor_status status = mcor_evaluate_cap_points(context, nodes, NULL, count, iso, p, &v);
   for (int i = 0; i < count && status == MCOR_OK; ++i)
   {
     mcor_take_cap_node(context, &v, i, within, to[i], face);
   }
-  const mcor_status unmapped[] = { mcor_unmap(context, &p->value, &v.value),
-    mcor_unmap(context, &p->gradient, &v.gradient), mcor_unmap(context, &p->weight, &v.weight),
-    mcor_unmap(context, &p->eigenvalue, &v.eigenvalue) };
-  for (int i = 0; i < 4; ++i)
-  {
-    status = status == MCOR_OK ? unmapped[i] : status;
-  }
+  const mcor_status unmapped = mcor_unmap_cap_values(context, p, &v);
+  status = status == MCOR_OK ? unmapped : status;
   return status == MCOR_OK ? mcor_report_launch(context) : status;
 }
 

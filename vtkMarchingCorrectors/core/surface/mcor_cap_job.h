@@ -9,6 +9,17 @@
 #include "mcor_cap.h"
 #include "mcor_cap_map.h"
 
+#include <math.h>
+
+/* The line that a cut is on, from one end, 0, to the other, 1: where the cut is; where it is not beyond, and how
+ * far inside of what trimming leaves these places are. */
+typedef struct mcor_cap_line
+{
+  double from[3], to[3];
+  double at, side[2], margin[2];
+  int last; /* of the two, that was moved */
+} mcor_cap_line;
+
 /* A vertex only caps have. */
 typedef struct mcor_cap_vertex
 {
@@ -16,7 +27,17 @@ typedef struct mcor_cap_vertex
   double offset[3];
   bool is_cut;
   uint64_t key[2]; /* the first square that met it, and when it did */
+  bool is_placed;  /* on a line, exactly: of a cap at walls */
+  mcor_cap_line line;
 } mcor_cap_vertex;
+
+/* Edges that cutting the squares around a cell leaves, from one vertex to another: of a cap at walls. */
+#define MCOR_CAP_BORDER 64
+typedef struct mcor_cap_border
+{
+  int count;
+  int32_t ends[MCOR_CAP_BORDER][2];
+} mcor_cap_border;
 
 typedef struct mcor_cap_job
 {
@@ -35,7 +56,35 @@ typedef struct mcor_cap_job
   /* The surface's vertices, and the edges its own cuts are on, ascending. */
   void *node, *offset, *quantity, *distinct;
   double threshold;
+  mcor_cap_border* border; /* where the cuts of squares are wanted, and not what is left of them */
 } mcor_cap_job;
+
+/* Of a node; the virtual grid has not more than 2^20 + 64 along an axis. */
+static inline uint64_t mcor_cap_key(const cl_int node[3])
+{
+  return (uint64_t)node[0] | (uint64_t)node[1] << 21 | (uint64_t)node[2] << 42 | UINT64_C(1) << 63;
+}
+
+/* Square (u, v) of a side. */
+mcor_status mcor_cap_square(mcor_cap_job* job, const mcor_cap_face* face, int u, int v);
+mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3]);
+mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
+
+/* A cut keeps off the ends of its line, as those of the surface do. */
+#define MCOR_CAP_CUT_MARGIN 1e-5
+
+/* At a place of the virtual grid, in cubes. */
+static inline void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    vertex->node[a] = (cl_int)floor(at[a]);
+    vertex->offset[a] = at[a] - vertex->node[a];
+  }
+}
+
+/* mcor_cap_place.c. Moves the cuts of caps at walls to where solids have their share. */
+mcor_status mcor_place_wall_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points);
 
 /* mcor_cap_mesh.c */
 mcor_status mcor_no_cap_memory(mcor_context* context);

@@ -32,7 +32,7 @@ void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float no
   }
   for (int a = 0; a < 3; ++a)
   {
-    normal[a] = (float)(n[a] / sqrt(square));
+    normal[a] = square > 0 ? (float)(n[a] / sqrt(square)) : 0; /* at walls: from triangles */
   }
 }
 
@@ -56,7 +56,8 @@ static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
   const size_t n = (size_t)job->vertex_count, old = (size_t)job->old_count,
                real = context->cl.real_size;
   cl_int* node = malloc(n * 4 * sizeof *node);
-  uint8_t *offset = calloc(n * 4, real), *flag = malloc(n);
+  void* offset = calloc(n * 4, real);
+  uint8_t* flag = malloc(n);
   mcor_status status = node && offset && flag ? MCOR_OK : mcor_no_cap_memory(context);
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
   {
@@ -65,9 +66,7 @@ static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
     flag[i] = vertex->is_cut ? 2 : MCOR_CAP_FLAG;
     for (size_t a = 0; a < 3; ++a)
     {
-      const float single = (float)vertex->offset[a];
-      memcpy(offset + (4 * i + a) * real,
-        real == sizeof single ? (const void*)&single : (const void*)&vertex->offset[a], real);
+      mcor_put_real(context, offset, (int64_t)(4 * i + a), vertex->offset[a]);
     }
   }
   status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)(old + n)) : status;

@@ -40,7 +40,13 @@ bool mcor_makes_caps(const mcor_context* context)
   {
     makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
   }
-  return makes;
+  return makes || mcor_caps_walls(context);
+}
+
+bool mcor_caps_walls(const mcor_context* context)
+{
+  return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
+    mcor_fluid_share(context) > 0;
 }
 
 void mcor_free_cap_face(mcor_cap_face* face)

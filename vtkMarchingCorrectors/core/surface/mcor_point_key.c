@@ -27,9 +27,7 @@ mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
   return mcor_read(context, &context->trim.distinct, 0, *cuts, bytes);
 }
 
-/* In the order of vertices: by block, brick and node, each by z, y, x, then by axis. Fits, as the
- * lattice has no more than 2^15 + 2 blocks along an axis. */
-static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4], int copy)
+uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
 {
   uint64_t block = 0, inner = 0;
   for (int a = 2; a >= 0; --a)
@@ -43,7 +41,13 @@ static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4],
       inner = inner << bits | (uint64_t)(node[a] >> shift & ((1 << bits) - 1));
     }
   }
-  return (block << 15 | inner) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
+  return block << 15 | inner;
+}
+
+/* In the order of vertices: by node, then by axis. */
+static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4], int copy)
+{
+  return mcor_node_key(lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
 }
 
 /* The same of adaptive cubes: by the key of the brick of its level, then by node and axis. Fits, see

@@ -15,7 +15,7 @@
 
 bool mcor_follows_cells(const mcor_context* context)
 {
-  return context->box.is_part || context->run.options->triangle_keys;
+  return context->box.is_part || context->run.options->triangle_keys || mcor_caps_walls(context);
 }
 
 /* ---- Mesh ---- */

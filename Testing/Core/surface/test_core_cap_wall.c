@@ -1,0 +1,216 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Caps where the free surface ends at solids: they close it, leave its own points and triangles as they are, and
+ * hold the volume where fluid weighs enough; in boxes, too. */
+
+#include "core_fixture.h"
+#include "core_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double iso = 0.5;
+
+static mcor_options wall_options(double share)
+{
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.wall_share = share;
+  return options;
+}
+
+/* A tank with a step in its ground, half full, with waves, a hole and a drop; particles are a bit off a lattice. */
+static core_set make_tank(void)
+{
+  enum
+  {
+    N = 20
+  };
+  core_set set = core_make_set(N * N * N);
+  uint64_t seed = 17;
+  int64_t n = 0;
+  for (int i = 0; i < N * N * N; ++i)
+  {
+    const double x[3] = { i % N - 9.5, i / N % N - 9.5, i / (N * N) - 9.5 };
+    const bool is_wall = fabs(x[0]) > 7 || fabs(x[1]) > 7 || x[2] < -7 || (x[0] < -2 && x[2] < -4);
+    const double top = 1.5 + sin(0.5 * x[0]) + sin(0.4 * x[1]);
+    const double hole = hypot(hypot(x[0] - 3, x[1]), x[2] + 3),
+                 drop = hypot(hypot(x[0], x[1] - 7), x[2] - 6);
+    if (is_wall || (x[2] < top && hole > 2.5) || drop < 2.2)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        set.position[3 * n + a] = x[a] + 0.2 * (random_unit(&seed) - 0.5);
+      }
+      set.smoothing_length[n] = 1.3;
+      set.volume[n] = 1;
+      set.solid[n++] = is_wall;
+    }
+  }
+  set.count = n;
+  set.has_solids = 1;
+  return set;
+}
+
+/* The volume that is fluid, by random places in the tank, and its error. */
+static double sample_volume(const core_set* set, double share, double* error)
+{
+  enum
+  {
+    SAMPLES = 40000
+  };
+  const oracle_particles particles = core_oracle(set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
+  uint64_t seed = 3;
+  int inside = 0;
+  for (int i = 0; i < SAMPLES; ++i)
+  {
+    double at[3];
+    oracle_sample sample;
+    for (int a = 0; a < 3; ++a)
+    {
+      at[a] = 20 * (random_unit(&seed) - 0.5);
+    }
+    oracle_evaluate(&field, NULL, at, &sample);
+    inside += sample.weight >= iso && sample.weight > (1 - share) * sample.trim_weight;
+  }
+  oracle_free_field(&field);
+  const double part = (double)inside / SAMPLES;
+  *error = 8000 * sqrt(part * (1 - part) / SAMPLES);
+  return 8000 * part;
+}
+
+static void check_tank(mcor_context* context, double share, mcor_topology topology)
+{
+  core_set set = make_tank();
+  const mcor_input input = core_input(&set);
+  mcor_options options = wall_options(share);
+  options.topology = topology;
+  options.normals = options.boundary_flag = 1;
+  options.level_limit = 0; /* as with caps */
+  mcor_surface open, closed;
+  CORE_OK(context, mcor_extract(context, &input, &options, &open));
+  options.capping = MCOR_CAP_PERIOD;
+  CORE_OK(context, mcor_extract(context, &input, &options, &closed));
+  assert_true(!open.statistics.is_closed && open.point_count > 1000);
+  assert_memory_equal(open.points, closed.points, (size_t)open.point_count * 3 * sizeof(double));
+  assert_memory_equal(
+    open.triangles, closed.triangles, (size_t)open.triangle_count * 3 * sizeof *open.triangles);
+  assert_int_equal(closed.triangle_count - open.triangle_count, closed.statistics.cap_triangles);
+  assert_true(closed.statistics.is_closed);
+  const mesh_report report = core_check_pinched_mesh(&closed);
+  assert_int_equal(report.boundary_edges, 0);
+  double error;
+  const double expected = sample_volume(&set, share, &error);
+  CORE_CHECK(fabs(closed.statistics.volume - expected) < 4 * error, "volume %g instead of %g +- %g",
+    closed.statistics.volume, expected, error);
+  for (int64_t p = open.point_count; p < closed.point_count; ++p)
+  {
+    const float* n = closed.normals + 3 * p;
+    CORE_CHECK(closed.boundary_flag[p] == 8, "flag %d", closed.boundary_flag[p]);
+    CORE_CHECK(fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-5, "a normal of %g %g %g",
+      n[0], n[1], n[2]);
+  }
+  mcor_free_surface(&open);
+  mcor_free_surface(&closed);
+  core_free_set(&set);
+}
+
+static void test_tank(void** state)
+{
+  check_tank(*state, 0.5, MCOR_TOPOLOGY_FIELD);
+  check_tank(*state, 0.35, MCOR_TOPOLOGY_TABLE);
+}
+
+/* Points of caps alone are where solids have the share, and in fluid. */
+static void test_share(void** state)
+{
+  core_set set = make_tank();
+  const mcor_input input = core_input(&set);
+  mcor_options options = wall_options(0.35);
+  options.capping = MCOR_CAP_PERIOD;
+  options.boundary_flag = 1;
+  mcor_surface surface;
+  CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
+  int64_t caps = 0;
+  for (int64_t p = 0; p < surface.point_count; ++p)
+  {
+    oracle_sample sample;
+    if (surface.boundary_flag[p] & 8)
+    {
+      oracle_evaluate(&field, NULL, surface.points + 3 * p, &sample);
+      CORE_CHECK(
+        fabs(sample.weight / sample.trim_weight - 0.65) < 1e-5 && sample.weight > iso - 1e-5,
+        "fluid weighs %g of %g", sample.weight, sample.trim_weight);
+      ++caps;
+    }
+  }
+  CORE_CHECK(caps > 500, "%lld points", (long long)caps);
+  oracle_free_field(&field);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Full to the lid: caps alone, somewhat inside of half the way to the solids. */
+static void test_full(void** state)
+{
+  core_set set = core_make_block(14, 0.1, 5, core_ball);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    double far = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      far = fmax(far, fabs(set.position[3 * i + a]));
+    }
+    set.solid[i] = far > 4;
+  }
+  set.has_solids = 1;
+  const mcor_input input = core_input(&set);
+  mcor_options options = wall_options(0.4);
+  options.capping = MCOR_CAP_PERIOD;
+  mcor_surface surface;
+  CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
+  assert_true(surface.statistics.is_closed);
+  assert_int_equal(surface.triangle_count, surface.statistics.cap_triangles);
+  double error;
+  const double expected = sample_volume(&set, 0.4, &error);
+  CORE_CHECK(fabs(surface.statistics.volume - expected) < 4 * error,
+    "volume %g instead of %g +- %g", surface.statistics.volume, expected, error);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+/* Boxes make the whole, with all that its points carry; sides of boxes and of a period are closed beside walls. */
+static void test_parts(void** state)
+{
+  core_set set = make_tank();
+  const mcor_input input = core_input(&set);
+  mcor_options options = wall_options(0.5);
+  options.capping = MCOR_CAP_PERIOD;
+  core_ask_for_all(&options);
+  core_check_cuts(*state, "caps at walls", &input, &options);
+  options.periodic[3] = 12;
+  core_check_cuts(*state, "caps at walls in a period", &input, &options);
+  mcor_surface surface;
+  options = wall_options(0.5);
+  options.capping = MCOR_CAP_BOX;
+  const double box[6] = { -5.2, 4.1, -INFINITY, 3.7, -5.6, INFINITY };
+  memcpy(options.box, box, sizeof box);
+  CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
+  assert_true(surface.statistics.is_closed && surface.statistics.cap_triangles > 500);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_tank), cmocka_unit_test(test_share),
+    cmocka_unit_test(test_full), cmocka_unit_test(test_parts) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

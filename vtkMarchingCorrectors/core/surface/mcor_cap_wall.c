@@ -1,0 +1,366 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Caps at walls close the free surface where it ends at solids: around the fluid, where their share of the weight
+ * becomes too great. In each cell three things are cut there: the squares of its faces that are above the iso
+ * value, as caps at sides are, and the surface's triangles, as trimming has done. The edges that these cuts
+ * leave join to loops, and a cap fills each. A face is cut alike as seen from its two cells, so caps
+ * fit each other, those at sides and the surface. Their vertices are cuts of lattice edges, see mcor_cap_place.c.
+ *
+ * Squares of caps are numbered as cells are, after all squares of sides. */
+
+#include "mcor_cap_wall.h"
+#include "mcor_box.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Beside the key of a cell: of a cap at walls. */
+#define MCOR_WALL_CELL ((cl_ulong)1 << 61)
+
+/* An edge of the trimmed surface that trimming has made, as its triangle goes round; in which cell. */
+typedef struct mcor_wall_edge
+{
+  cl_ulong cell;
+  int32_t triangle, from, to;
+} mcor_wall_edge;
+
+/* What the caps are made of. */
+typedef struct mcor_wall_job
+{
+  mcor_cap_job* cap;
+  mcor_wall wall;
+  mcor_wall_edge* edges; /* ascending by cell, then triangle */
+  int64_t edge_count;
+} mcor_wall_job;
+
+/* A cell: its lowest node; of its corners x + 2 y + 4 z whether they are above, and their margins; of its
+ * faces, by axis, lower and upper, whether ambiguous corners above are joined. */
+typedef struct mcor_wall_cell
+{
+  cl_int node[3];
+  cl_ulong key;
+  bool is_used;
+  bool above[8], joined[3][2];
+  double margin[8];
+} mcor_wall_cell;
+
+/* ---- edges that trimming has made ---------------------------------------------------------------- */
+
+static int mcor_compare_wall_edges(const void* x, const void* y)
+{
+  const mcor_wall_edge *a = x, *b = y;
+  return a->cell != b->cell ? (a->cell > b->cell) - (a->cell < b->cell)
+                            : (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+/* Those of the trimmed triangles: a triangle has one where two corners are cuts. */
+static mcor_status mcor_list_wall_edges(
+  mcor_wall_job* job, const cl_int* triangles, const cl_ulong* cells)
+{
+  mcor_context* context = job->cap->context;
+  const mcor_mesh* mesh = &context->mesh;
+  job->edges = malloc(((size_t)mesh->triangle_count + 1) * sizeof *job->edges);
+  if (!job->edges)
+  {
+    return mcor_no_cap_memory(context);
+  }
+  for (int32_t t = 0; t < mesh->triangle_count; ++t)
+  {
+    const cl_int* corner = triangles + 3 * (size_t)t;
+    for (int c = 0; c < 3; ++c)
+    {
+      const int32_t from = corner[c], to = corner[(c + 1) % 3];
+      if (from >= mesh->march_count && to >= mesh->march_count)
+      {
+        job->edges[job->edge_count++] =
+          (mcor_wall_edge){ cells[t] & ~(MCOR_RING_CELL | MCOR_OTHERS_CELL), t, from, to };
+      }
+    }
+  }
+  qsort(job->edges, (size_t)job->edge_count, sizeof *job->edges, mcor_compare_wall_edges);
+  return MCOR_OK;
+}
+
+static mcor_status mcor_load_wall_edges(mcor_wall_job* job)
+{
+  mcor_context* context = job->cap->context;
+  const size_t n = (size_t)context->mesh.triangle_count;
+  void *triangles = NULL, *cells = NULL;
+  if (n == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_map(context, &context->mesh.triangles, 3 * n * sizeof(cl_int), false, &triangles));
+  mcor_status status = mcor_map(context, &context->box.cells, n * sizeof(cl_ulong), false, &cells);
+  status = status == MCOR_OK ? mcor_list_wall_edges(job, triangles, cells) : status;
+  const mcor_status unmapped[] = { mcor_unmap(context, &context->mesh.triangles, &triangles),
+    mcor_unmap(context, &context->box.cells, &cells) };
+  status = status == MCOR_OK ? unmapped[0] : status;
+  return status == MCOR_OK ? unmapped[1] : status;
+}
+
+/* The first one of a cell, or of those behind it. */
+static int64_t mcor_find_wall_edge(const mcor_wall_job* job, cl_ulong cell)
+{
+  int64_t low = 0, high = job->edge_count;
+  while (low < high)
+  {
+    const int64_t middle = low + (high - low) / 2;
+    const bool before = job->edges[middle].cell < cell;
+    low = before ? middle + 1 : low;
+    high = before ? high : middle;
+  }
+  return low;
+}
+
+/* ---- cells ---------------------------------------------------------------------------------------- */
+
+/* False where a corner is not near both fluid and solids, or the cell is none of those that are marched. */
+static bool mcor_load_wall_cell(
+  const mcor_wall_job* job, const mcor_wall_brick* brick, int inner, mcor_wall_cell* cell)
+{
+  const mcor_wall* wall = &job->wall;
+  const mcor_wall_brick* near[8] = { NULL };
+  *cell =
+    (mcor_wall_cell){ .key = brick->key | (cl_ulong)inner, .is_used = brick->used >> inner & 1 };
+  for (int a = 0; a < 3; ++a)
+  {
+    cell->node[a] = brick->at[a] * MCOR_BRICK + (inner >> 2 * a & 3);
+    if (cell->node[a] < wall->first[a] || cell->node[a] + 1 >= wall->end[a])
+    {
+      return false;
+    }
+  }
+  for (int c = 0; c < 8; ++c)
+  {
+    int at[3], bit = 0, which = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int node = cell->node[a] + (c >> a & 1);
+      at[a] = node / MCOR_BRICK;
+      which |= (at[a] != brick->at[a]) << a;
+      bit |= node % MCOR_BRICK << 2 * a;
+    }
+    near[which] = near[which] ? near[which] : which ? mcor_find_wall_brick(wall, at) : brick;
+    if (!near[which])
+    {
+      return false;
+    }
+    cell->above[c] = near[which]->above >> bit & 1;
+    cell->margin[c] = near[which]->margin[bit];
+    for (int a = 0; a < 3; ++a)
+    {
+      if (c == 0 || c == 1 << a)
+      {
+        cell->joined[a][c != 0] = near[which]->joined[a] >> bit & 1;
+      }
+    }
+  }
+  return true;
+}
+
+/* Whether corners above, or vertices of the surface on the cell's edges, are on both sides of where the
+ * surface ends. */
+static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* cell)
+{
+  const mcor_cap_job* cap = job->cap;
+  bool inside = false, outside = false, is_crossed = false;
+  for (int c = 0; c < 8; ++c)
+  {
+    is_crossed = is_crossed || cell->above[c] != cell->above[0];
+    inside = inside || (cell->above[c] && cell->margin[c] > 0);
+    outside = outside || (cell->above[c] && !(cell->margin[c] > 0));
+    for (int a = 0; a < 3; ++a)
+    {
+      if ((c >> a & 1) || cell->above[c] == cell->above[c | 1 << a] || !cell->is_used)
+      {
+        continue;
+      }
+      const cl_int node[3] = { cell->node[0] + (c & 1), cell->node[1] + (c >> 1 & 1),
+        cell->node[2] + (c >> 2) };
+      const int32_t v = mcor_find_cap_number(&cap->edges[a], mcor_cap_key(node));
+      const bool is_inside =
+        v >= 0 && mcor_get_real(cap->context, cap->quantity, v) > cap->threshold;
+      inside = inside || (v >= 0 && is_inside);
+      outside = outside || (v >= 0 && !is_inside);
+    }
+  }
+  return inside && outside && (!is_crossed || cell->is_used);
+}
+
+/* The edges that cutting one of the cell's faces leaves. The fields are those of a cap's side of one square. */
+static mcor_status mcor_cut_wall_face(
+  mcor_cap_job* cap, const mcor_wall_cell* cell, int axis, int upper)
+{
+  int32_t tile = 0;
+  uint8_t state[MCOR_CAP_TILE + 2] = { 0 }, within[MCOR_CAP_TILE + 2];
+  double margin[MCOR_CAP_TILE + 2];
+  memset(within, MCOR_CAP_VALID, sizeof within);
+  mcor_cap_face face = { .axis = axis,
+    .upper = upper,
+    .plane = cell->node[axis] + upper,
+    .cell = cell->node[axis],
+    .across = { (axis + 1) % 3, (axis + 2) % 3 },
+    .count = { 2, 2 },
+    .tiles = { 1, 1 },
+    .tile = &tile,
+    .state = state,
+    .within = within,
+    .margin = margin };
+  for (int n = 0; n < 4; ++n)
+  {
+    const int corner = upper << axis | (n & 1) << face.across[0] | n >> 1 << face.across[1];
+    const int64_t at = mcor_cap_index(&face, n & 1, n >> 1);
+    state[at] = (uint8_t)(MCOR_CAP_VALID | (cell->above[corner] ? MCOR_CAP_ABOVE : 0));
+    margin[at] = cell->margin[corner];
+  }
+  for (int i = 0; i < 2; ++i)
+  {
+    face.first[i] = cell->node[face.across[i]];
+  }
+  state[0] |= (uint8_t)((cell->is_used ? MCOR_CAP_USED : 0) |
+    (cell->joined[axis][upper] ? MCOR_CAP_JOINED : 0));
+  return mcor_cap_square(cap, &face, 0, 0);
+}
+
+/* ---- loops ---------------------------------------------------------------------------------------- */
+
+static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
+{
+  const mcor_cap_vertex* vertex = v < job->old_count ? NULL : &job->vertices[v - job->old_count];
+  for (int a = 0; a < 3; ++a)
+  {
+    at[a] = vertex ? vertex->node[a] + vertex->offset[a]
+                   : ((const cl_int*)job->node)[4 * (size_t)v + (size_t)a] +
+        mcor_get_real(job->context, job->offset, 4 * (int64_t)v + a);
+  }
+}
+
+/* The area of a fan around corner `first`. */
+static double mcor_fan_area(double (*at)[3], int count, int first)
+{
+  double area = 0;
+  for (int i = 1; i + 1 < count; ++i)
+  {
+    const double *p = at[first], *q = at[(first + i) % count], *r = at[(first + i + 1) % count];
+    double square = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      const double n = (q[b] - p[b]) * (r[c] - p[c]) - (q[c] - p[c]) * (r[b] - p[b]);
+      square += n * n;
+    }
+    area += sqrt(square);
+  }
+  return area;
+}
+
+/* The fan of the least area: loops are not flat, and may not be convex. */
+static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, int count)
+{
+  double at[MCOR_CAP_BORDER][3], least = INFINITY;
+  int best = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    mcor_place_of(job, loop[i], at[i]);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const double area = mcor_fan_area(at, count, i);
+    best = area < least ? i : best;
+    least = fmin(area, least);
+  }
+  for (int i = 1; i + 1 < count; ++i)
+  {
+    const int32_t corners[3] = { loop[best], loop[(best + i) % count],
+      loop[(best + i + 1) % count] };
+    MCOR_TRY(mcor_add_cap_triangle(job, corners));
+  }
+  return MCOR_OK;
+}
+
+/* Joins the edges of a cell to loops, and fills these. */
+static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* cell)
+{
+  mcor_cap_border* border = job->border;
+  for (int start = 0; start < border->count; ++start)
+  {
+    int32_t loop[MCOR_CAP_BORDER];
+    int count = 0;
+    for (int next = start; next >= 0 && border->ends[next][0] >= 0;)
+    {
+      const int32_t to = border->ends[next][1];
+      loop[count++] = border->ends[next][0];
+      border->ends[next][0] = -1;
+      for (next = border->count - 1; next >= 0 && border->ends[next][0] != to;)
+      {
+        --next;
+      }
+      MCOR_RETURN_IF(next < 0 && to != loop[0], job->context, MCOR_DEVICE_ERROR,
+        "A cap at a wall does not fit the surface in cell %d %d %d. Please report it.",
+        cell->node[0], cell->node[1], cell->node[2]);
+    }
+    MCOR_TRY(count > 2 ? mcor_fill_wall_loop(job, loop, count) : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* cell)
+{
+  mcor_cap_job* cap = job->cap;
+  const mcor_box* box = &cap->context->box;
+  bool owned = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    owned = owned && cell->node[a] >= box->first[a] && cell->node[a] < box->last[a];
+  }
+  cap->square = MCOR_CAP_SQUARE | MCOR_WALL_CELL | cell->key | (owned ? 0 : MCOR_RING_CELL);
+  cap->lookups = 0;
+  cap->border->count = 0;
+  for (int side = 0; side < 6; ++side)
+  {
+    MCOR_TRY(mcor_cut_wall_face(cap, cell, side / 2, side % 2));
+  }
+  for (int64_t i = mcor_find_wall_edge(job, cell->key);
+       i < job->edge_count && job->edges[i].cell == cell->key; ++i)
+  {
+    MCOR_TRY(mcor_add_cap_border(cap, job->edges[i].to, job->edges[i].from));
+  }
+  return mcor_fill_wall_cell(cap, cell);
+}
+
+static mcor_status mcor_cap_wall_cells(mcor_wall_job* job)
+{
+  mcor_context* context = job->cap->context;
+  for (int64_t b = 0; b < job->wall.count; ++b)
+  {
+    const mcor_wall_brick* brick = &job->wall.bricks[b];
+    for (int inner = 0; inner < MCOR_BRICK_NODES; ++inner)
+    {
+      mcor_wall_cell cell;
+      if (mcor_load_wall_cell(job, brick, inner, &cell) && mcor_is_wall_cell(job, &cell))
+      {
+        MCOR_TRY(mcor_cap_wall_cell(job, &cell));
+      }
+    }
+    MCOR_TRY(b % 1024 == 0 ? mcor_report_launch(context) : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_cap_walls(mcor_cap_job* cap, double iso, mcor_cap_points* points)
+{
+  mcor_wall_job job = { .cap = cap };
+  mcor_cap_border border = { .count = 0 };
+  mcor_status status = mcor_load_wall(cap->context, iso, points, &job.wall);
+  status = status == MCOR_OK ? mcor_load_wall_edges(&job) : status;
+  cap->border = &border;
+  status = status == MCOR_OK ? mcor_cap_wall_cells(&job) : status;
+  status = status == MCOR_OK ? mcor_place_wall_cuts(cap, iso, points) : status;
+  cap->border = NULL;
+  mcor_free_wall(&job.wall);
+  free(job.edges);
+  return status;
+}

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the filters that many processes share have in common. All of this is collective.
+#include "vtkSPHAlgorithm.h"
+
+#include "mcor.h"
+#include "mcor_parts.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHParticles.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksCalls.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
+  mcor_options& options, const std::function<int(mcor_context*)>& call,
+  const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
+{
+  int place, count;
+  ranks.FindNeighbors(place, count);
+  vtkSPHRanksCalls calls(ranks, near);
+  options.ranks = calls.Get();
+  std::string message;
+  const int status = this->RunCore(particles, options, call, message, place, count);
+  options.ranks = nullptr;
+  calls.End(status != MCOR_OK);
+  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
+  ranks.Reduce(vtkSPHRanks::GREATEST, &cancelled, 1);
+  const bool good = ranks.Agree(message);
+  if (!good)
+  {
+    this->Fail(message);
+  }
+  return good && cancelled == 0;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
+{
+  const bool good = ranks.Agree(problem);
+  if (!good)
+  {
+    this->Fail(problem);
+  }
+  return good;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
+  vtkSPHParticles& particles, const std::string& consequence)
+{
+  std::int64_t fluid = particles.FluidCount;
+  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
+  if (ranks.GetRank() == 0)
+  {
+    fluid == 0 ? this->WarnOfNoFluid(choice, consequence)
+               : this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+  }
+  return fluid > 0;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
+  mcor_options& options, bool forSamples, mcor_globals& globals)
+{
+  const auto measure = forSamples ? mcor_measure_probe_globals : mcor_measure_globals;
+  if (!this->CallCoreDistributed(ranks, particles, options,
+        [&](mcor_context* context)
+        { return measure(context, &particles.Core, &options, &globals); }))
+  {
+    return false;
+  }
+  if (globals.measured.plane.axis > 0)
+  {
+    this->Fail(vtkSPHRanksNoPlane);
+    return false;
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// All have the same arrays; what varies on one of them varies.
+vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
+  vtkSPHRanks& ranks, vtkPointSet* particles)
+{
+  vtkSPHRequest request = this->FindRequest(0, particles);
+  if (!request.Name.empty())
+  {
+    return request;
+  }
+  vtkPointData* data = particles->GetPointData();
+  std::vector<double> ends; // least value, and minus the greatest, of each component
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
+    {
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (array->GetNumberOfTuples() > 0)
+      {
+        array->GetRange(range, c);
+      }
+      ends.insert(ends.end(), { range[0], -range[1] });
+    }
+  }
+  ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size()));
+  vtkSPHArrayChoice all, active;
+  const double* end = ends.data();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    bool varies = false;
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c, end += 2)
+    {
+      varies = varies || end[0] < -end[1];
+    }
+    vtkSPHArrayChoice& choice = array && array == request.Array ? active : all;
+    if (array && array->GetName())
+    {
+      choice.Consider(array->GetName(), array->GetNumberOfComponents(),
+        array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE, varies);
+    }
+  }
+  const std::string& best = active.Best.empty() ? all.Best : active.Best;
+  if (!best.empty())
+  {
+    request.Array = data->GetAbstractArray(best.c_str());
+  }
+  return request;
+}
+
+//------------------------------------------------------------------------------
+// All have the same arrays, or no particles.
+void vtkSPHAlgorithm::FindFluidDistributed(
+  vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles)
+{
+  const double none = std::numeric_limits<double>::infinity();
+  for (const std::string& name :
+    this->DetectFluid ? vtkSPHParticles::ListTypes(choice, particles) : std::vector<std::string>())
+  {
+    double ends[2] = { none, none };
+    double range[2];
+    if (vtkSPHParticles::FindWholeRange(particles, name, range))
+    {
+      ends[0] = range[0];
+      ends[1] = -range[1];
+    }
+    else if (particles->GetNumberOfPoints() > 0)
+    {
+      ends[0] = -none;
+    }
+    ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
+    if (mcor_find_fluid_value(name.c_str(), ends[0], -ends[1], &choice.FluidValue))
+    {
+      choice.FluidArrayName = name;
+      return;
+    }
+  }
+}

@@ -527,6 +527,7 @@ static void lines_of_parts(void** state)
     options.topology = i & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
     options.h_scale = i < 4 ? 1 : 0.8;
     options.vertex_threshold = 0.7;
+    options.preview = i == 1;
     const mcor_input input = core_input(&set);
     mcor_surface surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.highest_level, i < 2 ? 0 : 2);

@@ -113,15 +113,32 @@ static int rooms_uniform(mcor_context* context, const mcor_input* input)
   return rooms_surface(context, "period, caps", &fine, &options) && good;
 }
 
-/* The lowest layer of the fine particles. */
+/* The lowest layer of the fine particles; then that of the coarse ones, too. */
 static int rooms_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;
-  mcor_input flat = *input;
-  flat.count = 9;
-  for (int field = MCOR_SHEPARD; field <= MCOR_WEIGHT_SUM; ++field)
+  core_set set = rooms_set();
+  for (int i = 9; i < 18; ++i)
   {
+    memcpy(set.position + 3 * i, set.position + 3 * (i + 18), 3 * sizeof(double));
+    set.smoothing_length[i] = 1.3 * 4;
+    set.volume[i] = 16;
+    set.scalar[i] = 0.25 * set.position[3 * i + 1];
+    set.solid[i] = i == 13;
+  }
+  for (int i = 0; i < 6; ++i)
+  {
+    mcor_input flat = *input;
+    const int field = i % 3, levels = i / 3;
+    flat.count = levels ? 18 : 9;
+    flat.positions = core_array(set.position, 3);
+    flat.smoothing_length = core_array(set.smoothing_length, 1);
+    flat.volume = core_array(set.volume, 1);
+    flat.scalar = core_array(set.scalar, 1);
+    flat.solid = set.solid;
     mcor_options options = rooms_options((mcor_field)field);
+    options.level_limit = levels ? MCOR_CUBE_LEVELS - 1 : 0;
+    options.seeds = levels && field == MCOR_SHEPARD ? MCOR_PAIRS : MCOR_COMPLETE;
     options.topology = MCOR_TOPOLOGY_FIELD;
     options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
     options.vertex_threshold = 0.2;
@@ -132,9 +149,11 @@ static int rooms_plane(mcor_context* context, const mcor_input* input)
     const uint64_t hash = core_hash_bytes(core_hash(&surface), surface.line_points,
       (size_t)surface.line_point_count * sizeof *surface.line_points);
     rooms_print(context, "plane", surface.line_count, hash);
-    good = status == MCOR_OK && surface.line_count > 0 && good;
+    good = status == MCOR_OK && surface.line_count > 0 &&
+      (surface.statistics.cells_of_level[1] > 0) == (levels > 0) && good;
     mcor_free_surface(&surface);
   }
+  core_free_set(&set);
   return good;
 }
 

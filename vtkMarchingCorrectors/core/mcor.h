@@ -208,8 +208,8 @@ extern "C"
     /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are those of two
      * dimensions (volumes are areas, masses per unit of depth), and lines are extracted in place of a
      * surface. 3: never. 0 (the default): 2 where exactly one coordinate is the same for all particles, else
-     * 3; see mcor_statistics.dimension. In the plane, squares stand for cubes, and all have one size; a
-     * period along the constant axis means nothing. */
+     * 3; see mcor_statistics.dimension. In the plane, squares stand for cubes; a period along
+     * the constant axis means nothing. */
     int dimension;
     mcor_sph_kernel sph_kernel;
     mcor_field field;
@@ -324,11 +324,11 @@ extern "C"
      * one (0: there is none); share of the support that these particles fill if all are as large as the
      * particle itself (0 where volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
-    double wall_share;             /* in use; 0: the surface does not end at solids */
-    double fluid_extent[3];        /* of the positions of fluid particles, along x, y, z */
-    int dimension;                 /* 2 or 3, see mcor_options.dimension */
-    double cube_size;              /* unit L; the shortest of: */
-    double cube_edges[3]; /* along x, y, z: unequal where no cube size divides all periods */
+    double wall_share;      /* in use; 0: the surface does not end at solids */
+    double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
+    int dimension;          /* 2 or 3, see mcor_options.dimension */
+    double cube_size;       /* unit L; the shortest of: */
+    double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
     /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; a
      * vertex that several ranks have is counted by one of them. Counts of bricks, nodes, faces and

@@ -70,9 +70,10 @@ static mcor_status mcor_extract_all(
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
   }
   MCOR_TRY(context->grid.count > 0 ? MCOR_OK : mcor_attend_rounds(context, 0));
-  if (surface->normals && !mcor_is_plane(context))
+  if (surface->normals)
   {
-    MCOR_TRY(mcor_finish_normals(context, surface));
+    MCOR_TRY(mcor_is_plane(context) ? mcor_finish_line_normals(context, surface)
+                                    : mcor_finish_normals(context, surface));
   }
   MCOR_TRY(mcor_crop_surface(context, input, surface));
   if (!mcor_is_adaptive(context))

@@ -146,6 +146,7 @@ typedef struct mcor_brick_set
 typedef struct mcor_tree
 {
   int top;                                    /* highest level of leaves */
+  bool is_plane;                              /* all bricks are of the lowest layer */
   int period[3], period_first[3];             /* as in mcor_lattice */
   mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 2]; /* up to one above */
   uint64_t key_limit;

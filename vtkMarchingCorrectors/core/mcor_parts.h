@@ -127,6 +127,12 @@ extern "C"
     const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures);
   void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics);
 
+  /* Lines in the plane of several parts, from their pieces, each from one point to the next, as mcor_extract joins
+   * them: into the surface's lines, and their measures. Of the surface the points are read, all of them, in the order
+   * of their keys, each once. MCOR_OUT_OF_CAPACITY: memory ran out. */
+  mcor_status mcor_join_lines(
+    const mcor_plane* plane, const int32_t (*pieces)[2], int64_t count, mcor_surface* surface);
+
   /* mcor_measure_globals for calls of mcor_probe and mcor_derive. */
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);

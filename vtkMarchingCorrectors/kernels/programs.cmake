@@ -25,7 +25,6 @@ set(mcor_program_sources
   "kernels/cubes/mcor_topology_row.cl  LATTICE"
   "kernels/cubes/mcor_march.cl         LATTICE FIELD"
   "kernels/plane/mcor_plane.cl         LATTICE"
-  "kernels/plane/mcor_plane_nodes.cl   FIELD"
   "kernels/surface/mcor_attribute.cl   FIELD PROBE"
   "kernels/surface/mcor_evaluate.cl    FIELD"
   "kernels/surface/mcor_correct.cl     FIELD"
@@ -43,5 +42,7 @@ set(mcor_program_sources
   "kernels/cubes/mcor_adaptive.cl        LATTICE ADAPTIVE"
   "kernels/cubes/mcor_adaptive_march.cl  LATTICE"
   "kernels/cubes/mcor_adaptive_topology.cl LATTICE"
+  "kernels/plane/mcor_plane_leaves.cl  LATTICE"
+  "kernels/plane/mcor_plane_nodes.cl   FIELD ADAPTIVE"
   "kernels/cubes/mcor_adaptive_pair.cl   LATTICE ADAPTIVE"
   "kernels/cubes/mcor_pair.cl          LATTICE FIELD ADAPTIVE")

@@ -66,14 +66,13 @@ double vtkMarchingCorrectorsEstimateCells(
 {
   // In units of the smoothing length or, as a factor of it, the support radius.
   double cubes = 0.0;
-  const bool isPlane =
-    mcor_find_dimension(&input, options.dimension) == 2; // its squares have one size
+  const bool isPlane = mcor_find_dimension(&input, options.dimension) == 2;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])
     {
       double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
-      for (int level = 0; level < options.level_limit && !isPlane && h >= 2.0 * least; ++level)
+      for (int level = 0; level < options.level_limit && h >= 2.0 * least; ++level)
       {
         h *= 0.5; // its cubes are larger
       }

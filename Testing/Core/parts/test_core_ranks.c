@@ -283,6 +283,28 @@ typedef struct triangle_list
   int64_t count;
 } triangle_list;
 
+/* Of lines in the plane, each piece, its second end twice. */
+static void add_lines(triangle_list* list, const mcor_surface* s)
+{
+  list->triangles =
+    realloc(list->triangles, (size_t)(list->count + s->line_point_count + 1) * sizeof(triangle));
+  assert_non_null(list->triangles);
+  for (int64_t l = 0; l < s->line_count; ++l)
+  {
+    for (int64_t i = s->line_offsets[l]; i + 1 < s->line_offsets[l + 1]; ++i)
+    {
+      triangle* to = list->triangles + list->count++;
+      memset(to, 0, sizeof *to);
+      for (int e = 0; e < 3; ++e)
+      {
+        const int64_t point = s->line_points[i + (e > 0)];
+        memcpy(to->x + 3 * e, s->points + 3 * point, 3 * sizeof(double));
+        memcpy(to->normal + 3 * e, s->normals + 3 * point, 3 * sizeof(float));
+      }
+    }
+  }
+}
+
 static void add_triangles(triangle_list* list, const mcor_surface* s)
 {
   list->triangles =
@@ -299,6 +321,7 @@ static void add_triangles(triangle_list* list, const mcor_surface* s)
     memcpy(to->normal + 3 * (i % 3), s->normals + 3 * s->triangles[i], 3 * sizeof(float));
   }
   list->count += s->triangle_count;
+  add_lines(list, s);
 }
 
 static int compare_triangles(const void* a, const void* b)
@@ -314,7 +337,8 @@ typedef struct pairs_job
   mcor_globals globals;
   mcor_surface surface[CORE_MOST_RANKS];
   mcor_status status[CORE_MOST_RANKS];
-  int thirsty; /* a rank whose memory does not suffice; -1: none */
+  double margin; /* of particles beside a box */
+  int thirsty;   /* a rank whose memory does not suffice; -1: none */
 } pairs_job;
 
 static core_set take_near(const core_set* set, const double box[6], double margin)
@@ -346,7 +370,7 @@ static void extract_part(core_rank* rank, void* data)
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
   options.memory_limit = r == job->thirsty ? 300000 : 0;
-  core_set near = take_near(job->set, box, 9);
+  core_set near = take_near(job->set, box, job->margin);
   const mcor_input input = core_input(&near);
   mcor_context* context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
@@ -377,14 +401,15 @@ static core_set make_band(void)
   return set;
 }
 
-static void check_pairs(mcor_context* context, const core_set* set, const mcor_options* options,
-  int ranks, const double* sides)
+static void check_parts(mcor_context* context, const core_set* set, const mcor_options* options,
+  int ranks, const double* sides, double margin, int64_t least)
 {
   const mcor_input input = core_input(set);
   triangle_list whole = { 0 }, all = { 0 };
-  pairs_job job = { .set = set, .options = options, .sides = sides, .thirsty = -1 };
+  pairs_job job = {
+    .set = set, .options = options, .sides = sides, .margin = margin, .thirsty = -1
+  };
   mcor_surface surface = core_extract(context, &input, options);
-  assert_true(surface.statistics.seed_cells < surface.statistics.cells_used / 8);
   CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
   add_triangles(&whole, &surface);
   core_world world;
@@ -399,8 +424,9 @@ static void check_pairs(mcor_context* context, const core_set* set, const mcor_o
     assert_int_equal(world.calls[r], world.calls[0]);
     mcor_free_surface(&job.surface[r]);
   }
-  CORE_CHECK(whole.count > 1000 && all.count == whole.count, "%d ranks: %lld triangles, not %lld",
-    ranks, (long long)all.count, (long long)whole.count);
+  CORE_CHECK(whole.count > least && all.count == whole.count,
+    "%d ranks: %lld triangles or lines, not %lld", ranks, (long long)all.count,
+    (long long)whole.count);
   assert_int_equal(sum.seed_cells, surface.statistics.seed_cells);
   assert_int_equal(sum.cells_used, surface.statistics.cells_used);
   qsort(whole.triangles, (size_t)whole.count, sizeof(triangle), compare_triangles);
@@ -412,11 +438,21 @@ static void check_pairs(mcor_context* context, const core_set* set, const mcor_o
   mcor_free_globals(&job.globals);
 }
 
+static void check_pairs(mcor_context* context, const core_set* set, const mcor_options* options,
+  int ranks, const double* sides)
+{
+  const mcor_input input = core_input(set);
+  mcor_surface surface = core_extract(context, &input, options);
+  assert_true(surface.statistics.seed_cells < surface.statistics.cells_used / 8);
+  mcor_free_surface(&surface);
+  check_parts(context, set, options, ranks, sides, 9, 1000);
+}
+
 /* A rank without memory: the other is told. */
 static void check_thirsty(
   mcor_context* context, const core_set* set, const mcor_options* options, const double* side)
 {
-  pairs_job job = { .set = set, .options = options, .sides = side, .thirsty = 1 };
+  pairs_job job = { .set = set, .options = options, .sides = side, .margin = 9, .thirsty = 1 };
   const mcor_input input = core_input(set);
   CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
   core_world world;
@@ -467,10 +503,52 @@ static void adaptive_pairs_in_rounds(void** state)
   core_free_set(&set);
 }
 
-int main(void)
+/* Lines in the plane, on squares of one size and of several, from all seeds. */
+static void lines_of_parts(void** state)
 {
+  const double iso = 0.3, two[] = { 0.4 }, three[] = { -3.1, 2.9 };
+  core_set set = core_make_set(30 * 30);
+  uint64_t seed = 8;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    double* x = set.position + 3 * i;
+    x[0] = (double)(i % 30) - 14.5 + 0.4 * random_unit(&seed);
+    x[1] = 2;
+    x[2] = (double)(i / 30) - 14.5 + 0.4 * random_unit(&seed);
+    set.smoothing_length[i] = 1.3 * (x[0] < -6 ? 1 : x[0] < 3 ? 2 : 4);
+    set.volume[i] = 1;
+    set.scalar[i] = 3 * sin(0.4 * x[0]) + 3 * sin(0.5 * x[2]);
+  }
+  for (int i = 0; i < 6; ++i)
+  {
+    mcor_options options = core_options(&iso);
+    options.seeds = i & 1 ? MCOR_PAIRS : MCOR_COMPLETE;
+    options.level_limit = i < 2 ? 0 : MCOR_CUBE_LEVELS - 1;
+    options.topology = i & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    options.h_scale = i < 4 ? 1 : 0.8;
+    options.vertex_threshold = 0.7;
+    options.preview = i == 1;
+    const mcor_input input = core_input(&set);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.statistics.highest_level, i < 2 ? 0 : 2);
+    CORE_CHECK(i < 2 || surface.statistics.cells_of_level[1] > 10, "%lld squares of level 1",
+      (long long)surface.statistics.cells_of_level[1]);
+    mcor_free_surface(&surface);
+    check_parts(*state, &set, &options, 2, two, 40, 100);
+    check_parts(*state, &set, &options, 3, three, 40, 100);
+  }
+  core_free_set(&set);
+}
+
+int main(int argc, char** argv)
+{
+  if (argc > 1)
+  {
+    cmocka_set_test_filter(argv[1]);
+  }
   const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
     cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults),
-    cmocka_unit_test(pairs_in_rounds), cmocka_unit_test(adaptive_pairs_in_rounds) };
+    cmocka_unit_test(pairs_in_rounds), cmocka_unit_test(adaptive_pairs_in_rounds),
+    cmocka_unit_test(lines_of_parts) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

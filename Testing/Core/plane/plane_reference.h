@@ -3,8 +3,8 @@
 #ifndef plane_reference_h
 #define plane_reference_h
 
-/* The field of two dimensions and its squares once more: in double precision, all nodes, no code of the
- * library's. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two coordinates, in
+/* The field of two dimensions and its squares, as fine as the particles are, once more: in double precision, all
+ * nodes, no code of the library's. Particles lie in a plane across `axis` (0 x, 1 y, 2 z) at `at`; the other two coordinates, in
  * cyclic order, are u and v. */
 
 #include "core_fixture.h"
@@ -23,12 +23,17 @@ typedef struct plane_sample
   double fluid_slope[2], weight_slope[2];
 } plane_sample;
 
+/* Coordinate u or v of a particle. */
+double plane_u(const plane_field* field, int64_t i, int a);
+/* Of the field's values. */
+double plane_range(const plane_field* field);
 /* W of two dimensions over W of three, per smoothing length; from numbers of its own. */
 double plane_norm(mcor_sph_kernel kernel);
 plane_sample plane_evaluate(const plane_field* field, double u, double v);
 
-/* Compares the surface's vertices on lattice edges with the edges that are crossed, and all vertices with the
- * field; the test fails where some are missing or there are others. Returns how many edges are crossed. */
+/* plane_squares.c: compares the surface's vertices on sides of squares, of all levels, with the sides that are crossed, how lines
+ * join them, and all vertices with the field; the test fails where some are missing or there are others. Returns
+ * how many sides are crossed. */
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
 /* The same, and the lines' directions, ends and normals; closed: they must be. */
 void plane_check_lines(

@@ -139,6 +139,55 @@ static void test_random_lines(void** state)
   }
 }
 
+/* Squares of several sizes: particles whose smoothing lengths grow along u, or that are mixed. Free surfaces are
+ * closed across levels. */
+static void test_adaptive_lines(void** state)
+{
+  uint64_t seed = 21;
+  int deep = 0;
+  for (int round = 0; round < 30; ++round)
+  {
+    const int axis = round % 3, mixed = round % 2;
+    core_set set = core_make_set(220);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      double* x = set.position + 3 * i;
+      const double u = random_unit(&seed), v = random_unit(&seed);
+      const double h = pow(mixed ? 16 : 24, mixed ? random_unit(&seed) : u);
+      x[axis] = 3;
+      x[(axis + 1) % 3] = (mixed ? 40 : 30 * pow(24, u)) * (mixed ? u : 0.1);
+      x[(axis + 2) % 3] = 3 + 2.5 * (mixed ? 8 : h) * (v - 0.5);
+      set.smoothing_length[i] = h;
+      set.volume[i] = 0.6 * h * h;
+      set.scalar[i] = 2 * random_unit(&seed) - 1;
+      set.solid[i] = random_bits(&seed) % 6 == 0;
+    }
+    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
+    mcor_options options = plane_options(&iso);
+    options.level_limit = round % 5 == 4 ? 2 : MCOR_CUBE_LEVELS - 1;
+    set.has_solids = round % 4 == 1 && round % 3 != MCOR_WEIGHT_SUM;
+    options.sph_kernel = round % 7 == 6 ? MCOR_M_PRIME_4 : MCOR_CUBIC_SPLINE;
+    options.field = (mcor_field)(round % 3);
+    options.cube_size_factor = 0.4 + 0.4 * random_unit(&seed);
+    options.vertex_threshold = round & 1 ? 0.5 : 0;
+    options.topology = round & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    CORE_CHECK(compare(*state, &set, &options, axis, options.field == MCOR_WEIGHT_SUM) > 20,
+      "round %d: few edges", round);
+    mcor_input input = core_input(&set);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    int levels = 0;
+    for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
+    {
+      levels += surface.statistics.cells_of_level[l] > 2;
+    }
+    CORE_CHECK(levels > 1, "round %d: %d levels", round, levels);
+    deep += levels > 2;
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
+  assert_true(deep > 10);
+}
+
 /* A circle: its place, length and area. */
 static void test_circle(void** state)
 {
@@ -334,13 +383,18 @@ static void test_pairs_and_reuse(void** state)
 {
   core_set set = plane_make(20, 0.2, 1, 2, -1, 4);
   const double isos[2] = { -20, 2 };
+  for (int64_t p = 0; p < set.count; ++p)
+  {
+    set.smoothing_length[p] *= set.position[3 * p] > 1 ? 2.5 : 1;
+  }
   mcor_input input = core_input_to_keep(&set);
-  for (int i = 0; i < 2; ++i)
+  for (int i = 0; i < 4; ++i)
   {
     uint64_t hash[3];
     for (int k = 0; k < 3; ++k)
     {
-      mcor_options options = plane_options(&isos[i]);
+      mcor_options options = plane_options(&isos[i % 2]);
+      options.level_limit = i < 2 ? 0 : MCOR_CUBE_LEVELS - 1;
       options.seeds = k == 1 ? MCOR_PAIRS : MCOR_COMPLETE;
       mcor_input fresh = core_input(&set);
       mcor_surface surface = core_extract(*state, k == 2 ? &fresh : &input, &options);
@@ -359,10 +413,11 @@ static void test_pairs_and_reuse(void** state)
 static void test_bits(void** state)
 {
   const double iso = 0.4;
-  core_set set = plane_make(12, 0.3, 1.5, 1, 2, 5);
+  core_set set = plane_make(12, 0.3, 3, 1, 2, 5);
   int64_t* order = core_make_order(set.count, 6);
   core_set other = core_permute(&set, order);
   mcor_options options = plane_options(&iso);
+  options.level_limit = 1;
   options.vertex_threshold = 0.5;
   uint64_t hash[3];
   for (int i = 0; i < 3; ++i)
@@ -463,10 +518,10 @@ int main(int argc, char** argv)
   }
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
     cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_lines_are_those_of_the_field),
-    cmocka_unit_test(test_random_lines), cmocka_unit_test(test_circle),
-    cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
-    cmocka_unit_test(test_points_and_rows), cmocka_unit_test(test_derivatives_and_gauges),
-    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
-    cmocka_unit_test(test_boxes_and_periods) };
+    cmocka_unit_test(test_random_lines), cmocka_unit_test(test_adaptive_lines),
+    cmocka_unit_test(test_circle), cmocka_unit_test(test_trimming),
+    cmocka_unit_test(test_what_is_no_plane), cmocka_unit_test(test_points_and_rows),
+    cmocka_unit_test(test_derivatives_and_gauges), cmocka_unit_test(test_pairs_and_reuse),
+    cmocka_unit_test(test_bits), cmocka_unit_test(test_boxes_and_periods) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

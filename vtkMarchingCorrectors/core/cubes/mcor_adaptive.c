@@ -16,6 +16,7 @@
 #include "mcor_adaptive_topology.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
+#include "mcor_plane.h"
 #include "mcor_tree.h"
 
 #include <string.h>
@@ -23,7 +24,7 @@
 /* ---- Nodes ---- */
 
 #define MCOR_LEAF_ARGS(c)                                                                          \
-  MCOR_INT((c)->adaptive.count), MCOR_BUFFER(&(c)->adaptive.finer),                                \
+  MCOR_INT((c)->adaptive.count), MCOR_INT(mcor_is_plane(c)), MCOR_BUFFER(&(c)->adaptive.finer),    \
     MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
     MCOR_BUFFER(&(c)->bricks.now.valid), MCOR_BUFFER(&(c)->case_table)
 
@@ -36,12 +37,14 @@ static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
   int wanted;
   MCOR_TRY(mcor_reserve(context, &adaptive->wanted, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_count_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->wanted)));
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer),
+    MCOR_BUFFER(&adaptive->wanted)));
   MCOR_TRY(mcor_scan(context, &adaptive->wanted, count, &wanted));
   MCOR_TRY(mcor_reserve(context, &adaptive->requests, (size_t)wanted * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_fill_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer),
-    MCOR_BUFFER(&adaptive->wanted), MCOR_BUFFER(&adaptive->requests)));
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->wanted),
+    MCOR_BUFFER(&adaptive->requests)));
   MCOR_TRY(mcor_unique(context, &adaptive->requests, wanted, tree->key_limit, &adaptive->keys,
     &adaptive->index, slots));
   MCOR_RELEASE(context, &adaptive->requests, &adaptive->index);
@@ -104,6 +107,23 @@ static mcor_status mcor_move_nodes(mcor_context* context, const mcor_brick_data*
     MCOR_BUFFER(&now->weight));
 }
 
+/* Evaluates those nodes of slots of the level that is seen that are neither known nor certain. */
+static mcor_status mcor_evaluate_span(mcor_context* context, double iso, const mcor_span* span)
+{
+  const mcor_adaptive* adaptive = &context->adaptive;
+  const mcor_brick_data* now = &context->bricks.now;
+  const size_t count = (size_t)span->count, lanes = (size_t)context->cl.lanes;
+  return mcor_is_plane(context)
+    ? MCOR_LAUNCH(context, "mcor_adaptive_plane_nodes", MCOR_HEAVY, count * 16 / lanes,
+        MCOR_GRID_ARGS(context), MCOR_INT(span->first), MCOR_INT(span->count),
+        MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
+        MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight))
+    : MCOR_LAUNCH(context, "mcor_adaptive_nodes", MCOR_HEAVY, count * (lanes == 1 ? 64 : 1),
+        MCOR_GRID_ARGS(context), MCOR_INT(span->first), MCOR_INT(span->count),
+        MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
+        MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
+}
+
 /* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. iso:
  * relative to A0. */
 static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
@@ -112,24 +132,21 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
   const mcor_brick_data* now = &context->bricks.now;
   for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
   {
-    const size_t nodes = context->cl.lanes == 1 ? 64 : 1; /* of a slot */
     mcor_span span = { .first = adaptive->first_slot[l], .end = adaptive->first_slot[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_next_span(context, &span));
     while (span.count > 0)
     {
-      MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_nodes", MCOR_HEAVY, (size_t)span.count * nodes,
-        MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
-        MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
-        MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight)));
+      MCOR_TRY(mcor_evaluate_span(context, iso, &span));
       MCOR_TRY(mcor_next_span(context, &span));
     }
   }
   MCOR_TRY(mcor_view_level(context, 0));
-  return MCOR_LAUNCH(context, "mcor_adaptive_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
     MCOR_REAL(iso), MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&now->known),
-    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
+  return mcor_spread_signs(context);
 }
 
 /* Finds the leaves in which there is surface, and evaluates what they need. */
@@ -141,10 +158,10 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
     mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells),
-    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables)));
+    MCOR_INT(count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->rungs),
+    MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_need", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->bricks.now.valid),
     MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->proofs)));
   MCOR_TRY(mcor_evaluate_slots(context, iso));
@@ -203,7 +220,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   }
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
-    context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE;
+    context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE && !mcor_is_plane(context);
   context->adaptive.dropped = context->bricks.now.count == 0 ? 0 : context->adaptive.dropped;
   mcor_leaf_nodes found = { 0 };
   mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
@@ -245,6 +262,7 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_fill(context, &adaptive->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
   MCOR_TRY(mcor_reserve(context, &adaptive->flat, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &mesh->used, 0xff, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_keep_squares(context, count));
   MCOR_TRY(mcor_clip_used(context));
   MCOR_TRY(mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_seeds(context, &seeds));
@@ -254,10 +272,14 @@ static mcor_status mcor_count_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(
-    MCOR_LAUNCH(context, "mcor_adaptive_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-      MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&adaptive->quadrants),
-      MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat)));
+  MCOR_TRY(mcor_is_plane(context)
+      ? MCOR_LAUNCH(context, "mcor_adaptive_plane_count", MCOR_MEDIUM, count,
+          MCOR_LEAF_ARGS(context), MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->quadrants),
+          MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat))
+      : MCOR_LAUNCH(context, "mcor_adaptive_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+          MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&adaptive->quadrants),
+          MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
+          MCOR_BUFFER(&adaptive->flat)));
   return MCOR_LAUNCH(context, "mcor_adaptive_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
     MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
 }
@@ -307,12 +329,13 @@ static mcor_status mcor_emit_leaf_triangles(
   mcor_mesh* mesh = &context->mesh;
   const bool follows = mcor_follows_cells(context);
   const size_t count = follows ? (size_t)mesh->triangle_count : 1;
+  const char* emit =
+    mcor_is_plane(context) ? "mcor_adaptive_plane_lines" : "mcor_adaptive_triangles";
   MCOR_TRY(mcor_reserve(context, cells, count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_adaptive_triangles", MCOR_MEDIUM, adaptive->count,
-    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&adaptive->cells), MCOR_SIDES_ARGS(sides),
-    MCOR_DECISION_ARGS(context), MCOR_INT(follows), MCOR_BUFFER(&adaptive->rungs),
-    MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+  return MCOR_LAUNCH(context, emit, MCOR_MEDIUM, adaptive->count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&adaptive->cells), MCOR_SIDES_ARGS(sides), MCOR_DECISION_ARGS(context),
+    MCOR_INT(follows), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
     MCOR_BUFFER(&mesh->triangles));
 }
 

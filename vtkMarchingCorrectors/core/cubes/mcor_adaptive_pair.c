@@ -13,6 +13,7 @@
 #include "mcor_adaptive_pair.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
+#include "mcor_plane.h"
 
 /* ---- Leaves by their place ---- */
 
@@ -73,10 +74,11 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
   cl_int flag;
   MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_pair_grow", MCOR_MEDIUM, adaptive->count,
-    MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
-    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&adaptive->mixed),
-    MCOR_BUFFER(&adaptive->cells), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain),
-    MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
+    MCOR_INT(adaptive->count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer),
+    MCOR_BUFFER(&adaptive->tables), MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid),
+    MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->cells), MCOR_PLACE_ARGS(context),
+    MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached),
+    MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
   *grown = flag != 0;
   ++context->run.statistics->march_rounds;

@@ -4,6 +4,7 @@
 /* Adaptive cubes: topology by the field, on faces between cells that are as on the uniform lattice. */
 
 #include "mcor_adaptive_topology.h"
+#include "mcor_plane.h"
 
 /* The slots' neighbours and plain cells, and the faces to decide on. */
 static mcor_status mcor_find_plain_faces(mcor_context* context)
@@ -22,9 +23,10 @@ static mcor_status mcor_find_plain_faces(mcor_context* context)
     MCOR_BUFFER(&context->mesh.used), MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain),
     MCOR_BUFFER(&topology->used)));
   return MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, slots, MCOR_INT(slots),
-    MCOR_BUFFER(neighbours), MCOR_INT(false), MCOR_INT(false), MCOR_BUFFER(&topology->plain),
-    MCOR_BUFFER(&topology->used), MCOR_BUFFER(&context->bricks.now.above),
-    MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base));
+    MCOR_BUFFER(neighbours), MCOR_INT(false), MCOR_INT(mcor_is_plane(context)),
+    MCOR_BUFFER(&topology->plain), MCOR_BUFFER(&topology->used),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&topology->sample_base));
 }
 
 /* Decides, and counts the triangles of each leaf anew. iso: relative to A0. */
@@ -37,6 +39,10 @@ mcor_status mcor_resolve_leaves(mcor_context* context, double iso)
   MCOR_TRY(mcor_begin_topology(context));
   MCOR_TRY(mcor_find_plain_faces(context));
   MCOR_TRY(mcor_decide_topology(context, &topology->used, iso));
+  if (mcor_is_plane(context)) /* as many lines as before */
+  {
+    return MCOR_OK;
+  }
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)adaptive->count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_recount", MCOR_MEDIUM, adaptive->count,
     MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->tables), MCOR_DECISION_ARGS(context),

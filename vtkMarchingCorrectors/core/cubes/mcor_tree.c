@@ -45,8 +45,8 @@ static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const
 /* Lists the parts of a split brick that are not split and in the box. */
 static void mcor_list_parts(mcor_tree* tree, const mcor_box* box, int level, const int parent[3])
 {
-  const int first = tree->leaf_count;
-  for (int d = 0; d < 8; ++d)
+  const int first = tree->leaf_count, parts = tree->is_plane ? 4 : 8;
+  for (int d = 0; d < parts; ++d)
   {
     const int b[3] = { 2 * parent[0] + (d & 1), 2 * parent[1] + (d >> 1 & 1),
       2 * parent[2] + (d >> 2) };

@@ -4,6 +4,7 @@
 /* Adaptive cubes: the bricks of all levels, their numbers and places. */
 
 #include "mcor_tree_brick.h"
+#include "mcor_plane.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,6 +34,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
   uint64_t base = 0;
   double most = 1; /* bricks of all levels, nearly */
   tree->top = lattice->top;
+  tree->is_plane = mcor_is_plane(context);
   memcpy(tree->period, lattice->period, sizeof tree->period);
   memcpy(tree->period_first, lattice->period_first, sizeof tree->period_first);
   for (int l = 0; l <= tree->top + 1; ++l)
@@ -42,7 +44,9 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
     for (int a = 0; a < 3; ++a)
     {
       const int above = MCOR_BRICK << (tree->top + 1);
-      rung->n[a] = (int)((lattice->last[a] / above + 2) << (tree->top + 1 - l));
+      rung->n[a] = tree->is_plane && a == 2
+        ? MCOR_CLUSTER /* of which one is used */
+        : (int)((lattice->last[a] / above + 2) << (tree->top + 1 - l));
       bricks *= (uint64_t)rung->n[a];
       most *= l == 0 ? rung->n[a] : 1;
     }

@@ -13,6 +13,7 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_sph_kernel.h"
 #include "mcor_tree_brick.h"
@@ -165,6 +166,10 @@ static bool mcor_split_reached(
     reached.first[a] = (int)ceil((x[a] - reach) / edge) - 1;
     reached.last[a] = (int)floor((x[a] + reach) / edge);
   }
+  if (job->tree->is_plane)
+  {
+    reached.first[2] = reached.last[2] = 0;
+  }
   const int* first = reached.first;
   int c[3];
   for (c[2] = first[2] & ~3; c[2] <= reached.last[2]; c[2] += MCOR_CLUSTER)
@@ -241,7 +246,7 @@ static int64_t mcor_split_grain(const mcor_tree_job* job)
   const double largest = fmax(2 * measure->h_min, ldexp(measure->h_max, -job->tree->top));
   const double cluster = 2 * MCOR_BRICK * MCOR_CLUSTER; /* of the level above the lowest */
   const double along = 2 * job->reach * largest / cluster + 2;
-  const double grain = 8 * MCOR_HEAVY_GRAIN / (along * along * along);
+  const double grain = 8 * MCOR_HEAVY_GRAIN / (along * along * (job->tree->is_plane ? 1 : along));
   return grain < 1 ? 1 : grain < MCOR_HEAVY_GRAIN ? (int64_t)grain : MCOR_HEAVY_GRAIN;
 }
 
@@ -331,7 +336,7 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int 
       int first[3];
       uint64_t above = set->slots[i].bricks;
       mcor_first_of_cluster(&tree->rungs[level], set->slots[i].key, first);
-      for (int a = 0; a < 3; ++a)
+      for (int a = 0; a < (tree->is_plane ? 2 : 3); ++a)
       {
         first[a] = first[a] / 2 - 1;
         above = mcor_spread_layers(a, above);
@@ -346,8 +351,8 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int 
 
 /* ---- All ---- */
 
-/* Fails where there will be too many leaves: a particle has about the volume of (h / 1.3)^3, and the
- * cubes of its level there. */
+/* Fails where there will be too many leaves: a particle has about the volume of (h / 1.3)^3, in the plane the area
+ * of (h / 1.3)^2, and the cubes of its level there. */
 static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* input)
 {
   const double brick = MCOR_BRICK * context->lattice.cube;
@@ -361,7 +366,8 @@ static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* in
     {
       const int level = mcor_tree_level_of(h[i], context->measure.h_min, context->lattice.top);
       const double bricks = h[i] / 1.3 / ldexp(brick, level);
-      leaves += mcor_is_used(context, input, begin + i) ? bricks * bricks * bricks : 0;
+      const double third = mcor_is_plane(context) ? 1 : bricks;
+      leaves += mcor_is_used(context, input, begin + i) ? bricks * bricks * third : 0;
     }
     MCOR_TRY(mcor_report_launch(context));
   }

@@ -56,9 +56,13 @@ double mcor_plane_factor(mcor_sph_kernel kernel);
 mcor_status mcor_spread_signs(mcor_context* context);
 mcor_status mcor_void_above_plane(mcor_context* context);
 mcor_status mcor_count_lines(mcor_context* context);
+/* Of all cells of leaves those that are squares. */
+mcor_status mcor_keep_squares(mcor_context* context, int leaves);
 mcor_status mcor_emit_lines(mcor_context* context, const int sides[6], mcor_buffer* cells);
 
-/* mcor_plane_lines.c: makes the polylines of the surface from the lines that its triangles stand for, and
+/* mcor_plane_lines.c: normals from lines where the gradient gives none, while all of the box's ring are there. */
+mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
+/* Makes the polylines of the surface from the lines that its triangles stand for, and
  * turns all back. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
 

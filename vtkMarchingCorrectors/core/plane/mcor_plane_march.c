@@ -3,6 +3,7 @@
 
 /* Marching squares: see mcor_plane.cl. */
 
+#include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_plane.h"
 
@@ -56,9 +57,18 @@ mcor_status mcor_emit_lines(mcor_context* context, const int sides[6], mcor_buff
     MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
 }
 
+mcor_status mcor_keep_squares(mcor_context* context, int leaves)
+{
+  return !mcor_is_plane(context) ? MCOR_OK
+                                 : MCOR_LAUNCH(context, "mcor_plane_squares", MCOR_LIGHT, leaves,
+                                     MCOR_INT(leaves), MCOR_BUFFER(&context->mesh.used));
+}
+
 void mcor_count_squares(const mcor_context* context, mcor_statistics* s)
 {
-  const int64_t squares = mcor_uses_pairs(context) ? s->seed_cells : s->seed_cells / MCOR_BRICK;
+  const bool counted =
+    mcor_uses_pairs(context) || mcor_is_adaptive(context) || context->box.is_part;
+  const int64_t squares = counted ? s->seed_cells : s->seed_cells / MCOR_BRICK;
   s->seed_cells_not_intersected -= s->seed_cells - squares;
   s->seed_cells = squares;
   s->nodes_evaluated /= MCOR_BRICK;

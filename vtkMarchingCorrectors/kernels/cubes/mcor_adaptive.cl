@@ -6,10 +6,12 @@
  * nodes. */
 
 #if MCOR_OF_LATTICE
+#define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
+
 /* Bricks whose nodes a leaf needs: of its level bits 0 to 7 (x, y, z up), of the finer one from bit 8
  * on, (x, y, z) 0 to 2 from its first one. Where a leaf beyond a far side is finer, that one has the
- * leaf's nodes there, too. */
-ulong mcor_adaptive_wanted(uint finer)
+ * leaf's nodes there, too. In the plane, those of its layer. */
+ulong mcor_adaptive_wanted(uint finer, int plane)
 {
   ulong wanted = 0;
   for (int d = 0; d < 8; ++d)
@@ -30,7 +32,7 @@ ulong mcor_adaptive_wanted(uint finer)
       }
     }
   }
-  return wanted;
+  return plane ? wanted & MCOR_WANTED_IN_PLANE : wanted;
 }
 
 /* Key of the brick of bit `b` of these. */
@@ -45,19 +47,19 @@ ulong mcor_adaptive_wanted_key(__global const mcor_rung* rungs, int4 leaf, int b
 
 /* One work-item = one leaf. Counts the bricks that it needs. */
 __kernel void mcor_adaptive_count_wanted(
-  const int count, __global const uint* finer, __global int* counts)
+  const int count, const int plane, __global const uint* finer, __global int* counts)
 {
   const int i = get_global_id(0);
   if (i < count)
   {
-    counts[i] = (int)popcount(mcor_adaptive_wanted(finer[i]));
+    counts[i] = (int)popcount(mcor_adaptive_wanted(finer[i], plane));
   }
 }
 
 /* One work-item = one leaf. Reads the scanned counts. Writes the keys of the bricks that it needs. */
-__kernel void mcor_adaptive_fill_wanted(const int count, __global const mcor_rung* rungs,
-  __global const int4* cells, __global const uint* finer, __global const int* scanned,
-  __global ulong* keys)
+__kernel void mcor_adaptive_fill_wanted(const int count, const int plane,
+  __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
+  __global const int* scanned, __global ulong* keys)
 {
   const int i = get_global_id(0);
   if (i >= count)
@@ -65,7 +67,7 @@ __kernel void mcor_adaptive_fill_wanted(const int count, __global const mcor_run
     return;
   }
   int to = scanned[i];
-  for (ulong rest = mcor_adaptive_wanted(finer[i]); rest; rest &= rest - 1)
+  for (ulong rest = mcor_adaptive_wanted(finer[i], plane); rest; rest &= rest - 1)
   {
     keys[to++] = mcor_adaptive_wanted_key(rungs, cells[i], mcor_ctz(rest));
   }
@@ -91,7 +93,7 @@ __kernel void mcor_adaptive_bricks(const int count, const int top, __global cons
 }
 
 /* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
-__kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count,
+__kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count, const int plane,
   __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
   __global int* tables)
 {
@@ -100,7 +102,7 @@ __kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count,
   {
     return;
   }
-  const ulong wanted = mcor_adaptive_wanted(finer[i]);
+  const ulong wanted = mcor_adaptive_wanted(finer[i], plane);
   for (int b = 0; b < MCOR_LEAF_SLOTS; ++b)
   {
     tables[i * (long)MCOR_LEAF_SLOTS + b] = wanted >> b & 1
@@ -209,7 +211,7 @@ bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
 
 /* One work-item = one leaf. Writes whether its cells have nodes on both sides: if not, there is no surface.
  * Then values are needed, of slots that were certain, too. */
-__kernel void mcor_adaptive_need(const int count, __global const uint* finer,
+__kernel void mcor_adaptive_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global uchar* proofs)
 {
@@ -219,7 +221,7 @@ __kernel void mcor_adaptive_need(const int count, __global const uint* finer,
     return;
   }
   __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
-  if (finer[i] == 0)
+  if (finer[i] == 0 && !plane)
   {
     mixed[i] = mcor_leaf_ask_plain(slots, above, valid, proofs);
     return;

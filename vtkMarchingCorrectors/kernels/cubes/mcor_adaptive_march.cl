@@ -12,12 +12,14 @@ typedef struct
   __global const int* slots; /* of mcor_adaptive_tables */
   __global const ulong *above, *valid;
   uint hanging; /* where finer nodes are, by where they lie in the leaf: bits as of directions */
+  int plane;    /* nodes above the plane are as those in it */
   ulong corners_above[8], corners_valid[8]; /* of cells, see mcor_cell_corners */
 } mcor_leaf;
 
 /* Slot and number of the node at u, by the leaf's level where that has a slot for it. */
 int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
 {
+  z = leaf->plane ? 0 : z;
   if (((x | y | z) & 1) == 0)
   {
     const int slot = leaf->slots[(x >> 3) | (y >> 3) << 1 | (z >> 3) << 2];
@@ -55,8 +57,9 @@ void mcor_leaf_masks(const mcor_leaf* leaf, __global const ulong* masks, ulong m
   for (int d = 0; d < 8; ++d)
   {
     const int slot = leaf->slots[d];
+    const bool above = leaf->plane && d > 3; /* which no cell needs */
     m[d] = slot < 0 ? 0 : masks[slot];
-    for (int n = 0; n < 64 && slot < 0; ++n)
+    for (int n = 0; n < 64 && slot < 0 && !above; ++n)
     {
       const int x = n & 3, y = n >> 2 & 3, z = n >> 4;
       if ((d & 1 && x) || (d & 2 && y) || (d & 4 && z))
@@ -71,10 +74,11 @@ void mcor_leaf_masks(const mcor_leaf* leaf, __global const ulong* masks, ulong m
   mcor_cell_corners(m);
 }
 
-mcor_leaf mcor_leaf_load(int i, __global const uint* finer, __global const int* tables,
+mcor_leaf mcor_leaf_load(int i, int plane, __global const uint* finer, __global const int* tables,
   __global const ulong* above, __global const ulong* valid)
 {
   mcor_leaf leaf;
+  leaf.plane = plane;
   leaf.slots = tables + i * (long)MCOR_LEAF_SLOTS;
   leaf.above = above;
   leaf.valid = valid;
@@ -246,7 +250,7 @@ void mcor_leaf_mark(
 }
 
 #define MCOR_LEAF_PARAMS                                                                           \
-  const int count, __global const uint *finer, __global const int *tables,                         \
+  const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
 
 /* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
@@ -265,7 +269,7 @@ __kernel void mcor_adaptive_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
   {
     return;
   }
-  const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
+  const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
   const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   bool some = mcor_leaf_crossed(&leaf, hanging) != 0;
   for (ulong rest = hanging; rest && !some; rest &= rest - 1)
@@ -304,7 +308,7 @@ __kernel void mcor_adaptive_classify(MCOR_LEAF_PARAMS, __global const uchar* mix
     triangle_count[i] = flat[i] = 0;
     return;
   }
-  const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
+  const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
   const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   ulong cells = (mcor_leaf_crossed(&leaf, hanging) | hanging) & used[i];
   const ulong within = owned[i]; /* which may be `used` */
@@ -385,7 +389,7 @@ __kernel void mcor_adaptive_triangles(MCOR_LEAF_PARAMS, __global const int4* cel
   {
     return;
   }
-  const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
+  const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
   const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   const ulong key = mcor_adaptive_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, cells[i]);

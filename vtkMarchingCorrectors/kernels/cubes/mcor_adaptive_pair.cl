@@ -276,7 +276,7 @@ void mcor_leaf_reach_across(const mcor_leaf* leaf, int4 brick, ulong cells, int 
 /* One work-item = one leaf with cells that are new to this round. Reads its nodes' masks where it is mixed. Grows
  * the cells reached by now through crossed faces of used cells, within the leaf to the end, and one step
  * beyond its sides. domain: where nodes have right values. */
-__kernel void mcor_adaptive_pair_grow(const int count, __global const uint* finer,
+__kernel void mcor_adaptive_pair_grow(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global const uchar* mixed, __global const int4* bricks, MCOR_PLACE_PARAMS,
   __global const ulong* domain, __global ulong* grown, __global uint* reached, __global int* flags)
@@ -292,7 +292,7 @@ __kernel void mcor_adaptive_pair_grow(const int count, __global const uint* fine
   {
     return;
   }
-  const mcor_leaf leaf = mcor_leaf_load(i, finer, tables, above, valid);
+  const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
   const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   mcor_leaf_faces faces = mcor_leaf_plain_faces(&leaf, hanging);
   cells = mcor_leaf_grow(&leaf, hanging, cells, domain[i], &faces);

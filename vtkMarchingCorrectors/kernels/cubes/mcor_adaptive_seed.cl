@@ -320,8 +320,8 @@ int mcor_leaf_of_region(
 
 #if MCOR_OF_LATTICE
 /* One work-item = one region. Writes of its leaves whether they are to be examined: nodes that cells of
- * theirs may have are on both sides. */
-__kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, __global const uint* finer,
+ * theirs may have are on both sides. In the plane, none are up from it. */
+__kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, const int plane, __global const uint* finer,
   __global const int* states, __global uchar* chosen)
 {
   const int r = get_global_id(0);
@@ -331,8 +331,9 @@ __kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, __global const uint* fine
   }
   const int4 parent = leaves[regions[r]] >> 1;
   const int level = leaves[regions[r]].w;
+  const int directions = plane ? 4 : 8;
   int up[8] = { r };
-  for (int d = 1; d < 8; ++d)
+  for (int d = 1; d < directions; ++d)
   {
     up[d] = mcor_find_region(MCOR_REGION_ARGS, level + 1, parent.x + (d & 1),
       parent.y + (d >> 1 & 1), parent.z + (d >> 2));
@@ -341,7 +342,7 @@ __kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, __global const uint* fine
   {
     int sides = states[i] & MCOR_EXAMINE;
     const bool open = states[i] & MCOR_OPEN_SIDES, alone = open || finer[i] != 0;
-    for (int d = 1; d < 8 && !alone && sides != MCOR_EXAMINE; ++d)
+    for (int d = 1; d < directions && !alone && sides != MCOR_EXAMINE; ++d)
     {
       const int x = leaves[i].x + (d & 1), y = leaves[i].y + (d >> 1 & 1),
                 z = leaves[i].z + (d >> 2);

@@ -35,7 +35,9 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   int count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const ulong between = all ? ~0UL : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
+    const ulong between = all ? ~0UL
+      : plane                 ? p[0]
+                              : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
     const ulong layer = !plane ? ~0UL : axis == 2 ? 0xffffUL : 0; /* of faces that are squares */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);

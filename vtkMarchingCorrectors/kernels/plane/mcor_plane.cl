@@ -20,6 +20,16 @@ __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __
   }
 }
 
+/* One work-item = one leaf. Of its cells, leaves those that are squares. */
+__kernel void mcor_plane_squares(const int count, __global ulong* cells)
+{
+  const int i = get_global_id(0);
+  if (i < count)
+  {
+    cells[i] &= MCOR_PLANE_MASK;
+  }
+}
+
 /* Corners of a square that are above: bits 0..3 (0, 0), (1, 0), (0, 1), (1, 1). m: of its cells. */
 int mcor_plane_case(const ulong* corners, int cell)
 {

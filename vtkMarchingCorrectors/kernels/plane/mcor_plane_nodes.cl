@@ -54,8 +54,51 @@ void mcor_plane_store(const mcor_plane_sums* sums, __global real* value, __globa
   }
 }
 
-/* One work-item = MCOR_LANES nodes of a brick. Where they are needed, reads the particles that reach them.
- * Writes their values and weights, and the same above them, see mcor_plane_spread. */
+/* The query for places in the plane, so many cubes along x and y, from a brick's node on. */
+mcor_query mcor_plane_query(const mcor_grid* grid, int4 brick, int first, int x, int y)
+{
+  const int corner[3] = { brick.x * MCOR_BRICK + (first & 3), brick.y * MCOR_BRICK + (first >> 2),
+    0 };
+  const int extent[3] = { x, y, 0 };
+  mcor_query query;
+  query.radius = -1;
+  for (int a = 0; a < 3; ++a)
+  {
+    query.low[a] = (fix)corner[a] * grid->step[a];
+    query.high[a] = query.low[a] + (fix)extent[a] * grid->step[a];
+  }
+  mcor_query_in_region(grid, brick, &query);
+  return query;
+}
+
+/* Reads the particles that reach MCOR_LANES nodes of a brick from `first` on, and writes their values and
+ * weights, and the same above them, see mcor_plane_spread. */
+void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global real* node_value,
+  __global real* node_weight)
+{
+  mcor_query query = mcor_plane_query(
+    grid, brick, first, MCOR_LANES == 1 ? 0 : MCOR_BRICK - 1, MCOR_PLANE_ROWS - 1);
+  real at[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    at[a] = (real)(query.low[a] - query.origin[a]) * grid->unit;
+  }
+  const fixv lane = mcor_lane_index();
+  const realv x = at[0] + MCOR_CONVERT_REALV(lane & 3) * grid->edge[0];
+  const realv y = at[1] + MCOR_CONVERT_REALV(lane >> 2) * grid->edge[1];
+  mcor_plane_sums sums;
+  sums.s = sums.w = sums.t = 0;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  for (bool begin = true; mcor_tile_next(grid, &query, &tile, begin); begin = false)
+  {
+    mcor_plane_add(&tile, x, y, at[2], &sums);
+  }
+  mcor_plane_store(&sums, node_value + first, node_weight + first);
+}
+
+#if MCOR_OF_FIELD
+/* One work-item = MCOR_LANES nodes of a brick. Evaluates them where they are needed. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* need, __global real* node_value, __global real* node_weight)
 {
@@ -66,33 +109,56 @@ __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  const int first = (int)(item % MCOR_PLANE_ITEMS) * MCOR_LANES;
-  const int corner[3] = { bricks[slot].x * MCOR_BRICK + (first & 3),
-    bricks[slot].y * MCOR_BRICK + (first >> 2), 0 };
-  const int extent[3] = { MCOR_LANES == 1 ? 0 : MCOR_BRICK - 1, MCOR_PLANE_ROWS - 1, 0 };
-  mcor_query query;
-  real at[3];
-  query.radius = -1;
-  for (int a = 0; a < 3; ++a)
-  {
-    query.low[a] = corner[a] * grid.step[a];
-    query.high[a] = query.low[a] + extent[a] * grid.step[a];
-  }
-  mcor_query_in_region(&grid, bricks[slot], &query);
-  for (int a = 0; a < 3; ++a)
-  {
-    at[a] = (real)(query.low[a] - query.origin[a]) * grid.unit;
-  }
-  const fixv lane = mcor_lane_index();
-  const realv x = at[0] + MCOR_CONVERT_REALV(lane & 3) * grid.edge[0];
-  const realv y = at[1] + MCOR_CONVERT_REALV(lane >> 2) * grid.edge[1];
-  mcor_plane_sums sums;
-  sums.s = sums.w = sums.t = 0;
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  for (bool begin = true; mcor_tile_next(&grid, &query, &tile, begin); begin = false)
-  {
-    mcor_plane_add(&tile, x, y, at[2], &sums);
-  }
-  mcor_plane_store(&sums, node_value + slot * 64L + first, node_weight + slot * 64L + first);
+  mcor_plane_evaluate(&grid, bricks[slot], (int)(item % MCOR_PLANE_ITEMS) * MCOR_LANES,
+    node_value + slot * 64L, node_weight + slot * 64L);
 }
+#endif
+
+#if MCOR_OF_ADAPTIVE
+/* One work-item = MCOR_LANES nodes of a slot, from slot `first` on. Evaluates them unless they are known, or
+ * certain. */
+__kernel void mcor_adaptive_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* known, __global const uchar* proofs,
+  __global real* node_value, __global real* node_weight)
+{
+  const long item = get_global_id(0);
+  const int slot = first + (int)(item / MCOR_PLANE_ITEMS);
+  if (slot >= first + count || known[slot] || MCOR_IS_CERTAIN(proofs[slot]))
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_plane_evaluate(&grid, bricks[slot], (int)(item % MCOR_PLANE_ITEMS) * MCOR_LANES,
+    node_value + slot * 64L, node_weight + slot * 64L);
+}
+
+/* One work-item = one region, of `count` from `first` on. Reads the particles that reach its part of the
+ * plane. Writes its leaves' states: all have that of the region, as bounds on leaves cost more than their nodes. */
+__kernel void mcor_adaptive_plane_regions(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int* regions, __global const int4* leaves, __global const uint* finer,
+  MCOR_SEED_PARAMS, __global int* states)
+{
+  const int region = first + get_global_id(0);
+  if (region >= first + count)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
+  const int begin = regions[region], end = regions[region + 1];
+  const int4 brick = leaves[begin] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
+  mcor_query query = mcor_plane_query(&grid, brick, 0, MCOR_REGION_CUBES, MCOR_REGION_CUBES);
+  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
+  int state = of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(&grid, &query, side_flags) : 3];
+  if (state == MCOR_EXAMINE)
+  {
+    mcor_tile tile;
+    mcor_tile_init(&tile);
+    state = mcor_seed_state(&grid, &query, &tile, false, &limits);
+  }
+  for (int i = begin; i < end; ++i)
+  {
+    states[i] = mcor_leaf_state(state, finer[i]);
+  }
+}
+#endif

@@ -1,0 +1,398 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* All squares that particles reach, of all levels: which pieces of their sides are crossed, and how lines join
+ * them. */
+
+#include "plane_reference.h"
+
+#include "oracle_adaptive.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct plane_node
+{
+  int above, valid, close; /* close: rounding may decide */
+} plane_node;
+
+/* A piece of a square's side between two nodes on different sides. */
+typedef struct plane_edge
+{
+  int64_t at[2], length; /* lower end; in the smallest squares */
+  int axis, rising;
+  int valid, close; /* whether a square that has it is valid */
+  int found;
+  int64_t next; /* where the line that begins here ends; -1 */
+} plane_edge;
+
+/* All squares of the leaves: bricks of 4 x 4 squares of their level. */
+typedef struct plane_squares
+{
+  const plane_field* field;
+  double iso, cube;
+  int top;
+  int64_t low[2], size[2]; /* in bricks of the level above the highest */
+  uint8_t* split[MCOR_CUBE_LEVELS + 1];
+  adaptive_map node_map, edge_map;
+  plane_node* nodes;
+  plane_edge* edges;
+  int64_t node_count, node_capacity, edge_count, edge_capacity;
+} plane_squares;
+
+/* Whether a brick is split, which is off the lattice where there is none. */
+static uint8_t* plane_split(const plane_squares* s, int level, int64_t x, int64_t y)
+{
+  const int up = s->top + 1 - level;
+  const int64_t i = x - s->low[0] * (INT64_C(1) << up), j = y - s->low[1] * (INT64_C(1) << up);
+  const int64_t nx = s->size[0] << up, ny = s->size[1] << up;
+  return level == 0 || i < 0 || j < 0 || i >= nx || j >= ny ? NULL : s->split[level] + j * nx + i;
+}
+
+static int plane_is_split(const plane_squares* s, int level, int64_t x, int64_t y)
+{
+  const uint8_t* split = plane_split(s, level, x, y);
+  return split && *split;
+}
+
+static void plane_measure(plane_squares* s)
+{
+  const plane_field* f = s->field;
+  double h_min = 1e300, h_max = 0, low[2] = { 1e300, 1e300 }, high[2] = { -1e300, -1e300 };
+  for (int64_t i = 0; i < f->set->count; ++i)
+  {
+    const double h = f->set->smoothing_length[i];
+    const double reach =
+      h * f->options->h_scale * oracle_support((oracle_kernel)f->options->sph_kernel);
+    h_min = fmin(h_min, h);
+    h_max = fmax(h_max, h);
+    for (int a = 0; a < 2; ++a)
+    {
+      low[a] = fmin(low[a], plane_u(f, i, a) - reach);
+      high[a] = fmax(high[a], plane_u(f, i, a) + reach);
+    }
+  }
+  while (s->top < f->options->level_limit && h_max >= ldexp(h_min, s->top + 1))
+  {
+    ++s->top;
+  }
+  const double brick = ldexp(4 * s->cube, s->top + 1);
+  for (int a = 0; a < 2; ++a)
+  {
+    s->low[a] = (int64_t)floor(low[a] / brick) - 1;
+    s->size[a] = (int64_t)floor(high[a] / brick) + 2 - s->low[a];
+  }
+  for (int l = 1; l <= s->top + 1; ++l)
+  {
+    const int up = s->top + 1 - l;
+    s->split[l] = calloc((size_t)(s->size[0] << up) * (size_t)(s->size[1] << up), 1);
+    assert_non_null(s->split[l]);
+  }
+}
+
+/* Each particle splits the bricks of the level above its own that it reaches; a split one those of the next level
+ * that touch it. */
+static void plane_split_all(plane_squares* s)
+{
+  const plane_field* f = s->field;
+  const double support =
+    f->options->h_scale * oracle_support((oracle_kernel)f->options->sph_kernel);
+  double h_min = 1e300;
+  for (int64_t i = 0; i < f->set->count; ++i)
+  {
+    h_min = fmin(h_min, f->set->smoothing_length[i]);
+  }
+  for (int64_t i = 0; i < f->set->count; ++i)
+  {
+    const double h = f->set->smoothing_length[i], reach = h * support;
+    int level = 1;
+    while (level <= s->top && h >= ldexp(h_min, level))
+    {
+      ++level;
+    }
+    const double brick = ldexp(4 * s->cube, level), u = plane_u(f, i, 0), v = plane_u(f, i, 1);
+    const int is_square = f->options->sph_kernel == MCOR_M_PRIME_4;
+    for (double y = floor((v - reach) / brick) - 1; y * brick <= v + reach; ++y)
+    {
+      for (double x = floor((u - reach) / brick) - 1; x * brick <= u + reach; ++x)
+      {
+        const double du = fmax(fmax(x * brick - u, u - (x + 1) * brick), 0);
+        const double dv = fmax(fmax(y * brick - v, v - (y + 1) * brick), 0);
+        uint8_t* split = plane_split(s, level, (int64_t)x, (int64_t)y);
+        if (split && (is_square ? fmax(du, dv) : hypot(du, dv)) <= reach)
+        {
+          *split = 1;
+        }
+      }
+    }
+  }
+  for (int l = 1; l <= s->top; ++l)
+  {
+    const int64_t up = INT64_C(1) << (s->top + 1 - l);
+    for (int64_t y = s->low[1] * up; y < (s->low[1] + s->size[1]) * up; ++y)
+    {
+      for (int64_t x = s->low[0] * up; x < (s->low[0] + s->size[0]) * up; ++x)
+      {
+        for (int d = 0; d < 9 && plane_is_split(s, l, x, y); ++d)
+        {
+          uint8_t* above = plane_split(s, l + 1, (int64_t)floor(0.5 * (double)(x + d % 3 - 1)),
+            (int64_t)floor(0.5 * (double)(y + d / 3 - 1)));
+          if (above)
+          {
+            *above = 1;
+          }
+        }
+      }
+    }
+  }
+}
+
+static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
+{
+  const int64_t at[3] = { x, y, 0 };
+  int64_t* place = adaptive_map_find(&s->node_map, at, 0, 1);
+  if (*place >= 0)
+  {
+    return s->nodes + *place;
+  }
+  const mcor_options* o = s->field->options;
+  const plane_sample p = plane_evaluate(s->field, (double)x * s->cube, (double)y * s->cube);
+  const int lacks = o->field == MCOR_SHEPARD && p.fluid < 1e-3;
+  *place = s->node_count;
+  s->nodes = adaptive_grow(s->nodes, s->node_count + 1, &s->node_capacity, sizeof *s->nodes);
+  plane_node* n = s->nodes + s->node_count++;
+  n->above = (lacks ? 0 : p.value) >= s->iso;
+  n->valid = o->field == MCOR_WEIGHT_SUM || (lacks ? -1 : p.weight) >= o->node_threshold;
+  n->close = fabs(p.value - s->iso) < 4e-6 * plane_range(s->field) ||
+    (o->field != MCOR_WEIGHT_SUM && fabs(p.weight - o->node_threshold) < 2e-6) ||
+    (o->field == MCOR_SHEPARD && fabs(p.fluid - 1e-3) < 1e-6);
+  return n;
+}
+
+/* The edge's number; a new one has no squares yet. */
+static int64_t plane_edge_at(
+  plane_squares* s, const int64_t a[2], const int64_t b[2], int a_is_above)
+{
+  const int axis = a[1] == b[1] ? 0 : 1, forward = b[axis] > a[axis];
+  const int64_t* low = forward ? a : b;
+  const int64_t at[3] = { low[0], low[1], 0 };
+  int64_t* place = adaptive_map_find(&s->edge_map, at, axis, 1);
+  if (*place < 0)
+  {
+    *place = s->edge_count;
+    s->edges = adaptive_grow(s->edges, s->edge_count + 1, &s->edge_capacity, sizeof *s->edges);
+    s->edges[s->edge_count++] = (plane_edge){ .at = { low[0], low[1] },
+      .length = llabs(b[axis] - a[axis]),
+      .axis = axis,
+      .rising = forward != a_is_above,
+      .next = -1 };
+  }
+  return *place;
+}
+
+/* A square, run through with it on its left: `half` of its sides that are halved, bits below, right, above, left. */
+static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t size, int half)
+{
+  static const int corner[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 }, { 0, 0 } };
+  int64_t at[9][2], edge[8];
+  plane_node node[9];
+  int count = 0, valid = 1, close = 0;
+  for (int side = 0; side < 4; ++side)
+  {
+    for (int k = 0; k < 1 + (half >> side & 1); ++k, ++count)
+    {
+      const int* c = corner[side];
+      const int* d = corner[side + 1];
+      at[count][0] = x + (k ? (c[0] + d[0]) * (size / 2) : c[0] * size);
+      at[count][1] = y + (k ? (c[1] + d[1]) * (size / 2) : c[1] * size);
+      node[count] = *plane_node_at(s, at[count][0], at[count][1]);
+      valid = valid && node[count].valid;
+      close = close || node[count].close;
+    }
+  }
+  memcpy(at[count], at[0], sizeof at[0]);
+  node[count] = node[0];
+  for (int i = 0; i < count; ++i)
+  {
+    edge[i] =
+      node[i].above == node[i + 1].above ? -1 : plane_edge_at(s, at[i], at[i + 1], node[i].above);
+    if (edge[i] >= 0)
+    {
+      s->edges[edge[i]].valid |= valid;
+      s->edges[edge[i]].close |= close;
+    }
+  }
+  /* What is above is cut off: a line begins where it ends, and leads to where it begins. */
+  for (int i = 0; i < count && valid; ++i)
+  {
+    if (edge[i] >= 0 && node[i].above)
+    {
+      int to = (i + count - 1) % count;
+      while (edge[to] < 0)
+      {
+        to = (to + count - 1) % count;
+      }
+      s->edges[edge[i]].next = edge[to];
+    }
+  }
+}
+
+static void plane_add_leaf(plane_squares* s, int level, int64_t bx, int64_t by)
+{
+  const int64_t size = INT64_C(1) << level;
+  const int finer[4] = { plane_is_split(s, level, bx, by - 1), plane_is_split(s, level, bx + 1, by),
+    plane_is_split(s, level, bx, by + 1), plane_is_split(s, level, bx - 1, by) };
+  for (int i = 0; i < 16; ++i)
+  {
+    const int x = i % 4, y = i / 4;
+    const int half = (y == 0 && finer[0]) | (x == 3 && finer[1]) << 1 | (y == 3 && finer[2]) << 2 |
+      (x == 0 && finer[3]) << 3;
+    plane_add_square(s, (4 * bx + x) * size, (4 * by + y) * size, size, half);
+  }
+}
+
+static plane_squares plane_create(const plane_field* f, double iso, double cube)
+{
+  plane_squares s = { .field = f, .iso = iso, .cube = cube };
+  plane_measure(&s);
+  plane_split_all(&s);
+  for (int l = s.top; l >= 0; --l)
+  {
+    const int64_t up = INT64_C(1) << (s.top + 1 - l);
+    for (int64_t y = s.low[1] * up; y < (s.low[1] + s.size[1]) * up; ++y)
+    {
+      for (int64_t x = s.low[0] * up; x < (s.low[0] + s.size[0]) * up; ++x)
+      {
+        if (!plane_is_split(&s, l, x, y) && plane_is_split(&s, l + 1, x >> 1, y >> 1))
+        {
+          plane_add_leaf(&s, l, x, y);
+        }
+      }
+    }
+  }
+  return s;
+}
+
+static void plane_destroy(plane_squares* s)
+{
+  for (int l = 1; l <= s->top + 1; ++l)
+  {
+    free(s->split[l]);
+  }
+  adaptive_map_free(&s->node_map);
+  adaptive_map_free(&s->edge_map);
+  free(s->nodes);
+  free(s->edges);
+}
+
+/* Whether the field at the edge's crossing has too little fluid for a mean, so that trimming takes it. */
+static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
+{
+  const mcor_options* o = s->field->options;
+  const double least = o->field == MCOR_WEIGHT_SUM ? -1
+    : o->field != MCOR_SHEPARD                     ? 0
+    : o->sph_kernel == MCOR_M_PRIME_4              ? 0.05
+                                                   : 1e-3;
+  double low = 0, high = 1;
+  plane_sample p = { 0 };
+  for (int k = 0; k < 50; ++k)
+  {
+    const double t = 0.5 * (low + high), along = t * (double)e->length;
+    p = plane_evaluate(s->field, ((double)e->at[0] + (e->axis == 0 ? along : 0)) * s->cube,
+      ((double)e->at[1] + (e->axis == 1 ? along : 0)) * s->cube);
+    const int before = e->rising ? p.value < s->iso : p.value >= s->iso;
+    low = before ? t : low;
+    high = before ? high : t;
+  }
+  return o->field != MCOR_WEIGHT_SUM &&
+    (p.fluid < least + 1e-5 || p.weight < o->vertex_threshold + 1e-5);
+}
+
+/* The number of the edge that a point is on; -1: of none. */
+static int64_t plane_edge_of(plane_squares* s, double u, double v)
+{
+  const double x[2] = { u / s->cube, v / s->cube };
+  const double off[2] = { fabs(x[0] - floor(x[0] + 0.5)), fabs(x[1] - floor(x[1] + 0.5)) };
+  const int axis = off[0] > off[1] ? 0 : 1;
+  CORE_CHECK(off[!axis] < 1e-9, "point %g %g is on no line of the lattice", u, v);
+  for (int l = 0; l <= s->top; ++l)
+  {
+    int64_t at[3] = { 0, 0, 0 };
+    at[axis] = (int64_t)floor(ldexp(x[axis], -l)) * (INT64_C(1) << l);
+    at[!axis] = (int64_t)floor(x[!axis] + 0.5);
+    const int64_t* edge = adaptive_map_find(&s->edge_map, at, axis, 0);
+    if (edge && s->edges[*edge].length == INT64_C(1) << l)
+    {
+      return *edge;
+    }
+  }
+  return -1;
+}
+
+/* Whether the lines lead from edge to edge as they must where nothing is doubtful. */
+static void plane_compare_lines(
+  const plane_squares* s, const int64_t* of, const mcor_surface* surface)
+{
+  int64_t lines = 0, same = 0;
+  for (int64_t l = 0; l < surface->line_count; ++l)
+  {
+    for (int64_t i = surface->line_offsets[l]; i + 1 < surface->line_offsets[l + 1]; ++i)
+    {
+      const int64_t from = of[surface->line_points[i]], to = of[surface->line_points[i + 1]];
+      if (from >= 0 && to >= 0 && !s->edges[from].close && !s->edges[to].close)
+      {
+        ++lines;
+        same += s->edges[from].next == to;
+      }
+    }
+  }
+  CORE_CHECK(lines == same || s->field->options->topology == MCOR_TOPOLOGY_FIELD,
+    "%lld of %lld lines are those of the squares", (long long)same, (long long)lines);
+}
+
+int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface)
+{
+  plane_squares s = plane_create(field, iso, surface->statistics.cube_size);
+  const double range = plane_range(field);
+  int64_t crossed = 0, found = 0;
+  int64_t* of = malloc(((size_t)surface->point_count + 1) * sizeof *of);
+  assert_non_null(of);
+  assert_int_equal(surface->statistics.highest_level, s.top);
+  for (int64_t p = 0; p < surface->point_count; ++p)
+  {
+    const double u = surface->points[3 * p + (field->axis + 1) % 3];
+    const double v = surface->points[3 * p + (field->axis + 2) % 3];
+    const plane_sample at = plane_evaluate(field, u, v);
+    const int cut = surface->boundary_flag[p] & 3;
+    CORE_CHECK(cut == 2 || fabs(at.value - iso) < 1e-5 * range, "point %lld is off by %g",
+      (long long)p, at.value - iso);
+    CORE_CHECK(cut != 1 || field->options->wall_share != 0 || at.fluid < 0.06 ||
+        fabs(at.weight - field->options->vertex_threshold) < 3e-5,
+      "cut %lld has weight %g", (long long)p, at.weight);
+    of[p] = cut ? -1 : plane_edge_of(&s, u, v);
+    if (!cut)
+    {
+      plane_edge* e = of[p] >= 0 ? s.edges + of[p] : NULL;
+      CORE_CHECK(e && (e->valid || e->close), "point %lld: a vertex on an edge that is not crossed",
+        (long long)p);
+      CORE_CHECK(!e->found, "edge %lld has two vertices", (long long)of[p]);
+      e->found = 1;
+    }
+  }
+  for (int64_t i = 0; i < s.edge_count; ++i)
+  {
+    plane_edge* e = s.edges + i;
+    if (e->valid && !e->close && !plane_is_trimmed(&s, e))
+    {
+      ++crossed;
+      found += e->found;
+    }
+  }
+  CORE_CHECK(found == crossed, "%lld edges are crossed, %lld have vertices", (long long)crossed,
+    (long long)found);
+  plane_compare_lines(&s, of, surface);
+  free(of);
+  plane_destroy(&s);
+  return crossed;
+}

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's files (.vtp, .vtu, .vtk) of SPHinXsys, PartVTK, SPlisHSPlasH: several bodies as one set, walls marked."""
+import contextlib
 import re
 
 import numpy as np
@@ -10,25 +11,57 @@ from ._particles import FileError, Particles, join
 WALL = re.compile(r"wall|boundary|solid|bound|container|tank", re.I)
 
 
-def load(path):
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOLegacy import vtkDataSetReader
+@contextlib.contextmanager
+def caught():
+    """What VTK has to say goes into a list, and nowhere else: its reader of legacy files tells of a file that ends too
+    early by a warning of no object, and gives what memory held."""
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+
+    before, window, complaints = vtkOutputWindow.GetInstance(), vtkStringOutputWindow(), []
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield complaints
+    finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
+        vtkOutputWindow.SetInstance(before)
+        complaints += window.GetOutput().splitlines()
+
+
+def make_reader(path):
+    from vtkmodules.util.vtkConstants import VTK_POLY_DATA, VTK_UNSTRUCTURED_GRID
+    from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkPolyDataReader, vtkUnstructuredGridReader
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-    reader = {".vtp": vtkXMLPolyDataReader, ".vtu": vtkXMLUnstructuredGridReader}.get(path.suffix.lower(), vtkDataSetReader)()
-    with open(path, "rb") as file:
-        if path.suffix.lower() != ".vtk" and not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
-            raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
-    complaints = []
-    for kind in ("ErrorEvent", "WarningEvent"):
-        reader.AddObserver(kind, lambda *_: complaints.append(1))
-    reader.SetFileName(str(path))
-    if hasattr(reader, "ReadAllScalarsOn"):
-        for what in ("Scalars", "Vectors", "Fields"):
-            getattr(reader, f"ReadAll{what}On")()
-    if hasattr(reader, "ReadOutputType") and reader.ReadOutputType() < 0:  # whose Update would complain on stderr, too
-        raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
-    reader.Update()
+    ending = path.suffix.lower()
+    if ending != ".vtk":
+        with open(path, "rb") as file:
+            if not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
+                raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
+        return vtkXMLPolyDataReader() if ending == ".vtp" else vtkXMLUnstructuredGridReader()
+    kind = vtkDataSetReader()
+    kind.SetFileName(str(path))
+    kinds = {VTK_POLY_DATA: vtkPolyDataReader, VTK_UNSTRUCTURED_GRID: vtkUnstructuredGridReader}
+    reader = kinds.get(kind.ReadOutputType())
+    if reader is None:
+        raise FileError(f"{path.name} is no file of VTK's with particles (poly data or an unstructured grid), or its "
+                        "beginning is damaged.")
+    reader = reader()
+    for what in ("Scalars", "Vectors", "Fields"):
+        getattr(reader, f"ReadAll{what}On")()
+    return reader
+
+
+def load(path):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    with caught() as complaints:
+        reader = make_reader(path)
+        for kind in ("ErrorEvent", "WarningEvent"):
+            reader.AddObserver(kind, lambda *_: complaints.append(1))
+        reader.SetFileName(str(path))
+        reader.Update()
     data = reader.GetOutput()
     if complaints or data is None or not hasattr(data, "GetPoints") or not data.GetPoints() or not data.GetNumberOfPoints():
         raise FileError(f"{path.name} has no points, ends too early, or is damaged.")

@@ -270,7 +270,10 @@ mcor_status mcor_read_lines(
     return mcor_fail(job->context, MCOR_OUT_OF_CAPACITY,
       "Host memory for %lld gauges could not be allocated.", (long long)job->line_count);
   }
-  memcpy(sorted, records, (size_t)count * sizeof *sorted);
+  if (count > 0)
+  {
+    memcpy(sorted, records, (size_t)count * sizeof *sorted);
+  }
   qsort(sorted, (size_t)count, sizeof *sorted, mcor_compare_records);
   gauges->count = job->line_count;
   for (int64_t l = 0, i = 0; l < gauges->count; ++l)

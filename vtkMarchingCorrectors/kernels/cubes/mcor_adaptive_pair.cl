@@ -287,7 +287,9 @@ __kernel void mcor_adaptive_pair_grow(const int count, const int plane, __global
     return;
   }
   const ulong before = grown[i];
-  ulong cells = domain[i] & ((ulong)reached[2L * i + 1] << 32 | reached[2L * i]);
+  /* Others add to them meanwhile: what is missed is there in the next round. */
+  const ulong first = atomic_or(reached + 2L * i, 0), rest = atomic_or(reached + 2L * i + 1, 0);
+  ulong cells = domain[i] & (rest << 32 | first);
   if (cells == before)
   {
     return;

@@ -235,6 +235,11 @@ extern "C"
                         * weigh more than the fluid. 0: it does not end at solids. Or
                         * MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED */
     int preview;      /* nonzero: vertices by linear interpolation, no correction */
+    /* Two dimensions, nonzero: triangles fill the region above the least iso value, inside of what trimming
+     * leaves, divided by the lines of the other values: see mcor_surface.band_value. They share the points of
+     * lines; their other points are nodes of the virtual grid, and where trimming cuts its edges. iso_value is
+     * given, too. Seeds are complete, and all squares have the smallest size. Three dimensions are refused. */
+    int filled;
     double tolerance; /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;  /* of the field evaluation on the device; MCOR_FLOAT32 by default */
@@ -347,7 +352,8 @@ extern "C"
     int64_t cap_triangles; /* not included in triangles_before_trimming */
     /* Of the surface as it is returned: each edge has triangles on both sides; area, unit L^2; volume that
      * a closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In
-     * two dimensions: all lines are closed; area that they then enclose, else 0; length of lines, unit L. */
+     * two dimensions: all lines are closed; area that they then enclose, else 0, or of what is filled; length
+     * of lines, unit L. */
     int is_closed;
     double area, volume, length;
     int64_t march_rounds;
@@ -394,13 +400,17 @@ extern "C"
     double* points;          /* [point_count][3], unit L */
     int32_t* triangles;      /* [triangle_count][3], point indices */
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
-    /* Two dimensions: polylines, and no triangles. Line l runs through the points line_points[
+    /* Two dimensions: polylines, and triangles only of what is filled. Line l runs through the points line_points[
      * line_offsets[l]] to before line_offsets[l + 1], greater values on its left as seen against the constant
-     * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane. Counts of
-     * triangles in the statistics are those of lines between two points, triangle_keys is NULL. */
+     * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane, but along
+     * the constant axis, as those of triangles, where these are filled. Counts of triangles in the statistics
+     * are those of lines between two points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
+    double* band_value; /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the
+                         * field there, with which the band begins. The last band has no end. At points
+                         * inside, iso_value is this, and residual what the field is above it */
     /* Optional arrays, NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */
@@ -413,7 +423,7 @@ extern "C"
                              * eigenvalue) is the vertex threshold or the solids' share the wall
                              * share; 2: the same, but left at the linear cut; 4: on a lattice edge
                              * next to a cell that the node threshold discarded; 8: belongs to a cap
-                             * alone, see capping */
+                             * alone, see capping, or is a node that is filled around */
     double* iso_value; /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */

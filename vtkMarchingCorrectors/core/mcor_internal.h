@@ -280,6 +280,7 @@ typedef struct mcor_box
 typedef struct mcor_run
 {
   const mcor_options* options;
+  struct mcor_filling* fill; /* of iso values that are done, see mcor_fill.h; NULL */
   mcor_statistics* statistics;
   int iso_number; /* of the iso value under way */
   mcor_phase phase;
@@ -552,6 +553,9 @@ mcor_status mcor_add_attributes(
 bool mcor_output_evaluates(const mcor_context* context);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
+/* All vertices of a mesh without triangles. */
+mcor_status mcor_append_points(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface);
 /* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
 #define MCOR_SURFACE_ARRAYS 11
 typedef struct mcor_surface_array

@@ -231,6 +231,12 @@ mcor_status mcor_flatten(
   }
   MCOR_RETURN_IF(options->capping, context, MCOR_INVALID_ARGUMENT,
     "Capping closes surfaces in three dimensions; these particles lie in a plane. Turn it off.");
+  if (options->filled) /* pairs may miss lines that a region ends at */
+  {
+    o->seeds = MCOR_COMPLETE;
+    o->level_limit = 0;
+    o->iso_value = 1;
+  }
   mcor_flatten_sides(plane, options->box, o->box);
   for (int i = 0; i < 6; ++i) /* a period across the plane means nothing */
   {

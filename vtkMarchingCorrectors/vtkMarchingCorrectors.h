@@ -6,9 +6,8 @@
  *
  * vtkMarchingCorrectors takes the particles of a smoothed particle hydrodynamics (SPH) simulation
  * and generates a triangle mesh that is an isosurface of the continuous SPH field itself: every
- * vertex is moved along its lattice edge until the field has the iso value there. No image is
- * resampled, and the lattice on which the surface is triangulated is never stored, so memory grows
- * with the surface. The work is done by an OpenCL device (a CPU through PoCL, or a GPU).
+ * vertex is moved along its lattice edge until the field has the iso value there. Nothing is resampled
+ * to an image, and the lattice is never stored, so memory grows with the surface.
  *
  * With particle positions x_j, smoothing lengths h_j, volumes V_j, a scalar A_j and a kernel W, the
  * field is one of
@@ -19,81 +18,74 @@
  *
  * where s is HScaleFactor. The algorithm has seven phases:
  *
- * -# Input. The arrays are found (see below), checked for NaN, infinite and illegal values and sent
- *    to the device.
- * -# Search grid. The particles are sorted into a regular grid. It is kept for other scalars and
+ * -# Input. The arrays are found (see below), checked for NaN, infinite and illegal values, and sent
+ *    to the OpenCL device.
+ * -# Search grid. The particles are sorted into a regular grid, which is kept for other scalars and
  *    iso values of the same particles. Volumes are computed if no array gives them.
- * -# Seeds. Cells of the virtual grid through which the surface may pass are selected, see
- *    SeedMode.
- * -# Extraction. Marching Cubes on the seed cells, continued through intersected faces to their
- *    neighbors until no new cell appears. Each node is evaluated once, each intersected lattice
- *    edge gets one vertex.
- * -# Correction. Newton's method along the lattice edge, with the analytic derivative of the field
- *    and safeguarded by the edge's bracket, until the field is within Tolerance of the iso value.
- *    Normals from the analytic gradient, and all other point arrays, are evaluated at the vertices.
- * -# Trimming. Where the weight sum is low there is no fluid to speak of: cells with a node below
- *    NodeThreshold are discarded, triangles are trimmed where the weight sum is VertexThreshold. In
- *    place of the weight sum there, BoundaryDetection can name the boundary eigenvalue.
+ * -# Seeds. Cells through which the surface may pass are selected, see SeedMode.
+ * -# Extraction. Marching Cubes on the seed cells, continued through intersected faces until no new
+ *    cell appears. Each node is evaluated once; each intersected lattice edge gets one vertex.
+ * -# Correction. Newton's method along the lattice edge, safeguarded by the edge's bracket, until the
+ *    field is within Tolerance of the iso value. Normals and all other point arrays are evaluated at
+ *    the vertices.
+ * -# Trimming. Cells with a node below NodeThreshold are discarded, and triangles are trimmed where the
+ *    weight sum, or the boundary eigenvalue (see BoundaryDetection), is VertexThreshold.
  * -# Output. The surface is downloaded once, and becomes a vtkPolyData.
  *
  * See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH Data" by
  * Schindler, Fuchs, Waser, Peikert. 6th International SPHERIC Workshop, Hamburg, 2011.
  *
- * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name). The default
- * are the active scalars, unless these do not vary, or number particles or their types; then velocities,
- * the first vector, or the first scalar that varies. A vector is contoured by its magnitude or by one component (see
- * ScalarComponent). If a second vector is chosen with SetInputArrayToProcess(1, ...), the dot
- * product of the two is contoured. In free-surface mode no scalar is needed.
+ * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name). By default
+ * it is the active scalars, unless they do not vary or hold particle ids or types; then velocities, the
+ * first vector, or the first scalar that varies. A vector is contoured by its magnitude or by one
+ * component (see ScalarComponent). If a second vector is chosen with SetInputArrayToProcess(1, ...), the
+ * dot product of the two is contoured. In free-surface mode no scalar is needed. vtkSPHAlgorithm
+ * describes how the particles' other quantities are found. All lengths are in the unit of the point
+ * coordinates (L below).
  *
- * How the particles are described, and which of their arrays are found by their names, is told by
- * vtkSPHAlgorithm. GetRunStatistics() says what was chosen.
+ * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
+ * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
+ * velocities, the first vector, or the first scalar of the particles that varies; with several iso
+ * values, the iso value. The output field data holds "IsoValues" and the arrays of the input's.
  *
- * The output point data holds "Normals", the arrays asked for ("Gradients", "WeightSum",
- * "BoundaryEigenvalue", "CorrectionLength", "Residual", "BoundaryFlag"), the iso value (see
- * ComputeScalars) and all other point arrays (see InterpolateAttributes). Active scalars are velocities, the
- * first vector or the first scalar of the particles that varies, or the iso value where there are several. The
- * output field data has "IsoValues", and what the input's has. GetRunStatistics() holds the statistics of the
- * run, one array each: "Device", "Platform", "FluidParticles",
- * "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected", "LatticeOrigin",
- * "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces", "AmbiguousCells", "Tunnels",
- * "Points", "Triangles", "Area" and, of a closed surface, "Volume", "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
+ * GetRunStatistics() holds one array for each statistic of the run: "Device", "Platform",
+ * "FluidParticles", "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected",
+ * "LatticeOrigin" (in cubes), "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces",
+ * "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area" and, of a closed surface, "Volume",
+ * "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
  * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
- * "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError", "TrimVertices", "TrimVerticesLinear",
- * "SmoothingLengthRange", "ScalarRange" (not for the free surface), and the parameters: "IsoValues", "Field", "Scalar", "SmoothingLengthArray",
- * "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray", "MassArray" or "Mass",
- * "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids", "WallShare", "Kernel", "SeedMode",
- * "Topology", "Precision", "CubeSize", "Box", "PeriodicBounds" and "Capping" (where they are used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold",
- * "BoundaryDetection", "VertexThreshold", "Tolerance", "IterationLimit", "Preview". Lengths (of the
- * correction, too) are in L, "LatticeOrigin" in cubes, "ResidualMax" in the unit of the scalar, at positions
- * that the device has rounded by up to "PositionError" (in L);
- * mcor_statistics in mcor.h says more of each. All of it, and the output, is a function of the input and the
- * properties, but for what the run cost, and the two numbers of complete seeds, which count the cells
- * examined: also those that KeepDeviceData kept.
+ * "IterationsMax", "NewtonEvaluations", "ResidualMax" (unit of the scalar, at positions that the device
+ * has rounded by up to "PositionError"), "TrimVertices", "TrimVerticesLinear", "SmoothingLengthRange",
+ * "ScalarRange" (not for the free surface), and for each parameter: "IsoValues", "Field", "Scalar",
+ * "SmoothingLengthArray", "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray",
+ * "MassArray" or "Mass", "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids",
+ * "WallShare", "Kernel", "SeedMode", "Topology", "Precision", "CubeSize", "Box", "PeriodicBounds" and
+ * "Capping" (if used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection",
+ * "VertexThreshold", "Tolerance", "IterationLimit", "Preview". See mcor_statistics in mcor.h. The output
+ * and these statistics depend only on the input and the properties, except for the costs of the run, and
+ * for the seed cells, which include cells that KeepDeviceData has kept.
  *
- * All lengths are in the unit of the point coordinates (L below).
- *
- * With MPI, where the Controller has more than one process, these share the surface: all update, each
- * with some of the particles (marks of vtkGhostType as duplicates are heeded) or none. Space is divided
- * among them, particles travel to where they are needed, and each process gets the part of the surface
- * in its share of space, to the last bit as one process would make it. "GlobalPointIds" and
- * "GlobalCellIds" are the numbers that points and triangles have there: put where these say, the parts are
- * that surface. GetRunStatistics() is of the whole, and has "RankParticles", "RankCopies", "RankBytesSent", "RankWork",
- * "RankNodesEvaluated",
- * "RankTriangles" and "RankSeconds", one component for each process. An error of one is an error of all.
- * Blocks that are taken apart are as many on all.
+ * With MPI, if the Controller has more than one process, the processes share the surface. All of them
+ * update, each with some of the particles (without those that vtkGhostType marks as duplicates) or none.
+ * Each process gets the part of the surface in its share of space, to the last bit as one process would
+ * make it. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
+ * GetRunStatistics() describes the whole surface, and has "RankParticles", "RankCopies",
+ * "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles" and "RankSeconds" with one
+ * component per process. If one process fails, all do. If blocks are taken apart, all processes must have
+ * the same number of them.
  *
  * @warning
- * Every piece is contoured by itself, unless processes share the surface. Particles of a neighbouring piece, also those marked
- * as ghosts, are particles like all others: without them the surface is trimmed at the cut, and with
- * them both pieces have the surface there.
+ * Every piece is contoured by itself, unless processes share the surface. Particles of a neighbouring
+ * piece, including ghosts, are particles like all others: without them the surface is trimmed at the cut,
+ * and with them both pieces have the surface there.
  *
  * @warning
- * The `sum` field falls to zero at a free surface, so it has a second sheet along the whole free
- * surface wherever the iso value is lower than the scalar there. Shepard normalization has not.
+ * The `sum` field falls to zero at a free surface. It therefore has a second sheet along the free surface
+ * wherever the iso value is lower than the scalar there. The Shepard field does not.
  *
  * @warning
- * With SeedMode set to pairs, parts of the surface without a pair of close particles on both sides
- * of it are missed. This is the paper's selection, meant for previews and for comparison.
+ * Pairs as seeds miss parts of the surface without a pair of close particles on both sides. This is the
+ * paper's selection, meant for previews and comparison.
  *
  * @warning
  * The surface ends where trimming cuts it: it is a manifold with boundary, closed only where the
@@ -101,20 +93,12 @@
  *
  * @warning
  * With single precision output points, the rounding of the coordinates limits how well the field at
- * a vertex matches the iso value. Ask for double precision where this matters.
+ * a vertex matches the iso value.
  *
  * @warning
- * In-place changes of input arrays are seen only if Modified() is called on the array or the data
- * set, as everywhere in VTK.
- *
- * @warning
- * An observer of the progress may change the filter while an update runs, but not the values in the
- * input's arrays. The update goes on as it began; as with all of VTK's filters, the change counts
- * when Modified() is called after it.
- *
- * @warning
- * The input is checked for sizes, types and values, but a reader that is given a damaged file may
- * crash before the filter is asked.
+ * As everywhere in VTK, in-place changes of input arrays are noticed only if Modified() is called. An
+ * observer of the progress may change the filter while an update runs, but not the values in the input's
+ * arrays; the change takes effect if Modified() is called after the update.
  *
  * @sa
  * vtkSPHAlgorithm vtkSPHInterpolator vtkContourFilter vtkFlyingEdges3D vtkContourValues
@@ -195,10 +179,10 @@ public:
 
   ///@{
   /**
-   * Methods to set/get contour values, in the unit of the scalar. Several values give several
-   * surfaces in one output. By default there is none, and one surface is drawn at the median of the
-   * scalar in the fluid; where all values are positive and range over three decades, at the middle of the
-   * range in logarithms. "IsoValues" in the output field data tells it. NaN counts as none.
+   * Contour values, in the unit of the scalar. Several values give several surfaces in one output. By
+   * default there is none (NaN counts as none), and one surface is drawn at the median of the scalar in the
+   * fluid or, if all values are positive and span three decades, at the logarithmic middle of their range;
+   * see "IsoValues" in the output field data.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
   double GetValue(int i)
@@ -230,8 +214,7 @@ public:
   ///@}
 
   /**
-   * ScalarComponent for ParaView's panel, where 3 stands for the magnitude of a vector: its range
-   * domains know no other number for it.
+   * ScalarComponent for ParaView's panel, whose range domains use 3 for the magnitude of a vector.
    */
   void SetPanelComponent(int component)
   {
@@ -279,33 +262,26 @@ public:
 
   ///@{
   /**
-   * Size of the virtual grid's cubes, as a factor of the smallest smoothing length (unscaled). No
-   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. Where smoothing lengths vary, the smallest
-   * one, and with it the lattice, may differ between time steps, or pieces of a data set: set
-   * CubeSize where they are to share one.
+   * CubeSizeFactor: size of the virtual grid's cubes / smallest smoothing length (unscaled). No unit, > 0,
+   * 0.5 by default; 0.5 to 1 is sensible. The smallest smoothing length, and with it the lattice, may
+   * differ between time steps or pieces of a data set. CubeSize sets the size itself, unit L; 0 (the
+   * default): use CubeSizeFactor. Nodes lie at multiples of the size, from the origin of the coordinates.
    */
   vtkSetMacro(CubeSizeFactor, double);
   vtkGetMacro(CubeSizeFactor, double);
-  ///@}
-
-  ///@{
-  /**
-   * Size of the virtual grid's cubes, unit L. 0 (the default): use CubeSizeFactor. Nodes lie at
-   * multiples of this size, counted from the origin of the coordinates.
-   */
   vtkSetMacro(CubeSize, double);
   vtkGetMacro(CubeSize, double);
   ///@}
 
   ///@{
   /**
-   * Whether cubes are alike, see CubeSizeModeType; ADAPTIVE by default: where all particles
-   * that reach a brick of 4^3 cubes have at least 2, 4, ... times the smallest smoothing length, its
-   * cubes are as many times larger; bricks that touch differ by a factor of 2 at most. The surface is
-   * closed across sizes, and has triangles in proportion to the particles. With one smoothing length
-   * for all, the same as UNIFORM. TOPOLOGY_FIELD decides between cubes that no finer one touches.
-   * CubeLevelLimit: the highest power of 2, 0 to 24; 24 by default. The statistics have
-   * CellsOfLevel, TrianglesOfLevel, FlatLoops, and HighestLevel, to which periods may limit it.
+   * UNIFORM: cubes of one size. ADAPTIVE (the default): where all particles that reach a brick of 4^3
+   * cubes have at least 2, 4, ... times the smallest smoothing length, its cubes are 2, 4, ... times as
+   * large; bricks that touch differ by a factor of 2 at most. The surface is closed across sizes. With
+   * one smoothing length for all particles, both are the same. TOPOLOGY_FIELD only decides between cubes
+   * that no finer one touches. CubeLevelLimit: the highest power of 2, 0 to 24 (the default). The
+   * statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and "HighestLevel", which periods
+   * may lower.
    */
   vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   vtkGetMacro(CubeSizeMode, int);
@@ -317,9 +293,9 @@ public:
 
   ///@{
   /**
-   * How space is divided where processes share a surface, see SetController(): so that each has as
-   * much work as can be expected (BY_WORK, the default): surface costs more than what is within the
-   * fluid; or as many particles (BY_PARTICLES). The surface is the same, to the last bit.
+   * How space is divided among processes that share a surface, see SetController(): into equal expected
+   * work (BY_WORK, the default), which is higher at the surface than inside the fluid, or into equal
+   * numbers of particles (BY_PARTICLES). The surface is the same, to the last bit.
    */
   enum PartitionType
   {
@@ -334,10 +310,10 @@ public:
 
   ///@{
   /**
-   * Whether only the cells in a box are drawn; off by default. Box: x0, x1, y0, y1, z0, z1, unit L;
-   * sides may be infinite. Cells whose centres are in it are exactly those of the whole surface, so
-   * that boxes side by side make it up; only the particles that reach them are evaluated (with pairs
-   * as seeds all are, but for the correction). The lattice is that of all particles.
+   * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1, unit L;
+   * sides may be infinite. The result is exactly that part of the whole surface, so boxes side by side
+   * make up the whole. Only the particles that reach the box are evaluated (with pairs as seeds: all,
+   * except in the correction). The lattice is that of all particles.
    */
   vtkSetMacro(UseBox, vtkTypeBool);
   vtkGetMacro(UseBox, vtkTypeBool);
@@ -348,9 +324,9 @@ public:
 
   ///@{
   /**
-   * Close the surface at periodic sides and at those of the box's cells, off by default: by flat triangles around what
-   * is above the iso value, which share the points of the surface's border. The free surface with SOLIDS_WALL is closed
-   * at the walls, too. What encloses the body is then closed, unless trimming leaves it open. Not with PAIRS.
+   * Close the surface at the sides of the period and of the box's cells, by flat triangles where values are
+   * above the iso value; they share the points of the surface's border. With SOLIDS_WALL the free surface is
+   * closed at walls, too. Trimming may still leave the surface open. Off by default. An error with PAIRS.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);
@@ -359,7 +335,7 @@ public:
 
   ///@{
   /**
-   * Box as its lower corner and its lengths, as ParaView's box widget has it.
+   * Box as its lower corner and its lengths, for ParaView's box widget.
    */
   void SetPanelBoxPosition(double x, double y, double z);
   void SetPanelBoxLength(double x, double y, double z);
@@ -379,10 +355,10 @@ public:
 
   ///@{
   /**
-   * How the corners of a cell are connected where their values alone leave it open, see
-   * TopologyType. TOPOLOGY_TABLE (the default) keeps the higher values apart on ambiguous faces,
-   * and makes no tunnels through cells. TOPOLOGY_FIELD evaluates the field there, so that bridges
-   * and tunnels as thin as a cube are those of the field. The surface is a manifold with both.
+   * How the corners of a cell are connected where their values are ambiguous. TOPOLOGY_TABLE (the
+   * default) keeps the higher values apart on ambiguous faces, and makes no tunnels through cells.
+   * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are those of
+   * the field. The surface is a manifold with both.
    */
   vtkSetClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   vtkGetMacro(Topology, int);
@@ -402,9 +378,9 @@ public:
 
   ///@{
   /**
-   * End the surface where the fluid ends, by VertexThreshold, and at walls where that was chosen. On
-   * by default. Off keeps the triangles beyond; what NodeThreshold discards stays discarded. The free
-   * surface does not need it.
+   * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by default.
+   * Off keeps the triangles beyond, except for those that NodeThreshold discards. The free surface is not
+   * trimmed.
    */
   vtkSetMacro(Trim, vtkTypeBool);
   vtkGetMacro(Trim, vtkTypeBool);
@@ -421,13 +397,12 @@ public:
 
   ///@{
   /**
-   * What tells trimming where the fluid ends, see BoundaryDetectionType; WEIGHT_SUM by default.
-   * The eigenvalue is that of Marrone et al., "Fast free-surface detection and level-set function
-   * definition in SPH solvers", J. Comput. Phys. 229, 2010: the smallest one of the inverse of the
-   * renormalization matrix (its symmetric part). Both are about 1 inside and fall to 0 outside, but
-   * the eigenvalue needs another VertexThreshold: 0.3 trims about where a weight sum of 0.5 does;
-   * 0.75 within the fluid, 0.9 smoothing lengths from a flat surface. Near 0.5 the border is
-   * ragged, as the eigenvalue stays there over a depth of half a smoothing length.
+   * How trimming detects the end of the fluid; WEIGHT_SUM by default. EIGENVALUE is the smallest
+   * eigenvalue of the symmetric part of the inverse renormalization matrix (Marrone et al., "Fast
+   * free-surface detection and level-set function definition in SPH solvers", J. Comput. Phys. 229,
+   * 2010). Both are about 1 inside and fall to 0 outside, but the eigenvalue needs another
+   * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid, 0.9
+   * smoothing lengths from a flat surface. Near 0.5 the border is ragged.
    */
   vtkSetClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
   vtkGetMacro(BoundaryDetection, int);
@@ -446,12 +421,11 @@ public:
 
   ///@{
   /**
-   * What solid particles (see SetFluidArrayName) do to the surface's end. SOLIDS_AUTO, the default: the
-   * surface of a scalar ends at the wall, as with SOLIDS_WALL; the free surface runs on, as with
-   * SOLIDS_WEIGHT. SOLIDS_WEIGHT: it runs on behind the wall, as the weight sum does. SOLIDS_IGNORE:
-   * it ends before the wall, where the fluid's weight is VertexThreshold. SOLIDS_WALL: it ends
-   * where the solids' share of the weight sum becomes greater than WallShare; so does the free surface,
-   * which then is open along walls.
+   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_AUTO, the default:
+   * as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface. SOLIDS_WEIGHT: it continues
+   * behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it ends in front of the wall,
+   * where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL: it ends where the solids' share of
+   * the weight sum exceeds WallShare; a free surface is then open along walls.
    */
   void SetSolids(int solids);
   vtkGetMacro(Solids, int);
@@ -459,12 +433,11 @@ public:
 
   ///@{
   /**
-   * Where the surface ends at solids: their share of the weight sum there, above 0 and below 1; 0: it does
-   * not end at them. -1, the default: measured, as the solids' share at those solids that face the fluid,
-   * in the median, so that the surface of a scalar ends there; the free surface, which keeps in front of
-   * them, takes 0.5. With 0.5 it ends where solids weigh more than the fluid, about half way between the
-   * particles of the wall and those of the fluid; a greater share is farther into the wall.
-   * GetRunStatistics() has the one in use.
+   * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does not
+   * end at them. -1, the default: measured, as the median share at the solids that face the fluid, so that
+   * the surface of a scalar ends there; for the free surface 0.5. At 0.5, solids weigh as much as the
+   * fluid, about half way between the particles of both; greater shares are farther into the wall.
+   * GetRunStatistics() reports the share in use.
    */
   vtkSetMacro(WallShare, double);
   vtkGetMacro(WallShare, double);
@@ -472,79 +445,41 @@ public:
 
   ///@{
   /**
-   * Compute "Normals": unit length, on the side of lower values, from the analytic gradient of the
-   * field (in previews from the triangles). On by default.
+   * Point arrays of the output; normals and scalars are on by default.
+   * - Normals, "Normals": unit length, towards lower values, from the analytic gradient of the field (in
+   *   previews from the triangles).
+   * - Scalars: the iso value. A scalar array gives its name to it; else the name is that of the vector and
+   *   the component or "Magnitude" ("Velocity_X"), of both vectors of a dot product ("A_Dot_B"), or
+   *   "IsoValue" in free-surface mode and where a computed array ("Normals", ...) has that name.
+   * - Gradients, "Gradients": of the field, unit of the scalar / L.
+   * - WeightSum, "WeightSum": the weight used for trimming, no unit.
+   * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, whatever is chosen there.
+   * - CorrectionLength, "CorrectionLength": how far the correction moved the vertex, unit L.
+   * - Residual, "Residual": field minus iso value at the vertex, unit of the scalar.
+   * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
+   *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone.
    */
   vtkSetMacro(ComputeNormals, vtkTypeBool);
   vtkGetMacro(ComputeNormals, vtkTypeBool);
   vtkBooleanMacro(ComputeNormals, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Compute "Gradients": the gradient of the field, unit of the scalar / L. Off by default.
-   */
-  vtkSetMacro(ComputeGradients, vtkTypeBool);
-  vtkGetMacro(ComputeGradients, vtkTypeBool);
-  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Add the iso value as a point array. For a scalar array it takes the name of this array; else
-   * the name is that of the vector and the component or "Magnitude" ("Velocity_X"), of both
-   * vectors for a dot product ("A_Dot_B"), or "IsoValue" in free-surface mode and where a computed
-   * array ("Normals", ...) has that name. On by default.
-   */
   vtkSetMacro(ComputeScalars, vtkTypeBool);
   vtkGetMacro(ComputeScalars, vtkTypeBool);
   vtkBooleanMacro(ComputeScalars, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Compute "WeightSum": the weight used for trimming, no unit. Off by default.
-   */
+  vtkSetMacro(ComputeGradients, vtkTypeBool);
+  vtkGetMacro(ComputeGradients, vtkTypeBool);
+  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
   vtkSetMacro(ComputeWeightSum, vtkTypeBool);
   vtkGetMacro(ComputeWeightSum, vtkTypeBool);
   vtkBooleanMacro(ComputeWeightSum, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Compute "BoundaryEigenvalue", no unit: see BoundaryDetection, whose choice does not matter
-   * here. Off by default.
-   */
   vtkSetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
   vtkGetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
   vtkBooleanMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Compute "CorrectionLength": the distance that the correction moved the vertex, unit L. Off by
-   * default.
-   */
   vtkSetMacro(ComputeCorrectionLength, vtkTypeBool);
   vtkGetMacro(ComputeCorrectionLength, vtkTypeBool);
   vtkBooleanMacro(ComputeCorrectionLength, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Compute "Residual": field minus iso value at the vertex, unit of the scalar. Off by default.
-   */
   vtkSetMacro(ComputeResidual, vtkTypeBool);
   vtkGetMacro(ComputeResidual, vtkTypeBool);
   vtkBooleanMacro(ComputeResidual, vtkTypeBool);
-  ///@}
-
-  ///@{
-  /**
-   * Compute "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
-   * vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 of a cap
-   * alone. Off by default.
-   */
   vtkSetMacro(ComputeBoundaryFlag, vtkTypeBool);
   vtkGetMacro(ComputeBoundaryFlag, vtkTypeBool);
   vtkBooleanMacro(ComputeBoundaryFlag, vtkTypeBool);
@@ -552,11 +487,10 @@ public:
 
   ///@{
   /**
-   * Interpolate all other point arrays to the surface. float and double arrays by Shepard's method
-   * with the kernel; integers, identifiers and strings from the nearest particle. Names, component
-   * names and types are kept. An array that is NaN or infinite at a fluid particle is left out, with
-   * a warning; one that has the name of an array that is computed (or of the iso value) gives way to
-   * it. On by default.
+   * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method with the
+   * kernel; integers, identifiers and strings from the nearest particle. An array that is NaN or infinite
+   * at a fluid particle is left out, with a warning, and so is one with the name of a computed array or of
+   * the iso value. On by default.
    */
   vtkSetMacro(InterpolateAttributes, vtkTypeBool);
   vtkGetMacro(InterpolateAttributes, vtkTypeBool);
@@ -574,55 +508,40 @@ public:
 
   ///@{
   /**
-   * The correction stops where |field - iso value| is at most Tolerance times the range of the
-   * scalar, and the vertex within 2e-5 cubes of the surface: a higher tolerance than the default
-   * changes little. No unit, > 0, 1e-6 by default.
+   * The correction of a vertex stops where |field - iso value| is at most Tolerance times the range of the
+   * scalar (no unit, > 0, 1e-6 by default) and the vertex is within 2e-5 cubes of the surface, or after
+   * IterationLimit iterations (1 to 255, 30 by default).
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
-  ///@}
-
-  ///@{
-  /**
-   * Most iterations of the correction per vertex, 1 to 255, 30 by default.
-   */
   vtkSetClampMacro(IterationLimit, int, 1, 255);
   vtkGetMacro(IterationLimit, int);
   ///@}
 
   ///@{
   /**
-   * What the last update used, for a panel; of the last block of composite data. Empty, or 0, where
-   * nothing was drawn. The range is that of what was contoured (a component, magnitude or dot product)
-   * at the fluid particles, 0 to 0 for the free surface.
+   * What the last update used, for a panel; of composite data, for the last block. Empty, or 0, if nothing
+   * was drawn. The range is that of the contoured component, magnitude or dot product at the fluid
+   * particles, 0 to 0 for the free surface. SurfaceMeasures: the area of the surface and, if it is closed,
+   * its volume, in words. EstimatedCells: about how many cubes of the virtual grid the fluid fills, known
+   * before an update begins, which warns from a billion on; 0: not known.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkGetCharFromStdStringMacro(UsedIsoValues);
   vtkGetCharFromStdStringMacro(UsedSmoothingLength);
   vtkGetCharFromStdStringMacro(UsedVolume);
   vtkGetMacro(UsedCubeSize, double);
-  ///@}
-
-  /**
-   * The area of the last update's surface and, if it is closed, its volume, in words, for a panel; empty where nothing was drawn. As
-   * numbers: "Area" and "Volume" of GetRunStatistics().
-   */
   vtkGetCharFromStdStringMacro(SurfaceMeasures);
-
-  /**
-   * About how many cubes of the virtual grid the fluid fills, known before the last update began:
-   * the measure of what it may take. From a billion on, a warning says so. 0: not known.
-   */
   vtkGetMacro(EstimatedCells, double);
+  ///@}
 
   ///@{
   /**
-   * What an update with the properties and the input as they are now would find: the range that
-   * FluidScalarRange would have, the iso value that would be taken if none were given (NaN: not known), the
-   * cells of EstimatedCells (of all blocks), what UsedFluid would be, how many components the chosen array has (1 for a dot product), and the array that is taken where
-   * nobody has chosen one. The input is read as it is, and not updated. 0 to 0, 0, or empty, where it is not
-   * known: without particles, or without a scalar. Where processes share a run these are the last update's: one process alone has but some of
-   * the particles, and to ask the others could be to wait for ever.
+   * What an update with the present properties and input would find: FluidScalarRange, the default iso value
+   * (NaN: not known), the number of components of the chosen array (1 for a dot product), EstimatedCells (of
+   * all blocks), UsedFluid, and the array that is contoured if none is chosen. The input is not updated. 0 to
+   * 0, 0, or empty: not known, without particles or a scalar. If processes share a run, these are those of
+   * the last update, because one process cannot ask the others without waiting for them.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2);
   double GetNextIsoValue();

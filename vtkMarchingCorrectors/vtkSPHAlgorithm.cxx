@@ -63,9 +63,9 @@ bool vtkSPHAlgorithm::SetKernelByName(const char* name)
 }
 
 //------------------------------------------------------------------------------
-const char* vtkSPHAlgorithm::GetKernelName() const
+const char* vtkSPHAlgorithm::GetKernelName(int kernel)
 {
-  return mcor_sph_kernel_name(static_cast<mcor_sph_kernel>(this->Kernel));
+  return mcor_sph_kernel_name(static_cast<mcor_sph_kernel>(kernel));
 }
 
 //------------------------------------------------------------------------------

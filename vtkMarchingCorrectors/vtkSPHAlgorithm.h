@@ -4,29 +4,27 @@
  * @class   vtkSPHAlgorithm
  * @brief   superclass of the filters that evaluate the field of SPH particles
  *
- * What these filters share: how the particles are described (smoothing length, volume or mass and
- * density, kernel, which of them are fluid), the OpenCL device that does the work, and what is told
- * of a run.
+ * These filters share how the particles are described (smoothing length, volume or mass and density,
+ * kernel, which of them are fluid), the OpenCL device that does the work, and what is reported of a run.
  *
- * Smoothing lengths, volumes, masses and densities are point arrays, found by their usual names
- * (in this order; case, blanks, "_" and "-" do not matter) unless they are named, given as a
- * constant or DetectArrays is off:
+ * Smoothing lengths, volumes, masses and densities are point arrays. Unless they are named or given as a
+ * constant, or DetectArrays is off, they are found by their usual names (in this order; case, blanks, "_"
+ * and "-" do not matter):
  *
  *     smoothing length   SmoothingLength SmoothingLengths hsml h
  *     volume             Volume Volumes ParticleVolume vol
  *     mass               Mass Masses ParticleMass m
  *     density            Density Densities ParticleDensity rho
  *
- * The volume of a particle is the volume array; else mass / density; else, with masses alone, m_j
- * over the mass density that they sum up to; else 1 / sum_k W(x_j - x_k, h_j). What was chosen is
- * retrievable (GetUsedSmoothingLengthArrayName() and its kin). In place of any array name,
+ * The volume of a particle is taken from the volume array; else it is mass / density; else, with masses
+ * alone, m_j / sum_k m_k W(x_j - x_k, h_j); else 1 / sum_k W(x_j - x_k, h_j). As an array name,
  * "(automatic)" and "(none)" mean the same as an empty one.
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
- * The blocks of composite data are one set of particles, with the arrays that all of them have, and
- * give one surface; or each is worked on by itself, in its place, see SetBlocks(). A block by itself that
- * fails leaves its place empty; the error names it.
+ * The blocks of composite data form one set of particles, with the arrays that all of them have; or each
+ * is processed by itself, see SetBlocks(). If a block by itself fails, its place in the output stays empty,
+ * and the error names it.
  *
  * @sa
  * vtkMarchingCorrectors
@@ -94,8 +92,8 @@ public:
 
   ///@{
   /**
-   * One smoothing length for all particles, unit L. 0 (the default): use the array. If the points
-   * have no smoothing length at all, set this, or EstimateSmoothingLength.
+   * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no array,
+   * set this, or EstimateSmoothingLength.
    */
   vtkSetMacro(SmoothingLength, double);
   vtkGetMacro(SmoothingLength, double);
@@ -103,9 +101,9 @@ public:
 
   ///@{
   /**
-   * Estimate one smoothing length for all particles: 1.3 times their median spacing. For positions
-   * without further data. Goes before array and constant. Off by default. The estimated value is
-   * the "SmoothingLengthRange" of the output field data.
+   * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
+   * without further data. It takes precedence over array and constant. Off by default. The statistics
+   * report it as "SmoothingLengthRange".
    */
   vtkSetMacro(EstimateSmoothingLength, vtkTypeBool);
   vtkGetMacro(EstimateSmoothingLength, vtkTypeBool);
@@ -114,8 +112,8 @@ public:
 
   ///@{
   /**
-   * The array or constant holds the support radius of the kernel (where it becomes 0) instead of
-   * the smoothing length. Off by default.
+   * The array or constant is the support radius of the kernel (where it becomes 0) instead of the
+   * smoothing length. Off by default.
    */
   vtkSetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
   vtkGetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
@@ -125,8 +123,9 @@ public:
   ///@{
   /**
    * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses
-   * and densities may have any units that give volumes in L^3; a density is used with masses only.
+   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses and
+   * densities may have any units that give volumes in L^3; densities are used only with masses. Mass and
+   * Density: one value for all particles; 0 (the default): use the array.
    */
   vtkSetStdStringFromCharMacro(VolumeArrayName);
   vtkGetCharFromStdStringMacro(VolumeArrayName);
@@ -134,12 +133,6 @@ public:
   vtkGetCharFromStdStringMacro(MassArrayName);
   vtkSetStdStringFromCharMacro(DensityArrayName);
   vtkGetCharFromStdStringMacro(DensityArrayName);
-  ///@}
-
-  ///@{
-  /**
-   * One mass (or density) for all particles. 0 (the default): use the array.
-   */
   vtkSetMacro(Mass, double);
   vtkGetMacro(Mass, double);
   vtkSetMacro(Density, double);
@@ -148,11 +141,10 @@ public:
 
   ///@{
   /**
-   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, particles and
-   * all they carry repeat along x with that period, and their images count. A surface is that of
-   * one period, open at its sides, where it meets itself, to the last bit. Periods are whole numbers of
-   * cubes: the cube size is made to fit, see "CubeSize" in the surface's field data. Points of a probe may
-   * be anywhere: those a period apart have the same values.
+   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, the particles repeat
+   * along x with the period x1 - x0. A surface is that of one period, open at its sides, where it meets
+   * itself to the last bit. Periods are whole numbers of cubes; the cube size is reduced to fit, see
+   * "CubeSize" in the statistics. The points of a probe may lie anywhere.
    */
   vtkSetVector6Macro(PeriodicBounds, double);
   vtkGetVector6Macro(PeriodicBounds, double);
@@ -160,12 +152,11 @@ public:
 
   ///@{
   /**
-   * Take the period from the particles' field data instead of PeriodicBounds, off by default: of an
-   * array "PeriodicBounds" of six bounds; "BoxSize" of one or three lengths, as GADGET and SWIFT call
-   * it, which begin at 0, at minus half the length or at the lowest particle, whichever is the first that
-   * holds all particles; "box" of six bounds with "boundaryType", 1 where it repeats, as SPH-EXA does. Of
-   * blocks each has its own. Several processes take it
-   * from any of theirs that tell of one. An error where there is none, or there are different ones.
+   * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds" of six
+   * bounds; from "BoxSize" of one or three lengths (GADGET, SWIFT), which begin at 0, at minus half the
+   * length, or at the lowest particle, whichever contains all particles first; or from "box" of six bounds
+   * with "boundaryType", 1 where periodic (SPH-EXA). With several processes, any of them may have the array.
+   * An error if there is none, or if processes have different ones. Off by default.
    */
   vtkSetMacro(DetectPeriod, vtkTypeBool);
   vtkGetMacro(DetectPeriod, vtkTypeBool);
@@ -183,7 +174,7 @@ public:
 
   ///@{
   /**
-   * The arrays used by the last run; empty where none was: a constant, or computed.
+   * The arrays used by the last run; empty for a constant or a computed quantity.
    */
   vtkGetCharFromStdStringMacro(UsedSmoothingLengthArrayName);
   vtkGetCharFromStdStringMacro(UsedVolumeArrayName);
@@ -210,12 +201,12 @@ public:
 
   ///@{
   /**
-   * The kernel by name: "cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic",
-   * "wendland_c4", "wendland_c6" or "sinc6". Returns false, and changes nothing, if there is no such
-   * kernel.
+   * The kernel by its short name: "cubic", "wendland", ...; GetKernelName(0), (1), ... lists all names, null
+   * ends them. SetKernelByName() returns false, and changes nothing, if there is no such kernel.
    */
   bool SetKernelByName(const char* name);
-  const char* GetKernelName() const;
+  const char* GetKernelName() const { return vtkSPHAlgorithm::GetKernelName(this->Kernel); }
+  static const char* GetKernelName(int kernel);
   ///@}
 
   ///@{
@@ -229,9 +220,9 @@ public:
 
   ///@{
   /**
-   * 2: the particles lie in a plane of constant x, y or z, which all share exactly. The sums are those of
-   * two dimensions, volumes are areas, and vtkMarchingCorrectors makes lines. 3: never. 0 (the default,
-   * DIMENSION_AUTO): 2 where exactly one coordinate is the same for all particles.
+   * 2: the particles lie in a plane of constant x, y or z, which all share exactly. Sums are those of two
+   * dimensions, volumes are areas, and vtkMarchingCorrectors makes lines. 0 (DIMENSION_AUTO, the default): 2
+   * if exactly one coordinate is the same for all particles, else 3.
    */
   enum DimensionType
   {
@@ -257,10 +248,10 @@ public:
 
   ///@{
   /**
-   * Where no fluid array is named, find the fluid by what clearly tells of it: an array with a usual name
-   * (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics; or names of some of the
-   * blocks that are taken together ("walls", "boundary"), whose particles then are solid. Off by default:
-   * then a warning tells of it. GetUsedFluid() says what was found.
+   * If no fluid array is named, look for something that clearly tells fluid from walls: an array with a
+   * usual name (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
+   * together, with names such as "walls" or "boundary", whose particles are then solid. Off by default: a
+   * warning then names such arrays and blocks. GetUsedFluid() returns what was found.
    */
   vtkSetMacro(DetectFluid, vtkTypeBool);
   vtkGetMacro(DetectFluid, vtkTypeBool);
@@ -268,15 +259,14 @@ public:
   ///@}
 
   /**
-   * The array and the value that marked fluid in the last run, as "ParticleType = 0"; empty: all particles
-   * were fluid.
+   * What marked fluid in the last run, such as "ParticleType = 0"; empty: all particles were fluid.
    */
   vtkGetCharFromStdStringMacro(UsedFluid);
 
   ///@{
   /**
-   * Whether the blocks of composite data are one set of particles (TOGETHER, the default), which see
-   * each other; or each is taken by itself (APART). Those of a probe's points always are.
+   * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each is
+   * processed by itself (APART), as the blocks of a probe's points always are.
    */
   vtkSetClampMacro(Blocks, int, TOGETHER, APART);
   vtkGetMacro(Blocks, int);
@@ -314,29 +304,27 @@ public:
 
   ///@{
   /**
-   * The processes that share a run; VTK's global controller by default. With MPI and more than
-   * one process, all update together, each with some of the particles or none, see
-   * vtkMarchingCorrectors; so do probe and derivatives, whose results stay with the process that has
-   * the points or particles.
+   * The processes that share a run; VTK's global controller by default. With MPI and more than one process,
+   * all update together, each with some of the particles or none, see vtkMarchingCorrectors. Probes and
+   * derivatives return their results to the process that has the points or particles.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
   /**
-   * The sentence that says why the last run failed; empty if it did not. It is also reported as a
-   * VTK error. For composite data, one line for each block that failed, which it names.
+   * Why the last run failed, in one sentence, which is also reported as a VTK error; empty if it did not
+   * fail. For composite data, one line for each block that failed.
    */
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
   /**
-   * What the last update found, used (a surface's statistics: see vtkMarchingCorrectors) and cost, one array
-   * each: "Seconds" (one component per phase, one for building
-   * the OpenCL program, and the total, by name), "DeviceBytesPeak", "ParticlesInReach" (of the box),
-   * "Bricks", "NodesEvaluated" (those kept from earlier updates counted), "MarchRounds"; and what
-   * warnings go by: "MedianNeighbors" and "MedianSpacing" (distance of the nearest particle), both of
-   * fluid particles. Of blocks by themselves costs are sums, the rest is of the last one. Empty where nothing
-   * ran. The next update makes another field data and leaves this one as it is.
+   * One array for each number of the last update: "Seconds" (one named component for each phase, for
+   * building the OpenCL program, and in total), "DeviceBytesPeak", "ParticlesInReach" (of the box), "Bricks",
+   * "NodesEvaluated" (including those kept from earlier updates), "MarchRounds", "MedianNeighbors" and
+   * "MedianSpacing" (distance of the nearest particle), both of fluid particles; for a surface also those of
+   * vtkMarchingCorrectors. If blocks are taken apart, costs are sums, and the rest is that of the last block.
+   * Empty if nothing ran. The next update makes a new object and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
 
@@ -351,15 +339,14 @@ public:
   static std::string ListDevices();
 
   /**
-   * Drop what is kept on the device between runs. The next run takes as long as the first.
+   * Free what is kept on the device between runs. The next run takes as long as the first.
    */
   void ReleaseDeviceMemory();
 
   ///@{
   /**
-   * Most device memory in use and kept between updates by this filter, in MiB; each filter has
-   * memory of its own. 0, the default, means all that there is. An update that would need more
-   * fails with a sentence that says how much.
+   * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default): no
+   * limit. An update that would need more fails, and the error says how much.
    */
   vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(DeviceMemoryLimit, int);
@@ -367,9 +354,8 @@ public:
 
   ///@{
   /**
-   * Keep on the device what the next update may reuse: the search grid and the node values. On by
-   * default. Off, everything is given back as soon as an update does not need it any more: for one
-   * that is the only one.
+   * Keep the search grid and the node values on the device for the next update. On by default. Off: all
+   * memory is freed as soon as an update no longer needs it.
    */
   vtkSetMacro(KeepDeviceData, vtkTypeBool);
   vtkGetMacro(KeepDeviceData, vtkTypeBool);
@@ -475,7 +461,8 @@ protected:
   /** Whether any rank has fluid; the first one says so if not. */
   bool HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
     vtkSPHParticles& particles, const std::string& consequence);
-  /** What is global, for a surface, or for mcor_probe and mcor_derive. False if that failed, or in a plane. */
+  /** What is global, for a surface, or for mcor_probe and mcor_derive. False if that failed, or, of
+   * samples, in a plane. */
   bool MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
     mcor_options& options, bool forSamples, mcor_globals& globals);
 

@@ -202,7 +202,7 @@ void vtkSPHDerivatives::FailNotFinite(const std::string& array, vtkIdType partic
 {
   this->Fail("The point array '" + array + "' is NaN or infinite at particle " +
     std::to_string(particle) +
-    ", so that its gradients are not defined around. Correct its values.");
+    ", so its gradients are undefined there. Correct its values, or choose another array.");
 }
 
 //------------------------------------------------------------------------------

@@ -38,14 +38,16 @@ from marchingcorrectors._vtk_surface import (add_iso_values, add_run, build_mesh
 from marchingcorrectors._warnings import describe_warnings
 
 BIG = 2147483647
+KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
 # name: (default, type, lowest, highest). "flag" has NameOn() and NameOff().
 PROPERTIES = {
     "ScalarComponent": (-1, "int", -BIG, BIG), "ShepardNormalization": (1, "flag"), "FreeSurface": (0, "flag"),
     "SmoothingLengthArrayName": ("", "text"), "SmoothingLength": (0.0, "real"),
     "EstimateSmoothingLength": (0, "flag"), "SmoothingLengthIsSupportRadius": (0, "flag"),
     "VolumeArrayName": ("", "text"), "MassArrayName": ("", "text"), "DensityArrayName": ("", "text"),
-    "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"), "Kernel": (0, "int", 0, 8),
-    "HScaleFactor": (1.0, "real"), "Dimension": (0, "int", 0, 3), "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
+    "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"),
+    "Kernel": (0, "int", 0, len(KERNELS) - 1), "HScaleFactor": (1.0, "real"), "Dimension": (0, "int", 0, 3),
+    "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
     "CubeSizeMode": (1, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
     "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
@@ -80,11 +82,11 @@ def with_properties(kind):
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
     for quantity in ("SmoothingLength", "Volume", "Mass", "Density"):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
-    for method, (name, value) in {"KernelToCubicSpline": ("Kernel", 0), "KernelToQuadratic": ("Kernel", 1),
-                                  "KernelToMPrime4": ("Kernel", 2), "KernelToQuinticSpline": ("Kernel", 3),
-                                  "KernelToWendlandC2": ("Kernel", 4), "KernelToQuarticSpline": ("Kernel", 5),
-                                  "KernelToWendlandC4": ("Kernel", 6), "KernelToWendlandC6": ("Kernel", 7),
-                                  "KernelToSinc6": ("Kernel", 8), "SeedModeToComplete": ("SeedMode", 0),
+    kernels = {"KernelTo" + "".join(part.capitalize() for part in name.split("_")): ("Kernel", number)
+               for number, name in enumerate(KERNELS)}
+    for number, name in enumerate(KERNELS):
+        setattr(kind, name, number)
+    for method, (name, value) in {**kernels, "SeedModeToComplete": ("SeedMode", 0),
                                   "SeedModeToPairs": ("SeedMode", 1), "TopologyToTable": ("Topology", 0),
                                   "TopologyToField": ("Topology", 1),
                                   "CubeSizeModeToUniform": ("CubeSizeMode", 0),
@@ -101,7 +103,6 @@ def with_properties(kind):
 class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     """An isosurface directly from SPH particles; see vtkMarchingCorrectors.h of the sources."""
 
-    CUBIC_SPLINE, QUADRATIC, M_PRIME_4, QUINTIC_SPLINE, WENDLAND_C2 = range(5)
     COMPLETE, PAIRS = range(2)
     UNIFORM, ADAPTIVE = range(2)
     TOPOLOGY_TABLE, TOPOLOGY_FIELD = range(2)

@@ -14,10 +14,10 @@ from ._units import plain, unit_of
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
 WORDS = {int: "whole number", float: "number"}
-# As the header spells them.
+# As the header spells them: "cubic_spline" is "cubic".
 OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"},
-               "mcor_sph_kernel": {"cubic_spline": "cubic", "m_prime_4": "mprime4", "quintic_spline": "quintic",
-                                   "wendland_c2": "wendland", "quartic_spline": "quartic", "sinc_6": "sinc6"}}
+               "mcor_sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
+                                           words_of("mcor_sph_kernel")))}
 # Numbers with a word, as mcor.h defines them.
 SPECIAL = {("scalar_component", "magnitude"): -1, ("wall_share", "measured"): -1, ("wall_share", "auto"): -2}
 _double = ctypes.POINTER(ctypes.c_double)

@@ -67,31 +67,32 @@ WORDS = {
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
     "seeds": "where the surface is looked for: everywhere, so that no part of it is missed, or between pairs of "
              "particles on both sides of the iso value, as in the paper.",
-    "topology": "how nodes are connected where their values leave it open: by a fixed table, or as the field says.",
-    "dimension": "2: the particles lie in a plane of constant x, y or z; there are lines in place of a surface, and "
-                 "volumes are areas. 3: never. 0: 2 where exactly one coordinate is the same for all.",
+    "topology": "how nodes are connected where their values are ambiguous: by a fixed table, or by the field there.",
+    "dimension": "2: the particles lie in a plane of constant x, y or z; lines take the place of a surface, and "
+                 "volumes are areas. 0: 2 if exactly one coordinate is the same for all particles, else 3.",
     "h_scale": "the kernel uses this times the smoothing length; below 1 it smooths less. Volumes do not change.",
-    "cube_size_factor": "edge of the smallest cubes of the marching grid, in smallest smoothing lengths.",
-    "cube_size": "the same in the unit of the positions; 0: the factor counts.",
-    "level_limit": "cubes are as fine as the particles are: how often they may double in size, 0 to 24. 0: all of the "
-                   "smallest size.",
-    "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): points of a lower one are not "
-                      "valid.",
-    "boundary_detection": "what tells where the fluid ends: the sum of the weights, or the smallest eigenvalue of the "
-                          "inverse renormalisation matrix (Marrone et al. 2010), with vertex_threshold=0.3.",
+    "cube_size_factor": "edge of the smallest cubes of the marching grid / smallest smoothing length.",
+    "cube_size": "the edge itself, in the unit of the positions; 0: by the factor.",
+    "level_limit": "how often cubes may double in size where smoothing lengths are larger, 0 to 24; 0: all cubes "
+                   "have the smallest size.",
+    "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): points with a lower weight sum "
+                      "are not valid.",
+    "boundary_detection": "how the end of the fluid is detected: by the sum of the weights, or by the smallest "
+                          "eigenvalue of the inverse renormalisation matrix (Marrone et al. 2010), with "
+                          "vertex_threshold=0.3.",
     "vertex_threshold": "the surface is cut where boundary_detection falls below this; 0: nowhere.",
-    "wall_share": "above 0, the surface also ends where solids have a greater share of the weight: 0.5 where they "
-                  "weigh more than the fluid; \"measured\" on the layer of solids that faces it. 0: it runs on. "
-                  "\"auto\": \"measured\" for a scalar, 0 for the free surface.",
-    "preview": "True: vertices by linear interpolation on the grid's edges, faster and not exact.",
+    "wall_share": "above 0, the surface also ends where solids have a greater share of the weight: with 0.5 where they "
+                  "weigh more than the fluid, with \"measured\" on the layer of solids that faces it. 0: it does not "
+                  "end at solids. \"auto\": \"measured\" for a scalar, 0 for the free surface.",
+    "preview": "True: vertices by linear interpolation on the edges of the grid, which is faster but not exact.",
     "tolerance": "the field at a vertex differs from the iso value by at most this share of the scalar's range.",
     "iteration_limit": "Newton iterations of a vertex, 1 to 255.",
     "precision": "of the evaluation on the device.",
-    "memory_limit": "bytes of device memory; 0: all there is.",
-    "box": "(x0, x1, y0, y1, z0, z1): only the cells with their middle in it; sides may be infinite.",
-    "periodic": "(x0, x1, y0, y1, z0, z1): particles repeat with this period, along an axis with x0 < x1; or three "
-                "lengths, 0: open.",
-    "capping": "True: the surface is closed at the sides of the period and of the box; the free surface at walls "
+    "memory_limit": "maximum bytes of device memory; 0: no limit.",
+    "box": "(x0, x1, y0, y1, z0, z1): only the cells with their centres in this box; sides may be infinite.",
+    "periodic": "(x0, x1, y0, y1, z0, z1): the particles repeat along each axis with x0 < x1; or three lengths, 0 "
+                "along axes that are not periodic.",
+    "capping": "True: the surface is closed at the sides of the period and of the box; the free surface also at walls "
                "where it ends there (wall_share).",
     "normals": "True: unit normals from the field's gradient.",
     "gradients": "True: the gradient of the field; probe(): of every attribute.",
@@ -99,16 +100,16 @@ WORDS = {
     "boundary_eigenvalue": "True: the eigenvalue of boundary_detection at the points.",
     "correction_length": "True: how far each point was moved by the correction.",
     "residual": "True: field minus iso value at the points.",
-    "boundary_flag": "True: 0 inside; 1 or 2 on a cut; 4 next to a cube that was left out; 8 of a cap.",
+    "boundary_flag": "True: 0 inside; 1 or 2 on a cut; 4 next to a cube that was left out; 8 on a cap.",
     "iso_value": "True: the iso value of each point.",
     "nearest_particle": "True: the index of the fluid particle that is nearest to each point.",
-    "point_keys": "True: numbers by which points of neighbouring boxes are the same.",
-    "triangle_keys": "True: numbers by which triangles of neighbouring boxes are put in order.",
-    "triangle_normals": "True: normals are means over triangles instead.",
+    "point_keys": "True: numbers that are equal for the same point in the surfaces of neighbouring boxes.",
+    "triangle_keys": "True: numbers by which triangles of neighbouring boxes can be put in order.",
+    "triangle_normals": "True: normals are means over triangles, not from the field's gradient.",
     "smoothing_length_is_support_radius": "True: smoothing_length is the radius at which the kernel ends.",
     "estimate_smoothing_length": "True: 1.3 times the median particle distance; smoothing_length is not needed.",
-    "scalar_component": "of a vector as scalar: 0, 1, ..., or its magnitude.",
-    "ignore_solids": "True: walls do not count in the weights that trim the surface.",
+    "scalar_component": "which component of a vector is contoured: 0, 1, ..., or its magnitude.",
+    "ignore_solids": "True: walls do not add to the weights that trim the surface.",
     "particles_version": "equal numbers above 0 in two calls with one context promise that positions, smoothing "
                          "lengths, volumes and solids are the same: they stay on the device.",
     "scalar_version": "the same promise for the scalar.",

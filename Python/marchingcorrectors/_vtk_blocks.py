@@ -38,8 +38,8 @@ def find_walls(names):
     walls = [name for name in names if tells_of_walls(name)]
     if not walls or len(walls) == len(names):
         return ""
-    return (f"{walls[0]} of {len(names)} seems to hold walls. Each block is taken by itself, so that its particles are "
-            "neither walls nor neighbours of the others'. Take the blocks together.")
+    return (f"{walls[0]} of {len(names)} seems to hold walls. Each block is taken by itself, so its particles do "
+            "not affect the surfaces of the others. Take the blocks together.")
 
 
 def walk(tree, empty=False):

@@ -167,7 +167,7 @@ class Components(CommandLineTest):
 
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
-                                  ([*FREE, "--least-volume", "1"], "no use for --least-volume"),
+                                  ([*FREE, "--least-volume", "1"], "no pieces to remove; leave out --least-volume"),
                                   ([*FREE, "--components", self.output], "writes a .csv file"),
                                   ([*FREE, "--numbers", "numbers.csv"], "the table of a film")):
             self.refuse(self.extract(*options), 2, sentence)

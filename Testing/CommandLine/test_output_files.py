@@ -193,7 +193,7 @@ class OutputFiles(CommandLineTest):
         with (self.directory / "log.json").open("w") as log:
             result = self.extract("--free-surface", "--stats", "log.json", capture_output=False,
                                   stdout=log, stderr=subprocess.PIPE)
-        self.one_sentence(result, 2, "log.json would be written twice: what is printed goes there")
+        self.one_sentence(result, 2, "log.json would be written twice: standard output goes there, too")
 
     def test_pieces_are_inputs(self):
         """What a list of pieces names is read, too, and not written over, under any name."""

@@ -9,6 +9,7 @@ PRELOAD is ../CommandLine/misbehave.c.
 """
 
 import filecmp
+import json
 import os
 import signal
 import subprocess
@@ -72,6 +73,51 @@ class Program(unittest.TestCase):
         with open(self.path("s.json"), encoding="utf-8") as stream:
             self.assertIn("rank_particles", stream.read())
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
+
+    def write_plane(self):
+        """The particles, moved into the plane z = 0.5; with smoothing lengths of 1 to 4."""
+        plane = read(PARTICLES)
+        at = vtk_to_numpy(plane.GetPoints().GetData())
+        at[:, 2] = 0.5
+        low, high = at[:, 0].min(), at[:, 0].max()
+        for name, power in ("PlaneLength", 1), ("PlaneArea", 2):
+            array = vtkDoubleArray()
+            array.SetName(name)
+            for x in at[:, 0]:
+                array.InsertNextValue((0.04 * 4 ** ((x - low) / (high - low))) ** power)
+            plane.GetPointData().AddArray(array)
+        write(plane, self.path("plane.vtp"))
+        return self.path("plane.vtp")
+
+    def line_numbers(self, file):
+        with open(self.path(file), encoding="utf-8") as stream:
+            run = json.load(stream)["statistics"]
+        return [run.get(name) for name in ("dimension", "lines", "length", "area", "cells_used", "cells_of_level",
+                                           "trim_vertices", "lattice_cells", "points")]
+
+    def test_lines(self):
+        """In a plane: all points, arrays and lines are those of one process, on squares of one size and of several."""
+        plane = self.write_plane()
+        pieces = write_pieces(plane, self.folder.name, 3)
+        for cubes in "uniform", "adaptive":
+            how = ["--scalar", "Speed", "--iso", "1,2", "--smoothing-length", "PlaneLength", "--volume", "PlaneArea",
+                   "--cubes", cubes, "--quiet"]
+            self.assertEqual(self.run_alone(plane, self.path("alone.vtp"), *how, "--stats", self.path("a.json")).returncode, 0)
+            alone = read(self.path("alone.vtp"))
+            self.assertGreater(alone.GetNumberOfLines(), 5)
+            for out in "ranks.vtp", "ranks.pvtp":
+                done = self.run_ranks(pieces, self.path(out), *how, "--stats", self.path("s.json"))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                ranks = read(self.path(out))
+                for get in (lambda p: p.GetPoints().GetData(), lambda p: p.GetLines().GetConnectivityArray(),
+                            lambda p: p.GetLines().GetOffsetsArray()):
+                    np.testing.assert_array_equal(vtk_to_numpy(get(alone)), vtk_to_numpy(get(ranks)))
+                self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
+                names = [alone.GetPointData().GetArrayName(i) for i in range(alone.GetPointData().GetNumberOfArrays())]
+                self.assertIn("Normals", names)
+                for name in names:
+                    np.testing.assert_array_equal(vtk_to_numpy(alone.GetPointData().GetArray(name)),
+                                                  vtk_to_numpy(ranks.GetPointData().GetArray(name)), name)
 
     def check_same_file(self, *how):
         """A file that the first process merges is, byte for byte, that of one process."""

@@ -421,7 +421,7 @@ class TestTemporal(unittest.TestCase):
             return result
         film = interpolator({0.0: without(0.0), 0.2: without(0.2)})
         self.assertEqual(self.at(film, 0.0).GetNumberOfPoints(), 343)
-        self.refuse(film, 0.1, "recognised by their numbers", "Velocity, Heat")
+        self.refuse(film, 0.1, "matched between two steps by their ids", "Velocity, Heat")
         self.assertEqual(film.GetOutput().GetNumberOfPoints(), 0)
         self.assertEqual(self.at(film, 0.2).GetNumberOfPoints(), 343)
         film.SetIdArrayName("Number")

@@ -87,7 +87,8 @@ def main():
             wheel, = glob.glob(f"{folder}/dist/*-win_amd64.whl")
         python = make_python(folder)
         # wine reads names of files by the locale
-        environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8"}
+        environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all", "LC_ALL": "C.UTF-8",
+                       "PYTHONIOENCODING": "utf-8"}
         environment.pop("PYTHONPATH", None)
         try:
             install(python, folder / "wheels", wheel, environment)

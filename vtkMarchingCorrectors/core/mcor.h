@@ -80,29 +80,27 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    MCOR_PAIRS = 1     /* the paper's: cells between pairs of particles no farther apart than the
-                        * smoothing length (not scaled) that straddle the iso value; the same as
-                        * complete for MCOR_WEIGHT_SUM, which has no values at particles */
+    MCOR_PAIRS = 1     /* the paper's: cells between pairs of particles that are at most an (unscaled)
+                        * smoothing length apart and straddle the iso value. MCOR_WEIGHT_SUM has no
+                        * values at particles, so seeds are always complete */
   } mcor_seed_mode;
 
-  /* How the nodes of an ambiguous face (two above the iso value and two below, diagonally) and the
-   * interior of a cell are connected. Vertices are the same; the surface is a manifold with
-   * both. */
+  /* How nodes are connected on an ambiguous face (two above the iso value and two below, diagonally) and
+   * inside a cell. Both give the same vertices, and a manifold. */
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
-    MCOR_TOPOLOGY_FIELD = 1  /* by the field at the saddle of the face's bilinear interpolant and at
-                              * the saddles of the cell's trilinear one: bridges and tunnels as wide
-                              * as a cube are those of the field */
+    MCOR_TOPOLOGY_FIELD = 1  /* by the field at the saddles of the face's bilinear and the cell's
+                              * trilinear interpolant: bridges and tunnels as wide as a cube are those
+                              * of the field */
   } mcor_topology;
 
-/* Levels of cubes, 0 to 24. The cubes of the virtual grid are as fine as the particles are: their edge
- * is 2^L times the cube size where all particles that reach a brick of 4^3 such cubes have 2^L times
- * the smallest smoothing length or more; bricks that touch differ by one level at most. The surface is
- * closed across levels. With one smoothing length for all particles, all cubes are of level 0. With
- * MCOR_TOPOLOGY_FIELD the field decides on faces between two cubes that no finer cube touches, and in
- * such cubes; other ambiguous faces are as with MCOR_TOPOLOGY_TABLE. With a period, which is a whole
- * number of the largest bricks, there may be fewer levels: see mcor_statistics.highest_level. */
+/* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks of 4^3
+ * where all particles that reach the brick have at least 2^L times the smallest smoothing length; bricks
+ * that touch differ by one level at most. The surface is closed across levels. With one smoothing length
+ * for all particles, all cubes have level 0. With MCOR_TOPOLOGY_FIELD the field only decides in cubes, and
+ * on faces between two cubes, that no finer cube touches. A period is a whole number of the largest bricks,
+ * which may allow fewer levels: see mcor_statistics.highest_level. */
 #define MCOR_CUBE_LEVELS 25
 
   /* Which sides caps close, see mcor_options.capping. */
@@ -120,10 +118,9 @@ extern "C"
     MCOR_BOUNDARY_EIGENVALUE = 1  /* the smallest eigenvalue of the symmetric part of
                                    * sum V (x_j - x) (outer product) grad W(x - x_j), the inverse of
                                    * the renormalisation matrix (Marrone et al. 2010), over the same
-                                   * particles. Set vertex_threshold too: 0.3 trims about where a
-                                   * weight of 0.5 does, 0.75 trims within the fluid, 0.9 smoothing
-                                   * lengths from a flat surface. Avoid 0.5: near a flat surface the
-                                   * eigenvalue stays at 0.5 over a depth of half a smoothing length. */
+                                   * particles. Set vertex_threshold, too: 0.3 trims about where a
+                                   * weight of 0.5 does, 0.75 inside the fluid, 0.9 smoothing lengths
+                                   * from a flat surface. Near 0.5 the border is ragged. */
   } mcor_boundary_detection;
 
   /* A per-particle quantity, or one constant for all particles. */
@@ -138,7 +135,7 @@ extern "C"
     const char* name; /* for messages; may be NULL */
   } mcor_array;
 
-  /* Whether there is one: data, or a constant other than 0. */
+  /* Whether the array has data, or a constant other than 0. */
   int mcor_is_given(const mcor_array* array);
 
 #define MCOR_MAGNITUDE (-1)
@@ -148,24 +145,23 @@ extern "C"
     int64_t count;        /* number of particles; 0 gives an empty surface */
     mcor_array positions; /* [count][3], length unit L, data must not be NULL */
 
-    /* Smoothing length, unit L, > 0. It is the kernel's support radius instead where
-     * smoothing_length_is_support_radius is set. With estimate_smoothing_length, the array is not
-     * read: the value is 1.3 times the median particle spacing, one constant. */
+    /* Smoothing length, unit L, > 0; or the kernel's support radius, if smoothing_length_is_support_radius
+     * is set. With estimate_smoothing_length the array is not read, and one smoothing length, 1.3 times
+     * the median particle spacing, is used for all particles. */
     mcor_array smoothing_length;
     int smoothing_length_is_support_radius;
     int estimate_smoothing_length;
 
-    /* Particle volume, unit L^3, > 0: `volume` if given (data, or a constant other than 0); else
-     * mass / density if both are given; else with mass alone m_j / sum_k m_k W(x_j - x_k, h_j); else
-     * 1 / sum_k W(x_j - x_k, h_j). These sums leave out ignored solids and, for MCOR_WEIGHT_SUM,
-     * all solids unless the free surface ends at them. Computed volumes next to walls therefore
-     * differ between the fields. */
+    /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if both are
+     * given; else, with mass alone, m_j / sum_k m_k W(x_j - x_k, h_j); else 1 / sum_k W(x_j - x_k, h_j).
+     * These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids unless the free surface
+     * ends at them. Computed volumes next to walls therefore differ between the fields. */
     mcor_array volume, mass, density;
 
-    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. With 2 or more components,
-     * scalar_component selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not
-     * NULL, A is the dot product of the two vectors. Values of more than about 1e30 need double
-     * precision, of more than 1e290 another unit. */
+    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. Of 2 or more components, scalar_component
+     * selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not NULL, A is the dot
+     * product of the two vectors. Values above about 1e30 need double precision; above 1e290, another
+     * unit. */
     mcor_array scalar;
     int scalar_component;
     mcor_array scalar_dot;
@@ -176,15 +172,15 @@ extern "C"
     const uint8_t* solid;
     int ignore_solids;
 
-    /* Other per-particle arrays to interpolate to the surface (Shepard mean of fluid particles). An
-     * array that is not finite at a fluid particle is left out, see attribute_not_finite. */
+    /* Other arrays to interpolate to the surface (Shepard mean of fluid particles). An array that is not
+     * finite at a fluid particle is left out, see attribute_not_finite. */
     const mcor_array* attributes; /* [attribute_count] */
     int attribute_count;
 
-    /* Reuse: equal nonzero numbers in two successive calls promise that positions, smoothing
-     * lengths, volumes and solids (particles_version), the scalar (scalar_version), or all attributes
-     * (attributes_version: mcor_probe then keeps them on the device) are the same. Reuse saves time and
-     * never changes the result. 0: never reuse. */
+    /* Reuse: equal nonzero numbers in two successive calls promise that these are the same: positions,
+     * smoothing lengths, volumes and solids (particles_version), the scalar (scalar_version), or all
+     * attributes (attributes_version; mcor_probe keeps them on the device). Reuse saves time and never
+     * changes the result. 0: never reuse. */
     uint64_t particles_version;
     uint64_t scalar_version;
     uint64_t attributes_version;
@@ -193,10 +189,10 @@ extern "C"
 /* The default wall share: measured for the surface of a scalar, none for the free surface. */
 #define MCOR_WALL_SHARE_AUTO (-2)
 
-/* A measured wall share: the solids' share of the weight at a sample of the solids; of these values the
- * median, each solid weighted by the weight of the fluid there. The surface of a scalar then ends, in the
- * median, on the layer of solids that faces the fluid, however many layers there are and however far away
- * the fluid stays. The free surface stays in front of that layer; its wall share is 0.5. */
+/* A measured wall share: the median of the solids' share of the weight at a sample of the solids, each
+ * weighted by the fluid's weight there. The surface of a scalar then ends on the layer of solids that faces
+ * the fluid, however many layers there are and whatever their distance from the fluid. The free surface
+ * stays in front of that layer; its wall share is 0.5. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
   /* A surface in parts, made by several processes or from some of the particles: see mcor_parts.h. */
@@ -206,10 +202,10 @@ extern "C"
   typedef struct mcor_options
   {
     /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are those of two
-     * dimensions (volumes are areas, masses per unit of depth), and lines are extracted in place of a
-     * surface. 3: never. 0 (the default): 2 where exactly one coordinate is the same for all particles, else
-     * 3; see mcor_statistics.dimension. In the plane, squares stand for cubes; a period along
-     * the constant axis means nothing. */
+     * dimensions (volumes are areas, masses are per unit of depth), and lines are extracted in place of a
+     * surface. 0 (the default): 2 if exactly one coordinate is the same for all particles, else 3; see
+     * mcor_statistics.dimension. In the plane, squares take the place of cubes, and a period along the
+     * constant axis is ignored. */
     int dimension;
     mcor_sph_kernel sph_kernel;
     mcor_field field;
@@ -228,62 +224,66 @@ extern "C"
     double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
                               * is lower; default 0.5. With MCOR_SHEPARD they are always trimmed where
                               * the fluid's own weight is below 0.001, or below 0.05 with M'4, whose
-                              * negative lobes let the weight pass 0: the mean has a pole there. */
+                              * negative lobes give the mean poles. */
     double
-      wall_share;     /* above 0: any surface, a free surface too, also ends where the solids' share
-                        * of the weight exceeds this, unless solids are ignored; 0.5: where they
-                        * weigh more than the fluid. 0: it does not end at solids. Or
-                        * MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED */
+      wall_share;     /* above 0: the surface, a free surface too, also ends where the solids' share
+                        * of the weight exceeds this, unless solids are ignored; 0.5: where they weigh
+                        * more than the fluid. 0: it does not end at solids. Or MCOR_WALL_SHARE_AUTO
+                        * (the default), MCOR_WALL_SHARE_MEASURED */
     int preview;      /* nonzero: vertices by linear interpolation, no correction */
+    /* Two dimensions, nonzero: triangles fill the region above the least iso value, inside of what trimming
+     * leaves, divided by the lines of the other values: see mcor_surface.band_value. They share the points of
+     * lines; their other points are nodes of the virtual grid, and where trimming cuts its edges. iso_value is
+     * given, too. Seeds are complete, and all squares have the smallest size. Three dimensions are refused. */
+    int filled;
     double tolerance; /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;  /* of the field evaluation on the device; MCOR_FLOAT32 by default */
     int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: no limit. Memory
-                              * kept for reuse is given back before a run fails for lack of memory. */
+                              * kept for reuse is freed before a run fails for lack of memory. */
 
     /* Not all 0: the surface is that of the cells whose centres are in the box, box[2 a] <= x <
-     * box[2 a + 1] along axis a, to the last bit: boxes side by side make the whole surface. Sides
-     * may be infinite. What is global (lattice, ranges, smallest h) is measured over all particles;
-     * only those that reach the box are evaluated. Not with MCOR_PAIRS, unless there are ranks: pair
-     * cells grow from cell to cell, wherever they begin, so that without ranks the whole surface is
-     * evaluated up to the correction. mcor_probe and mcor_derive read the box only with globals. */
+     * box[2 a + 1] along axis a, to the last bit; boxes side by side make up the whole surface. Sides may
+     * be infinite. Lattice, ranges and smallest h are measured over all particles; only those that reach
+     * the box are evaluated. With MCOR_PAIRS and no ranks, the whole surface is evaluated up to the
+     * correction, because cells grow from wherever pairs are. mcor_probe and mcor_derive read the box only
+     * with globals. */
     double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
-     * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that
-     * of one period, open at the periodic sides, where it meets itself: points a period apart agree in
-     * all bits except for the coordinate along the period, which is rounded. Each period is a whole
-     * number of cubes: the cube size is reduced to fit, by less than a half. x0 = x1 (default 0): not
-     * periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
+     * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that of
+     * one period and open at the periodic sides, where it meets itself: points a period apart agree in all
+     * bits except for the rounded coordinate along the period. Each period is a whole number of cubes: the
+     * cube size is reduced to fit, by less than half. x0 = x1 (default 0): not periodic. Also for
+     * mcor_probe and mcor_derive, whose points may lie anywhere. */
     double periodic[6];
-    /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are above the iso
-     * value; MCOR_CAP_BOX: at those of the box, too, which are the sides of its cells (of ranks, of whole_box). These
-     * caps share the points of the surface's border; their other points are nodes of the
-     * virtual grid, with normals pointing out of the period, boundary flag 8, and a meaningless
-     * residual. Trimming also cuts caps, and leaves its own border open; but where MCOR_WEIGHT_SUM ends at
-     * solids, see wall_share, caps with either value close it, by points on lattice edges whose normals are those of
-     * triangles. All cubes then have the smallest size. With a box and MCOR_CAP_PERIOD, those sides of its cells are closed that lie on a periodic side; a box
-     * that no particle reaches gets no caps, though with the iso value 0 of a sum it counts as above.
-     * Not with MCOR_PAIRS; no effect without a period, box or walls. */
+    /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are above the
+     * iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of whole_box). These caps
+     * share the points of the surface's border; their other points are nodes of the virtual grid, with
+     * normals pointing out of the period, boundary flag 8, and a meaningless residual. Trimming also cuts
+     * caps, and leaves its own border open. But where MCOR_WEIGHT_SUM ends at solids, see wall_share, caps
+     * with either value close that border, by points on lattice edges with the normals of triangles. All
+     * cubes then have the smallest size. With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie
+     * on a periodic side. A box that no particle reaches gets no caps, even where the iso value of a sum is
+     * 0. Not with MCOR_PAIRS; no effect without a period, box or walls. */
     int capping; /* mcor_capping */
 
-    /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, while
-     * the input holds only some of them: at least those whose supports miss the box by no more than
+    /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, of
+     * which the input needs to hold only those whose supports miss the box by no more than
      * mcor_reach_margin; with computed volumes, also all particles within the (unscaled) support of
      * those; with MCOR_PAIRS, also all within one (unscaled) smoothing length of the box or of those. The
      * surface is, to the last bit, that of all particles. Borrowed until return. For mcor_probe and
-     * mcor_derive: the result of mcor_measure_probe_globals; the box then says where results are wanted.
-     * They are valid in the box and on its sides; elsewhere they are meaningless, or 0 for particles two
-     * cubes or more away from the box. */
+     * mcor_derive: the result of mcor_measure_probe_globals. Their results are valid in the box and on its
+     * sides; elsewhere they are meaningless, or 0 for particles two cubes or more away from the box. */
     const mcor_globals* globals;
 
     /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals measure over
-     * the inputs of all ranks; each particle is in exactly one of them. (A rank without particles has
+     * the inputs of all ranks; each particle must be in exactly one of them. (A rank without particles has
      * count 0, and data that are not NULL where the other ranks have data.) The result is, to the last
-     * bit, that of all particles in one input, except for not_finite, which is a particle's number on the
-     * rank that has the lowest one. mcor_extract needs these globals, and with MCOR_PAIRS lets cells grow
-     * from box to box; each cell must be in the box of exactly one rank. Other functions do not read
-     * ranks. Borrowed until return. */
+     * bit, that of all particles in one input, except for not_finite, the lowest number that such a
+     * particle has on its rank. mcor_extract needs these globals, and with MCOR_PAIRS lets cells grow from
+     * box to box; each cell must be in the box of exactly one rank. Other functions do not read ranks.
+     * Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* What the surface carries besides points and triangles. */
@@ -315,14 +315,14 @@ extern "C"
   typedef struct mcor_statistics
   {
     double seconds[MCOR_PHASE_COUNT];
-    double build_seconds; /* compiling or loading kernels, in whichever phase; in none of seconds */
+    double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
     /* Medians over a sample of the fluid particles: smoothing length; number of particles within the
-     * unscaled support radius, the particle itself and solids included; distance to the nearest other
-     * one (0: there is none); share of the support that these particles fill if all are as large as the
-     * particle itself (0 where volumes are computed). */
+     * unscaled support radius, including the particle itself and solids; distance of the nearest other
+     * particle (0: none); share of the support that these particles fill if all are as large as the
+     * particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
@@ -330,35 +330,36 @@ extern "C"
     double cube_size;       /* unit L; the shortest of: */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
-    /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; a
-     * vertex that several ranks have is counted by one of them. Counts of bricks, nodes, faces and
-     * evaluations include the work done around the box. */
+    /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; of
+     * ranks that share a vertex, one counts it. Counts of bricks, nodes, faces and evaluations include the
+     * work done around the box. */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / edge */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
-    /* Complete seeds: of uniform cubes, cells that the bounds over 8 x 8 x 8 nodes do not exclude; of
-     * adaptive ones, cells of leaves that the surface passes through. Pairs: the cells between them, of
-     * adaptive cubes in such leaves only. And how many of these the surface does not use. These and
-     * the following counts are summed over iso values. */
+    /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not exclude; with
+     * adaptive cubes, the cells of leaves through which the surface passes. Pairs: the cells between them
+     * (with adaptive cubes, in such leaves only). And how many of these cells the surface does not use.
+     * These and the following counts are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
-    /* Of the surface as it is returned: each edge has triangles on both sides; area, unit L^2; volume that
-     * a closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In
-     * two dimensions: all lines are closed; area that they then enclose, else 0; length of lines, unit L. */
+    /* Of the returned surface: whether each edge has triangles on both sides; area, unit L^2; volume that a
+     * closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In two
+     * dimensions: whether all lines are closed; the area that they then enclose, else 0, or the filled area;
+     * the length of the lines, unit L. */
     int is_closed;
     double area, volume, length;
     int64_t march_rounds;
     /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
-    /* Loops of triangles that lie in one side of a cell, next to finer cells: the cell cuts off the part
-     * of the surface that the finer ones see. */
+    /* Loops of triangles that lie in one side of a cell beside finer cells: the cell cuts off a part of the
+     * surface that the finer cells resolve. */
     int64_t flat_loops;
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
-    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of these join the nodes above, which the table
-     * keeps apart; cells with two loops that may form a tunnel, and how many of these do. */
+    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of them join the nodes above the iso value, which
+     * the table keeps apart; cells with two loops that may form a tunnel, and how many do. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Correction, Table V: distance between linear and corrected vertex, unit L. */
     double correction_mean, correction_max, correction_deviation;
@@ -374,16 +375,16 @@ extern "C"
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* The key of a point: the number of the iso value and the kind of the point, then its lattice edge, or for
-   * a cut the two lattice edges between whose points it lies, or the square of a cap. The points of a
-   * surface have different keys, in ascending lexicographic order. In the surface of a box, points have the
-   * same keys as in the whole surface. */
+  /* The key of a point: the number of the iso value and the kind of the point, then its lattice edge (of a
+   * cut: the two lattice edges between whose points it lies; of a cap: the square). The points of a surface
+   * have different keys, in ascending lexicographic order. In the surface of a box, points have the same keys
+   * as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
-  /* The key of a triangle: the number of the iso value, then its cell or the square of a cap. Keys ascend
-   * from triangle to triangle; triangles of one cell have the same key. In the surface of a box, triangles
-   * have the same keys as in the whole surface. Each cell is in one box, so a stable sort by key of the
-   * triangles of all boxes gives the triangles of the whole surface in order. */
+  /* The key of a triangle: the number of the iso value, then its cell or the square of a cap. Triangles are in
+   * the order of their keys; those of one cell have the same key. In the surface of a box, triangles have the
+   * same keys as in the whole surface. Each cell is in one box, so a stable sort by key of the triangles of
+   * all boxes gives those of the whole surface in order. */
 #define MCOR_TRIANGLE_KEY 2
 
   /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to lower
@@ -394,13 +395,17 @@ extern "C"
     double* points;          /* [point_count][3], unit L */
     int32_t* triangles;      /* [triangle_count][3], point indices */
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
-    /* Two dimensions: polylines, and no triangles. Line l runs through the points line_points[
+    /* Two dimensions: polylines, and triangles only of what is filled. Line l runs through the points line_points[
      * line_offsets[l]] to before line_offsets[l + 1], greater values on its left as seen against the constant
-     * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane. Counts of
-     * triangles in the statistics are those of lines between two points, triangle_keys is NULL. */
+     * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane, but along
+     * the constant axis, as those of triangles, where these are filled. Counts of triangles in the statistics
+     * are those of lines between two points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
+    double* band_value; /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the
+                         * field there, with which the band begins. The last band has no end. At points
+                         * inside, iso_value is this, and residual what the field is above it */
     /* Optional arrays, NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */
@@ -413,7 +418,7 @@ extern "C"
                              * eigenvalue) is the vertex threshold or the solids' share the wall
                              * share; 2: the same, but left at the linear cut; 4: on a lattice edge
                              * next to a cell that the node threshold discarded; 8: belongs to a cap
-                             * alone, see capping */
+                             * alone, see capping, or is a node that is filled around */
     double* iso_value; /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
@@ -438,14 +443,13 @@ extern "C"
    * no OpenCL device. */
   mcor_status mcor_list_devices(char** text);
 
-  /* What went wrong in the last call that failed on this context, in one sentence; "" if none did. Valid
-   * until the next call on the context. */
+  /* Why the last call on this context that failed did so, in one sentence; "" if none failed. Valid until
+   * the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
 
-  /* Kernel by its command-line name ("cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic",
-   * "wendland_c4", "wendland_c6", "sinc6") and back; -1 or NULL where there is none. */
+  /* Kernel by its short name ("cubic", "wendland", ...), and back; -1 or NULL if there is none. */
   int mcor_find_sph_kernel(const char* name);
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
@@ -459,7 +463,7 @@ extern "C"
     MCOR_DENSITY,
     MCOR_VELOCITY,
     MCOR_PARTICLE_ID,   /* a whole number that identifies the particle at all times */
-    MCOR_PARTICLE_TYPE, /* what tells fluid from solids */
+    MCOR_PARTICLE_TYPE, /* tells fluid from solids */
     MCOR_QUANTITY_COUNT
   } mcor_quantity;
 
@@ -467,15 +471,14 @@ extern "C"
    * Case, blanks, "_" and "-" do not matter. */
   int mcor_name_priority(mcor_quantity quantity, const char* name);
 
-  /* Whether an array of this name, with whole numbers from low to high over all particles, tells clearly
-   * which particles are fluid; *fluid becomes the value of fluid particles. That holds for arrays of 0
-   * and 1 only, and for the codes of DualSPHysics. */
+  /* Whether an array of this name, with whole numbers from low to high over all particles, clearly tells
+   * which particles are fluid: one that holds 0 and 1, or the codes of DualSPHysics. *fluid becomes the
+   * value of fluid particles. */
   int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
 
-  /* Which array to show where the user has chosen none: the one with the lowest priority number.
-   * Velocities come first, then other vectors, scalars, particle properties, and the rest. -1: not to be
-   * shown, as it does not vary (`varies`: whether any component has two different values), or holds
-   * particle ids or types. */
+  /* Which array to show if the user has chosen none: the one with the lowest priority number. Velocities come
+   * first, then other vectors, scalars, particle properties, and the rest. -1: do not show it, because it
+   * holds particle ids or types, or does not vary (`varies`: any component has two different values). */
   int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
   /* The solver whose output has arrays of these names (one per line): "DualSPHysics", "PySPH",
@@ -490,15 +493,14 @@ extern "C"
     int64_t count;
   } mcor_field_data;
 
-  /* The period given by field data: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box with a
-   * boundaryType that says it is periodic (SPH-EXA); spelling as for mcor_name_priority. Returns how many
-   * numbers `period` has: 6 for bounds, as in mcor_options.periodic; 3 for lengths, see
-   * mcor_place_period; 0 if no array gives a period. which: the index of the array; may be NULL. */
+  /* The period given by field data: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box with a periodic
+   * boundaryType (SPH-EXA); spelled as for mcor_name_priority. Returns how many numbers `period` has: 6
+   * bounds, as in mcor_options.periodic; 3 lengths, see mcor_place_period; 0 if no array gives a period.
+   * which: the index of the array; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 
-  /* The bounds of a period of known lengths: along each axis, they begin at 0 or are centred at 0 if the
-   * particles, whose extent is (x0, x1, ...), then lie within them; otherwise they begin at the lowest
-   * particle. */
+  /* The bounds of a period of known lengths. Along each axis they begin at 0, or are centred at 0, if they
+   * then contain all particles, whose extent is (x0, x1, ...); otherwise they begin at the lowest particle. */
   void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
 
   /* Whether mcor_find_period reads arrays of this name. */
@@ -515,15 +517,15 @@ extern "C"
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
 
-  /* The range of the finite values of the scalar at fluid particles, and a suggested iso value: their
-   * median (one of the values), or the logarithmic middle of the range if all values are positive and
-   * span three decades (not counting the lowest and highest 2 %). Reads only the scalar and the solids of
-   * the input; over all ranks unless `ranks` is NULL. Returns 0 and changes nothing if there is no such
-   * particle or another rank failed. */
+  /* The range of the finite values of the scalar at fluid particles, and a suggested iso value: their median
+   * (one of the values), or the logarithmic middle of the range if all values are positive and span three
+   * decades (without the lowest and highest 2 %). Reads only the scalar and the solids of the input; over all
+   * ranks unless `ranks` is NULL. Returns 0 and changes nothing if there is no such value or another rank
+   * failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* 2 or 3: what a call with this input alone and this mcor_options.dimension takes it for. */
+  /* 2 or 3: the dimension of a call with this input alone and this mcor_options.dimension. */
   int mcor_find_dimension(const mcor_input* input, int dimension);
 
   /* What may be wrong with the input although the extraction succeeded. */
@@ -544,8 +546,8 @@ extern "C"
     const mcor_options* options, const mcor_surface* surface);
 
   /* A warning that an array of particle types (MCOR_PARTICLE_TYPE), in which values[i] occurs counts[i]
-   * times, is not used, so that all particles count as fluid; free it with free(). NULL if the array says
-   * nothing, having only one value or more than MCOR_PARTICLE_TYPES, or if memory ran out. */
+   * times, is not used, so that all particles count as fluid; free it with free(). NULL if the array has only
+   * one value or more than MCOR_PARTICLE_TYPES, or if memory ran out. */
   char* mcor_describe_unused_type(
     const char* name, const double* values, const int64_t* counts, int count);
 #define MCOR_PARTICLE_TYPES 8
@@ -559,8 +561,8 @@ extern "C"
     double* weight_sum;      /* [count], of fluid particles */
     double* weight_gradient; /* [count][3], unit 1 / L; NULL unless options.gradients */
     uint8_t* valid; /* [count], 1 where the weight sum is not below options.node_threshold */
-    /* For each attribute of the input, the field at the points, the Shepard mean or the sum as
-     * options.field says (MCOR_WEIGHT_SUM: the mean), and its gradient. 0 where not valid. */
+    /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard mean),
+     * and its gradient. 0 where not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
     double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
                                     * unless options.gradients */
@@ -569,11 +571,10 @@ extern "C"
     mcor_statistics statistics;
   } mcor_samples;
 
-  /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The
-   * scalar of the input is not read. The options that apply are sph_kernel, field, h_scale, gradients,
-   * node_threshold, precision, memory_limit, periodic and progress; cube_size and cube_size_factor only
-   * set the unit of length on the device, made to fit periods. The bits of a point do not depend on the
-   * other points. *samples is overwritten. */
+  /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The scalar of
+   * the input is not read. These options apply: sph_kernel, field, h_scale, gradients, node_threshold,
+   * precision, memory_limit, periodic and progress; cube_size and cube_size_factor only set the unit of
+   * length on the device. The bits of a point do not depend on the other points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);
@@ -598,8 +599,8 @@ extern "C"
   {
     mcor_gauge_state state;
     int outside;        /* 1: no particle's support reaches the line */
-    double first, last; /* where fluid first, and last, ends: at the line's end if it ends nowhere
-                              * before; NaN where dry */
+    double first, last; /* where fluid ends first, and last; the line's length if it does not end
+                              * before that; NaN where dry */
     double depth;       /* length of the line in fluid; 0 where dry */
     double place[3];    /* of `last`; NaN where dry */
     int64_t first_crossing; /* of this line, among all */
@@ -616,14 +617,14 @@ extern "C"
     mcor_statistics statistics;
   } mcor_gauges;
 
-  /* Where lines go through the free surface: where the weight sum of fluid particles, as mcor_extract has
-   * it for MCOR_WEIGHT_SUM, is the level, which is the iso value; 0.5 without one. Fluid is where it
-   * is at least the level, above 0. Walls do not end it. Each line is sampled at a quarter of the smallest (scaled)
-   * smoothing length, or less: finer than half a spacing of particles, unless they lie in more than two; between
-   * samples whose neighbours show that an extremum may cross the level, more finely. Crossings are then solved
-   * for. lines: [count]. Options count as for mcor_probe, and iso_values and wall_share; fields do not. Of periodic
-   * particles the images count. Ranks, which have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM and
-   * level_limit 0) and the same lines, all get all readings. *gauges is overwritten. */
+  /* Where lines cross the free surface, that is, where the weight sum of fluid particles, as in mcor_extract
+   * with MCOR_WEIGHT_SUM, equals the level, which is the iso value (above 0; 0.5 if there is none). There is
+   * fluid where the sum is at least the level; walls do not end it. Each line is sampled at a quarter of the
+   * smallest (scaled) smoothing length, or more finely where neighbouring samples show that an extremum may
+   * cross the level; then crossings are solved for. lines: [count]. The options of mcor_probe apply, except
+   * field, and iso_values and wall_share do, too. Ranks must have boxes, globals (of mcor_measure_globals
+   * with MCOR_WEIGHT_SUM and level_limit 0) and the same lines; all get all readings. *gauges is
+   * overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);
@@ -648,15 +649,15 @@ extern "C"
     mcor_statistics statistics;
   } mcor_derivatives;
 
-  /* Gradients of the attributes of the input. Sums are over fluid particles. The same options apply as
-   * for mcor_probe, except field, gradients and node_threshold. A gradient too large for a double is
-   * infinite. *derivatives is overwritten. */
+  /* Gradients of the attributes of the input, from sums over fluid particles. The options of mcor_probe apply,
+   * except field, gradients and node_threshold. A gradient too large for a double is infinite. *derivatives
+   * is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
   void mcor_free_derivatives(mcor_derivatives* derivatives);
 
-  /* Arrays of the caller for quantities of velocity gradients J = S + O (S symmetric, O antisymmetric), in
-   * the unit of J or its square; NULL: not wanted. */
+  /* Arrays of the caller for quantities of velocity gradients J = S + O (S symmetric, O antisymmetric), in the
+   * unit of J or its square; NULL: not computed. */
   typedef struct mcor_flow
   {
     double* divergence;  /* [count], tr J */
@@ -670,7 +671,7 @@ extern "C"
   mcor_status mcor_decompose_gradients(
     const double* gradients, int64_t count, const mcor_flow* flow);
 
-  /* Frees all that the context keeps between calls: results for reuse, and large buffers. */
+  /* Frees what the context keeps between calls: results for reuse, and large buffers. */
   void mcor_release_memory(mcor_context* context);
 
 #ifdef __cplusplus

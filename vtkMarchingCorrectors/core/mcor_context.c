@@ -7,6 +7,7 @@
 #include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
+#include "mcor_fill.h"
 #include "mcor_input.h"
 #include "mcor_pair_rounds.h"
 #include "mcor_plane.h"
@@ -180,6 +181,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   }
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
+  mcor_end_fill(context);
   context->run = (mcor_run){ .fraction = context->run.fraction };
   mcor_end_box(context);
   mcor_end_rounds(context);

@@ -8,6 +8,7 @@
 #include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
+#include "mcor_fill.h"
 #include "mcor_pair_rounds.h"
 #include "mcor_plane.h"
 
@@ -40,9 +41,10 @@ static mcor_status mcor_extract_iso(
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context, iso));
   MCOR_TRY(mcor_cap(context, iso));
+  MCOR_TRY(mcor_take_lines(context, iso));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
-  if (last && input->particles_version == 0 && !mcor_output_evaluates(context))
+  if (last && input->particles_version == 0 && !mcor_output_evaluates(context) && !options->filled)
   {
     mcor_release_grid(context);
   }
@@ -65,11 +67,15 @@ static mcor_status mcor_extract_all(
   }
   MCOR_TRY(mcor_prepare(context, input, options, mcor_uses_solids(input, options)));
   MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
+  MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
+    "Filling is for two dimensions, but these particles do not lie in a plane: they have a surface, "
+    "which encloses what would be filled. Turn it off.");
   for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));
   }
   MCOR_TRY(context->grid.count > 0 ? MCOR_OK : mcor_attend_rounds(context, 0));
+  MCOR_TRY(mcor_fill_lines(context, input, surface));
   if (surface->normals)
   {
     MCOR_TRY(mcor_is_plane(context) ? mcor_finish_line_normals(context, surface)

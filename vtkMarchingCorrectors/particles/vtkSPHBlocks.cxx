@@ -317,6 +317,6 @@ std::string vtkSPHFindWalls(const std::vector<std::string>& names)
   }
   return *std::find_if(names.begin(), names.end(), TellsOfWalls) + " of " +
     std::to_string(names.size()) +
-    " seems to hold walls. Each block is taken by itself, so that its particles are neither "
-    "walls nor neighbours of the others'. Take the blocks together.";
+    " seems to hold walls. Each block is taken by itself, so its particles do not affect the "
+    "surfaces of the others. Take the blocks together.";
 }

@@ -16,6 +16,7 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
+#include "vtkSPHRanksLines.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksPoints.h"
 #include "vtkSPHRanksRoute.h"
@@ -36,6 +37,7 @@ struct vtkMarchingCorrectorsRun
   const vtkSPHRanksRoute& Route;
   mcor_surface& Surface;
   std::int64_t Particles; ///< of all ranks
+  const mcor_plane& Plane;
 };
 
 //------------------------------------------------------------------------------
@@ -109,11 +111,13 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
     return;
   }
   this->EstimateDistributed(ranks, mine.Core, options);
+  const mcor_globals placed = vtkSPHPlaceInPlane(globals);
   vtkSPHRanksBalance balance;
   balance.HasWork = true;
-  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, globals)
+  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, placed)
                                             : vtkSPHCountWork(mine.Core, options);
-  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
+  const mcor_options routed = vtkSPHPlaceInPlane(options, globals);
+  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, routed, placed, balance);
   options.globals = &globals;
   this->ExtractDistributed(ranks, choice, own, route, options, counts[0], output);
 }
@@ -156,7 +160,8 @@ void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanks& ranks,
         [&route](const double at[3], double reach, std::vector<int>& found)
         { route.FindReached(at, reach, found); }))
   {
-    this->FinishDistributed(ranks, { input, options, route, surface, count }, output);
+    this->FinishDistributed(
+      ranks, { input, options, route, surface, count, options.globals->measured.plane }, output);
   }
 }
 
@@ -173,13 +178,25 @@ void vtkMarchingCorrectors::FinishDistributed(
     { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
       run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
-  vtkSPHMeasure(ranks, surface, numbers, surface.statistics);
+  const std::unique_ptr<vtkSPHRanksLines> lines = run.Plane.axis > 0
+    ? std::make_unique<vtkSPHRanksLines>(ranks, surface, numbers, points, run.Plane)
+    : nullptr;
+  if (lines && lines->HasFailed())
+  {
+    this->Fail("Memory for the lines of all processes could not be allocated.");
+    return;
+  }
+  if (!lines)
+  {
+    vtkSPHMeasure(ranks, surface, numbers, surface.statistics);
+  }
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
     all.statistics = surface.statistics;
     all.point_count = points;
     all.triangle_count = triangles;
+    all.line_count = lines ? lines->GetCount() : 0;
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input input = run.Input.Core;
     input.count = run.Particles;
@@ -192,6 +209,10 @@ void vtkMarchingCorrectors::FinishDistributed(
   builder.AddMeasures(this->RunStatistics);
   vtkSPHAddCount(this->RunStatistics, "Points", { points });
   vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
+  if (lines)
+  {
+    vtkSPHAddCount(this->RunStatistics, "Lines", { lines->GetCount() });
+  }
   vtkSPHAddShares(this->RunStatistics, shares);
   builder.BuildMesh(output, this->OutputPointsPrecision,
     [&ranks](std::vector<double>& ends)
@@ -199,4 +220,9 @@ void vtkMarchingCorrectors::FinishDistributed(
   output->GetPointData()->SetGlobalIds(numbers);
   output->GetCellData()->SetGlobalIds(triangleNumbers);
   vtkSPHMatchEmpty(ranks, output);
+  if (lines)
+  {
+    lines->Move(ranks, output);
+    vtkSPHMatchEmpty(ranks, output);
+  }
 }

@@ -76,7 +76,7 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
   {
     return false;
   }
-  if (globals.measured.plane.axis > 0)
+  if (forSamples && globals.measured.plane.axis > 0)
   {
     this->Fail(vtkSPHRanksNoPlane);
     return false;

@@ -172,9 +172,9 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
   if (this->IdName.empty())
   {
     this->Error =
-      "Between two steps particles are recognised by their numbers, but no point array "
+      "Particles are matched between two steps by their ids, but no point array "
       "has one of the usual names (Idp, ParticleId, id, GlobalIds, ...). Name the array "
-      "of numbers, or ask for stored times alone. " +
+      "of ids, or request only stored times. " +
       ListArrays(this->Steps[0].Particles);
     return false;
   }
@@ -309,7 +309,7 @@ void vtkSPHTemporalPair::CheckVelocities()
     this->Warnings.push_back("From time " + Text(first.Time) + " to " + Text(second.Time) +
       " the particles moved " + Text(moved / expected) + " times as far as '" + this->VelocityName +
       "' says, so their positions are linear in time here: the times have another unit than the "
-      "velocities (the time scale mends that), or the steps are too far apart.");
+      "velocities (set the time scale), or the steps are too far apart.");
     this->FollowsVelocities = false;
   }
 }
@@ -333,7 +333,7 @@ void vtkSPHTemporalPair::WarnOfLostArrays()
   if (!lost.empty())
   {
     this->Warnings.push_back("Point arrays that " + this->NameOfStep(0) + " and " +
-      this->NameOfStep(1) + " do not have alike are left out between them: " + lost + ".");
+      this->NameOfStep(1) + " do not share are left out between them: " + lost + ".");
   }
 }
 

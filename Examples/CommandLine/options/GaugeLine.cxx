@@ -46,7 +46,7 @@ GaugeLine ToGauge(const std::string& option, const std::string& text)
   if (std::equal(gauge.Ends.begin(), gauge.Ends.begin() + 3, gauge.Ends.begin() + 3))
   {
     throw UsageError(option + ": gauge '" + gauge.Name +
-      "' has no length, as both its places are the same; give it two");
+      "' has no length, because both its ends are the same; give it two");
   }
   return gauge;
 }

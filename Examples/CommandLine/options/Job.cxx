@@ -45,9 +45,9 @@ void CheckGauge(const Job& job)
       { !job.ComponentFile.empty(), "--components" }, { !job.Picture.File.empty(), "--screenshot" },
       { job.IsProbe(), "--probe, --slice and --line" },
       { job.Surface->GetUseBox() != 0, "--box" } });
-  Exclude("gauges take the fluid alone, and do not end at walls; leave out ",
+  Exclude("gauges do not end at walls; leave out ",
     { { job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL, "--solids wall" } });
-  Exclude("--gauge-grid has all its gauges; leave out ",
+  Exclude("--gauge-grid makes its own gauges; leave out ",
     { { isGrid && !job.Gauges.empty(), "--gauge" },
       { isGrid && !job.GaugeFile.empty(), "--gauges" } });
   if (!EndsWith(job.Output, isGrid ? ".vti" : ".csv"))
@@ -74,23 +74,23 @@ void CheckNumbers(const Job& job)
   }
   if (!job.IsFilm())
   {
-    throw UsageError("--numbers is the table of a film, which is a .pvd file or has %04d in its "
-                     "name; one surface has its numbers in --stats");
+    throw UsageError("--numbers writes the table of a film, which is a .pvd file or has %04d in "
+                     "its name; for one surface use --stats");
   }
   Exclude(
-    "a film has no image of levels; leave out ", { { job.Grid.Counts[0] > 0, "--gauge-grid" } });
+    "a film cannot have an image of levels; leave out ", { { job.Grid.Counts[0] > 0, "--gauge-grid" } });
 }
 
 void CheckComponents(const Job& job)
 {
   if (job.ComponentFile.empty())
   {
-    Exclude("without a table of pieces, --components, there is no use for ",
+    Exclude("without --components there are no pieces to remove; leave out ",
       { { job.LeastVolume > 0.0, "--least-volume" },
         { job.LeastParticles > 0, "--least-particles" } });
     return;
   }
-  Exclude("pieces are those of a surface; --components goes without ",
+  Exclude("--components needs a surface; leave out ",
     { { job.IsProbe(), "--probe, --slice and --line" } });
   if (!EndsWith(job.ComponentFile, ".csv"))
   {
@@ -374,18 +374,18 @@ bool Job::IsFilm() const
 std::string CommandLineHelp()
 {
   std::ostringstream help;
-  help
-    << "usage: marching-correctors INPUT OUTPUT [options]\n"
-       "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
-       "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n"
-       "       marching-correctors INPUT... OUTPUT.csv --gauge NAME=X,Y,Z:X,Y,Z [options]\n\n"
-       "Extracts an isosurface from SPH particles. INPUT is a "
-    << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
-    << " file. With OUTPUT.pvd a film: one surface for each step,\n"
-       "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ...; with "
-       "OUTPUT_%04d.ply\n"
-       "or .obj, .stl the same without a list.\n"
-       "With mpirun, processes share a surface, see the guide; OUTPUT may be a .pvtp file then.\n";
+  help << "usage: marching-correctors INPUT OUTPUT [options]\n"
+          "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
+          "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n"
+          "       marching-correctors INPUT... OUTPUT.csv --gauge NAME=X,Y,Z:X,Y,Z [options]\n\n"
+          "Extracts an isosurface from SPH particles. INPUT is a "
+       << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
+       << " file. OUTPUT.pvd makes a film: one surface per step,\n"
+          "OUTPUT_0000.vtp and so on, at the times of INPUT.pvd, or 0, 1, 2, ... OUTPUT_%04d.ply, "
+          ".obj or\n"
+          ".stl does the same without a list of the steps.\n"
+          "With mpirun, processes share one surface (see the guide), and OUTPUT may be a .pvtp "
+          "file.\n";
   for (const Option& option : AllOptions())
   {
     if (option.Name[0] == '\0')
@@ -397,11 +397,12 @@ std::string CommandLineHelp()
     left.resize(std::max<std::size_t>(left.size() + 2, 32), ' ');
     help << left << option.Help << "\n";
   }
-  help << "\nEvery output is written completely or left as it was. -- ends the options.\n"
-          "Exit status: 0 all outputs were written (of an empty surface, too, with a warning),\n"
-          "1 bad data, or a problem with a file or the device, 2 wrong usage.\n"
-          "Example: marching-correctors dam_break_45k.vtp speed.vtp --scalar Velocity --iso 1 "
-          "--fluid ParticleType=0\n";
+  help
+    << "\nEvery output file is either written completely or left as it was. -- ends the options.\n"
+       "Exit status: 0 all outputs were written (also if the surface is empty, with a warning);\n"
+       "1 the data are bad, or a file or the device failed; 2 wrong usage.\n"
+       "Example: marching-correctors dam_break_45k.vtp speed.vtp --scalar Velocity --iso 1 "
+       "--fluid ParticleType=0\n";
   return help.str();
 }
 

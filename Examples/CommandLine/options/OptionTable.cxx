@@ -74,15 +74,30 @@ void SetIsoValues(Job& job, Text option, Text text)
   job.Gauge->SetLevel(values.front());
 }
 
+std::vector<std::pair<const char*, int>> ListKernels()
+{
+  std::vector<std::pair<const char*, int>> kernels;
+  for (int k = 0; Filter::GetKernelName(k); ++k)
+  {
+    kernels.emplace_back(Filter::GetKernelName(k), k);
+  }
+  return kernels;
+}
+
+std::string DescribeKernels()
+{
+  std::string text;
+  for (const auto& kernel : ListKernels())
+  {
+    text +=
+      text.empty() ? std::string(kernel.first) + " (default)" : std::string(", ") + kernel.first;
+  }
+  return text;
+}
+
 void SetKernel(Job& job, Text option, Text text)
 {
-  const int kernel = ToChoice(option, text,
-    { { "cubic", Filter::CUBIC_SPLINE }, { "quadratic", Filter::QUADRATIC },
-      { "mprime4", Filter::M_PRIME_4 }, { "quintic", Filter::QUINTIC_SPLINE },
-      { "wendland", Filter::WENDLAND_C2 }, { "quartic", Filter::QUARTIC_SPLINE },
-      { "wendland_c4", Filter::WENDLAND_C4 }, { "wendland_c6", Filter::WENDLAND_C6 },
-      { "sinc6", Filter::SINC_6 } });
-  SetAll(job, &vtkSPHAlgorithm::SetKernel, kernel);
+  SetAll(job, &vtkSPHAlgorithm::SetKernel, ToChoice(option, text, ListKernels()));
 }
 
 void SetField(Job& job, Text option, Text text)
@@ -127,13 +142,15 @@ const Options WhatToContour = {
       j.Surface->SetInputArrayToProcess(
         0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str());
     } },
-  { "--component", "N|magnitude", "component of a vector, from 0, or its magnitude (default)",
-    SetComponent },
-  { "--iso", "V[,V...]", "iso values; with --free-surface the weight sum (default 0.5)",
+  { "--component", "N|magnitude",
+    "component of a vector, counted from 0, or its magnitude (default)", SetComponent },
+  { "--iso", "V[,V...]",
+    "iso values of the scalar, or of the weight sum with --free-surface (default 0.5)",
     SetIsoValues },
-  { "--free-surface", "", "contour the weight sum; needs no scalar",
+  { "--free-surface", "", "contour the weight sum, which needs no scalar",
     [](Job& j, Text, Text) { j.Surface->FreeSurfaceOn(); } },
-  { "--derive", "NAME", "add Gradients of this array; for a vector, also Vorticity, Lambda2, ...",
+  { "--derive", "NAME",
+    "compute Gradients of this array first; of a vector also Vorticity, Lambda2, ...",
     [](Job& j, Text, Text v)
     {
       j.Derive = Printable(v);
@@ -142,7 +159,8 @@ const Options WhatToContour = {
     } },
   { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum", SetField },
 
-  { "", "", "The field at points instead of a surface; OUTPUT is a data set of these points", {} },
+  { "", "", "The field at points, in place of a surface; OUTPUT is a data set of these points",
+    {} },
   { "--probe", "POINTS_FILE", "at the points in this file",
     [](Job& j, Text, Text v) { j.ProbeFile = v; } },
   { "--slice", "AXIS=PLACE",
@@ -156,27 +174,29 @@ const Options WhatToContour = {
 };
 
 const Options Gauges = {
-  { "", "", "No surface, but where lines cross the free surface; OUTPUT is a .csv table", {} },
-  { "--gauge", "NAME=X,Y,Z:X,Y,Z", "from one place to another; may be given more than once",
+  { "", "",
+    "Gauges: where lines cross the free surface, in place of a surface; OUTPUT is a .csv table",
+    {} },
+  { "--gauge", "NAME=X,Y,Z:X,Y,Z", "a line from one point to another; may be given more than once",
     [](Job& j, Text n, Text v) { j.Gauges.push_back(ToGauge(n, v)); }, true },
-  { "--gauges", "FILE", "those of a file with such lines",
+  { "--gauges", "FILE", "all lines of this file, one NAME=X,Y,Z:X,Y,Z in each row",
     [](Job& j, Text, Text v) { j.GaugeFile = v; } },
   { "--gauge-grid", "NX,NY:BOUNDS",
-    "NX by NY upright ones from z0 to z1 in x0,x1,y0,y1,z0,z1; OUTPUT is an image of levels, .vti",
+    "NX by NY vertical lines in x0,x1,y0,y1,z0,z1; OUTPUT is an image of levels (.vti)",
     [](Job& j, Text n, Text v) { j.Grid = ToGaugeGrid(n, v); } },
 };
 
 const Options TheParticles = {
-  { "", "", "The particles (arrays not given are found by their usual names)", {} },
-  { "--smoothing-length", "NAME|VALUE|estimate", "array, one value, or estimated from the spacing",
+  { "", "", "The particles (arrays are found by their usual names unless they are given)", {} },
+  { "--smoothing-length", "NAME|VALUE|estimate",
+    "an array, one value, or an estimate from the particle spacing",
     [](Job& j, Text n, Text v) { j.SmoothingLength = ToQuantity(n, v); } },
   { "--dp", "D",
-    "particle distance of DualSPHysics: smoothing length coefh x sqrt(3) x D, in two dimensions "
-    "sqrt(2)",
+    "DualSPHysics: the initial particle distance; h = coefh x sqrt(3) x D (sqrt(2) in 2-D)",
     [](Job& j, Text n, Text v) { j.ParticleDistance = ToPositive(n, v); } },
-  { "--coefh", "C", "coefficient of DualSPHysics, see --dp (default 1)",
+  { "--coefh", "C", "DualSPHysics: the coefficient in --dp (default 1)",
     [](Job& j, Text n, Text v) { j.CoefH = ToPositive(n, v); } },
-  { "--support-radius", "", "--smoothing-length gives support radii instead",
+  { "--support-radius", "", "--smoothing-length is the support radius of the kernel",
     [](Job& j, Text, Text)
     { SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true); } },
   { "--volume", "NAME", "array of particle volumes",
@@ -191,13 +211,13 @@ const Options TheParticles = {
     [](Job& j, Text n, Text v) { j.Mass = ToQuantity(n, v); } },
   { "--density", "NAME|VALUE", "array of densities, or one value",
     [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
-  { "--fluid", "NAME=VALUE", "particles with this value are fluid, all others are solid",
-    SetFluid },
+  { "--fluid", "NAME=VALUE",
+    "particles with this value of this array are fluid, all others are solid", SetFluid },
   { "--walls", "FILE",
-    "its particles are walls, beside those of INPUT; may be given more than once",
+    "the particles of this file are walls, in addition to INPUT; may be given more than once",
     [](Job& j, Text, Text v) { j.Walls.push_back(v); }, true },
   { "--solids", "auto|weight|ignore|wall",
-    "solids count in the weight used for trimming, are ignored, or end the surface; auto "
+    "solids only add to the weight used for trimming, are ignored, or end the surface; auto "
     "(default): wall for a scalar, weight for the free surface",
     SetSolids },
   { "--wall-share", "S|measured",
@@ -207,13 +227,10 @@ const Options TheParticles = {
 
 const Options TheMethod = {
   { "", "", "The method", {} },
-  { "--kernel", "NAME",
-    "cubic (default), quadratic, mprime4, quintic, wendland, quartic, wendland_c4, "
-    "wendland_c6 or sinc6",
-    SetKernel },
+  { "--kernel", "NAME", DescribeKernels(), SetKernel },
   { "--dimension", "auto|2|3",
-    "2: particles in a plane of constant x, y or z, which gives lines; auto (default): if all "
-    "share it",
+    "2: particles lie in a plane of constant x, y or z, and lines are extracted; auto "
+    "(default): 2 if they do, else 3",
     [](Job& j, Text n, Text v)
     {
       SetAll(j, &vtkSPHAlgorithm::SetDimension,
@@ -226,39 +243,41 @@ const Options TheMethod = {
     { SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v)); } },
   { "--cube-factor", "C", "cube size / smallest smoothing length (default 0.5)",
     [](Job& j, Text n, Text v) { j.Surface->SetCubeSizeFactor(ToPositive(n, v)); } },
-  { "--cube-size", "D", "cube size itself, in the unit of the positions",
+  { "--cube-size", "D", "cube size in the unit of the positions, in place of --cube-factor",
     [](Job& j, Text n, Text v) { j.Surface->SetCubeSize(ToPositive(n, v)); } },
-  { "--cubes", "uniform|adaptive", "cubes of one size, or as fine as the particles (default)",
+  { "--cubes", "uniform|adaptive",
+    "cubes of one size, or larger ones where smoothing lengths are larger (default)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetCubeSizeMode(
         ToChoice(n, v, { { "uniform", Filter::UNIFORM }, { "adaptive", Filter::ADAPTIVE } }));
     } },
   { "--partition", "HOW",
-    "under mpirun, give each process as many particles, or as much expected work (default)",
+    "with mpirun, give processes equal numbers of particles, or equal work (default)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetPartition(
         ToChoice(n, v, { { "particles", Filter::BY_PARTICLES }, { "work", Filter::BY_WORK } }));
     } },
   { "--max-level", "N",
-    "adaptive cubes grow up to 2^N times the cube size, N from 0 to 24 (default 24)",
+    "adaptive cubes are at most 2^N times the cube size, N from 0 to 24 (default 24)",
     [](Job& j, Text n, Text v) { j.Surface->SetCubeLevelLimit(ToCount(n, v, 0, 24)); } },
-  { "--box", "X0,X1,Y0,Y1,Z0,Z1", "only the cells in this box; a side may be inf or -inf",
+  { "--box", "X0,X1,Y0,Y1,Z0,Z1", "extract only the cells in this box; a side may be inf or -inf",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetBox(ToBox(n, v).data());
       j.Surface->UseBoxOn();
     } },
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
-    "periodic particles: lengths (0: not periodic), x0,x1,y0,y1,z0,z1, or from the field data",
+    "periodic particles: lengths (0: not periodic), bounds X0,X1,Y0,Y1,Z0,Z1, or those in the "
+    "field data",
     SetPeriod },
   { "--capping", "",
-    "close the surface at the sides of the period and of the box, where values are above the iso "
-    "value; the free surface at walls, too, with --solids wall",
+    "close the surface at the sides of the period and the box, where values exceed the iso value; "
+    "with --solids wall also the free surface at walls",
     [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
   { "--seeds", "pairs|complete",
-    "seeds as in the paper, or complete ones, which miss nothing (default)",
+    "seeds as in the paper, or complete seeds, which miss nothing (default)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetSeedMode(
@@ -270,18 +289,18 @@ const Options TheMethod = {
       j.Surface->SetTopology(ToChoice(
         n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }));
     } },
-  { "--preview", "", "faster: no correction; normals from the triangles",
+  { "--preview", "", "faster: no correction, and normals from the triangles",
     [](Job& j, Text, Text) { j.Surface->PreviewOn(); } },
-  { "--node-threshold", "T", "discard cells with a node of lower weight (default 0.1)",
+  { "--node-threshold", "T", "discard cells with a node whose weight is lower than T (default 0.1)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetNodeThreshold(ToThreshold(n, v));
       j.Probe->SetWeightThreshold(ToThreshold(n, v));
     } },
   { "--boundary", "weight|eigenvalue",
-    "trim by the weight (default), or by the eigenvalue of Marrone et al.", SetBoundary },
+    "trim by the weight (default), or by the boundary eigenvalue of Marrone et al.", SetBoundary },
   { "--vertex-threshold", "T",
-    "trim triangles where it is lower than T (default 0.5; eigenvalue 0.3)",
+    "trim triangles where the weight (or eigenvalue) is lower than T (default 0.5, or 0.3)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetVertexThreshold(ToThreshold(n, v));
@@ -312,14 +331,14 @@ const Options Output = {
     } },
   { "--attributes", "NAME[,NAME...]", "interpolate only these arrays to the surface (default all)",
     [](Job& j, Text n, Text v) { j.AttributeNames = ToNames(n, v); } },
-  { "--no-attributes", "", "interpolate no other arrays",
+  { "--no-attributes", "", "interpolate no arrays to the surface",
     [](Job& j, Text, Text)
     {
       j.Surface->InterpolateAttributesOff();
       j.Probe->InterpolateAttributesOff();
     } },
   { "--output-precision", "single|double|input",
-    "precision of the surface's points (default: that of the input)",
+    "precision of the coordinates of the surface (default: that of the input)",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetOutputPointsPrecision(ToChoice(n, v,
@@ -328,22 +347,23 @@ const Options Output = {
           { "input", vtkAlgorithm::DEFAULT_PRECISION } }));
     } },
   { "--components", "TABLE.csv",
-    "add the array ComponentId, and write a table of the surface's pieces: volumes, particles, ...",
+    "add the array ComponentId, and write a table of the pieces of the surface: volume, particles, "
+    "...",
     [](Job& j, Text, Text v) { j.ComponentFile = v; } },
-  { "--least-volume", "V", "leave out closed pieces of a smaller volume (with --components)",
+  { "--least-volume", "V", "with --components, remove closed pieces with less volume",
     [](Job& j, Text n, Text v) { j.LeastVolume = ToPositive(n, v); } },
-  { "--least-particles", "N", "leave out closed pieces around fewer particles (with --components)",
+  { "--least-particles", "N", "with --components, remove closed pieces around fewer particles",
     [](Job& j, Text n, Text v) { j.LeastParticles = ToCount(n, v, 1); } },
   { "--numbers", "TABLE.csv",
-    "for a film: a row for each step, with area, volume, pieces and what --gauge reads",
+    "for a film: write a row for each step: area, volume, pieces, and readings of --gauge",
     [](Job& j, Text, Text v) { j.NumbersFile = v; } },
-  { "--times", "T[,T...]", "for a film or gauges: at these times, stored or between two steps",
+  { "--times", "T[,T...]", "for a film or gauges: at these times, which may lie between two steps",
     SetTimes },
   { "--time-step", "DT", "for a film: time between one INPUT and the next (default 1)",
     [](Job& j, Text n, Text v) { j.TimeStep = ToPositive(n, v); } },
   { "--stats", "FILE.json", "write the statistics of the run",
     [](Job& j, Text, Text v) { j.StatisticsFile = v; } },
-  { "--repeat", "N", "run N times, with statistics of each run (default 1)",
+  { "--repeat", "N", "run N times, and write the statistics of each run (default 1)",
     [](Job& j, Text n, Text v) { j.Repeat = ToCount(n, v, 1); } },
   { "--quiet", "", "print errors and warnings only", [](Job& j, Text, Text) { j.Quiet = true; } },
 
@@ -376,7 +396,8 @@ const Options DeviceAndHelp = {
         filter->SetDevice(v.c_str());
       }
     } },
-  { "--threads", "N", "most threads of the built-in device (default: one for each processor)",
+  { "--threads", "N",
+    "maximum number of threads of the built-in device (default: one per processor)",
     [](Job&, Text n, Text v)
     { vtksys::SystemTools::PutEnv("MCOR_THREADS=" + std::to_string(ToCount(n, v, 1))); } },
   { "--memory-limit", "MIB", "use at most this much device memory (default: no limit)",

@@ -13,7 +13,7 @@ struct Option
 {
   const char* Name;
   const char* Argument; ///< what stands for it in the help; empty: the option has none
-  const char* Help;
+  std::string Help;
   std::function<void(Job&, const std::string& option, const std::string& value)> Set;
   bool Repeats = false; ///< whether it may be given more than once
 };

@@ -147,6 +147,10 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   vtkNew<vtkCellArray> triangles;
   triangles->SetData(3, corners);
   whole->SetPolys(triangles);
+  if (first->GetNumberOfLines() > 0)
+  {
+    whole->SetLines(first->GetLines()); // all are there, with the points' numbers
+  }
   return whole;
 }
 

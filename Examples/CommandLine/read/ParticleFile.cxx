@@ -135,7 +135,7 @@ std::string HintFor(const std::string& file)
   const std::string ending = fs::path(file).extension().string();
   return ending == ".vtkhdf" && VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
     ? std::string(" (VTK ") + vtkVersion::GetVTKVersion() +
-      " reads unstructured grids, no poly data)"
+      " reads only unstructured grids)"
     : "";
 }
 

@@ -90,7 +90,7 @@ public:
     this->Said.TellCounts();
     if (this->Made == 0)
     {
-      throw std::runtime_error("no step could be measured, and so there is no table");
+      throw std::runtime_error("no step could be measured, so no table was written");
     }
     this->Write(true);
     return isGood;

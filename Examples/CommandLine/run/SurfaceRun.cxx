@@ -195,8 +195,7 @@ std::string WithOptions(const Job& job, const std::string& sentence)
     { "Name the array, give a constant, or ask for an estimate.",
       "Give --smoothing-length NAME, VALUE or estimate." },
     { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh." },
-    { "the time scale mends that",
-      hasTimes ? "change those in the .pvd file" : "--time-step mends that" },
+    { "set the time scale", hasTimes ? "change those in the .pvd file" : "use --time-step" },
   };
   std::string result = sentence;
   for (const auto& word : words)

@@ -318,7 +318,7 @@ void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std:
     }
     if (target.IsReplaced() && streams.count(identity))
     {
-      throw UsageError(output + " would be written twice: what is printed goes there");
+      throw UsageError(output + " would be written twice: standard output goes there, too");
     }
   }
 }

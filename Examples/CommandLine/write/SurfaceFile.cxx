@@ -251,7 +251,7 @@ std::string SurfaceBytes(
   if (surface->GetNumberOfLines() > 0 && !EndsWith(file, ".vtp"))
   {
     throw std::runtime_error(file +
-      " could not be written: it would hold no lines, as two dimensions give. "
+      " could not be written: such a file cannot hold lines, which two dimensions give. "
       "Write a .vtp file");
   }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())

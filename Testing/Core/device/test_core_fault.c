@@ -342,6 +342,24 @@ static void test_probe_and_derive(void** state)
   free(points);
 }
 
+/* Bands of a plane, trimmed. */
+static void test_filled(void** state)
+{
+  static const double isos[2] = { -1e9, 0.5 };
+  core_set set = core_make_block(8, 0.1, 3, flat);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.position[3 * i + 2] = 0;
+    set.scalar[i] = set.position[3 * i];
+    set.volume[i] = 0.125;
+  }
+  sweep filled = { .call = extract, .input = core_input(&set), .options = core_options(isos) };
+  filled.options.iso_count = 2;
+  filled.options.filled = filled.options.point_keys = filled.options.triangle_keys = 1;
+  sweep_room(*state, &filled, 23, 100);
+  core_free_set(&set);
+}
+
 /* A box, a period, walls; each with what it alone does. */
 static void test_regions(void** state)
 {
@@ -558,7 +576,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_context),
     cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_probe_and_derive),
-    cmocka_unit_test(test_regions), cmocka_unit_test(test_adaptive_cubes),
+    cmocka_unit_test(test_regions), cmocka_unit_test(test_filled), cmocka_unit_test(test_adaptive_cubes),
     cmocka_unit_test(test_ranks), cmocka_unit_test(test_extend), cmocka_unit_test(test_build_again),
     cmocka_unit_test(test_build_fails), cmocka_unit_test(test_error_names) };
   return cmocka_run_group_tests_name("fault", tests, core_set_up, core_tear_down);

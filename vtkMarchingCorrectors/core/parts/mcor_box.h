@@ -103,7 +103,8 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
 mcor_status mcor_trim_cells(
   mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining);
 
-/* Output. */
+/* Output. Room for the keys and flags of so many triangles behind those of the surface. */
+mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
 mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface);
 mcor_status mcor_crop_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);

@@ -16,8 +16,9 @@
 /* n_2 / n_3, see mcor_sph_kernel.h; tested numerically. */
 double mcor_plane_factor(mcor_sph_kernel kernel)
 {
-  static const double factor[MCOR_SPH_KERNEL_COUNT] = { 10.0 / 7, 8.0 / 5, 1, 420.0 / 239, 4.0 / 3,
-    1920.0 / 1199, 64.0 / 55, 256.0 / 245, 1.0635845764083532547 };
+  static const double factor[] = { 10.0 / 7, 8.0 / 5, 1, 420.0 / 239, 4.0 / 3, 1920.0 / 1199,
+    64.0 / 55, 256.0 / 245, 1.0635845764083532547 };
+  _Static_assert(sizeof factor / sizeof factor[0] == MCOR_SPH_KERNEL_COUNT, "one for each kernel");
   return factor[kernel];
 }
 
@@ -231,6 +232,12 @@ mcor_status mcor_flatten(
   }
   MCOR_RETURN_IF(options->capping, context, MCOR_INVALID_ARGUMENT,
     "Capping closes surfaces in three dimensions; these particles lie in a plane. Turn it off.");
+  if (options->filled) /* pairs may miss lines that a region ends at */
+  {
+    o->seeds = MCOR_COMPLETE;
+    o->level_limit = 0;
+    o->iso_value = 1;
+  }
   mcor_flatten_sides(plane, options->box, o->box);
   for (int i = 0; i < 6; ++i) /* a period across the plane means nothing */
   {

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Lines on their way out: joined to polylines, with normals where the gradient gives none, and turned back
- * into the caller's coordinates. */
+ * into the caller's coordinates. Triangles of what is filled are behind those that stand for lines. */
 
 #include "mcor_plane.h"
 
@@ -55,6 +55,12 @@ static mcor_status mcor_fail_lines(mcor_context* context, int64_t lines)
     "Host memory for %lld lines could not be allocated.", (long long)lines);
 }
 
+/* Lines are triangles of which two corners are one. */
+static bool mcor_is_line(const int32_t* t)
+{
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 /* Of a line that trimming has cut, two triangles may remain; see mcor_trim_cut. */
 static mcor_status mcor_read_lines(
   mcor_context* context, const mcor_surface* surface, mcor_joining* j)
@@ -66,7 +72,7 @@ static mcor_status mcor_read_lines(
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
-    if (t[0] != t[2]) /* else the second half of a quad that is a line */
+    if (t[0] != t[2] && mcor_is_line(t)) /* else the second half of a quad that is a line; filled */
     {
       mcor_add_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
     }
@@ -155,6 +161,58 @@ mcor_status mcor_join_lines(
   return made ? MCOR_OK : MCOR_OUT_OF_CAPACITY;
 }
 
+/* Leaves triangles that are filled, and their keys; NULL where there are none to be. */
+static void mcor_keep_filled(mcor_surface* surface)
+{
+  const bool filled = surface->band_value != NULL;
+  int64_t count = 0;
+  for (int64_t t = 0; t < surface->triangle_count && filled; ++t)
+  {
+    if (!mcor_is_line(surface->triangles + 3 * t))
+    {
+      memmove(surface->triangles + 3 * count, surface->triangles + 3 * t, 3 * sizeof(int32_t));
+      for (int k = 0; k < MCOR_TRIANGLE_KEY && surface->triangle_keys; ++k)
+      {
+        surface->triangle_keys[MCOR_TRIANGLE_KEY * count + k] =
+          surface->triangle_keys[MCOR_TRIANGLE_KEY * t + k];
+      }
+      ++count;
+    }
+  }
+  if (!filled)
+  {
+    free(surface->triangles);
+    free(surface->triangle_keys);
+    surface->triangles = NULL;
+    surface->triangle_keys = NULL;
+  }
+  surface->triangle_count = count;
+}
+
+/* Of what is filled, about one of the points. */
+static double mcor_filled_area(const mcor_surface* surface)
+{
+  const double* x = surface->points;
+  double area = 0;
+  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  {
+    const double *a = x + 3 * (int64_t)surface->triangles[3 * t],
+                 *b = x + 3 * (int64_t)surface->triangles[3 * t + 1],
+                 *c = x + 3 * (int64_t)surface->triangles[3 * t + 2];
+    area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
+  }
+  return area;
+}
+
+/* Of triangles in the plane. */
+static void mcor_plane_normals(const mcor_plane* plane, mcor_surface* surface)
+{
+  for (int64_t i = 0; i < 3 * surface->point_count && surface->normals; ++i)
+  {
+    surface->normals[i] = i % 3 == mcor_plane_axis(plane, 2) ? 1 : 0;
+  }
+}
+
 /* From lines, which they point to the right of: of all points in a preview, else where the gradient
  * vanishes. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)
@@ -194,13 +252,17 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   mcor_free_joining(&joining);
   MCOR_TRY(status);
   mcor_measure_lines(surface, 0, 1);
+  mcor_keep_filled(surface);
+  if (surface->band_value)
+  {
+    surface->statistics.area = mcor_filled_area(surface);
+  }
   mcor_unflatten_doubles(plane, surface->points, surface->point_count, plane->at);
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
   mcor_unflatten_floats(plane, surface->normals, surface->point_count);
-  free(surface->triangles);
-  free(surface->triangle_keys);
-  surface->triangles = NULL;
-  surface->triangle_keys = NULL;
-  surface->triangle_count = 0;
+  if (surface->band_value)
+  {
+    mcor_plane_normals(plane, surface);
+  }
   return MCOR_OK;
 }

@@ -75,7 +75,8 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether the free surface is closed where it ends at solids, see mcor_cap_wall.c. */
 bool mcor_caps_walls(const mcor_context* context);
-/* iso_value: of the field itself. */
+/* Of a face whose extent is known; iso_value: of the field itself. */
+mcor_status mcor_make_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face);
 mcor_status mcor_make_cap_face(
   mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face);
 /* Whether there is room for the caps. */
@@ -101,5 +102,6 @@ mcor_status mcor_unmap_cap_values(
   mcor_context* context, const mcor_cap_points* points, mcor_cap_values* values);
 /* How far point i is inside of what trimming leaves. */
 double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* values, int64_t i);
+bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* values, int64_t i);
 
 #endif

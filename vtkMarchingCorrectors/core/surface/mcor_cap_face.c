@@ -7,6 +7,7 @@
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
+#include "mcor_plane.h"
 
 #include <float.h>
 #include <math.h>
@@ -138,7 +139,7 @@ static mcor_status mcor_evaluate_cap_nodes(mcor_context* context, const cl_int* 
   MCOR_TRY(mcor_reserve(context, &p->eigenvalue, n * real));
   return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->node),
-    MCOR_BUFFER(&p->offset), MCOR_INT(0), MCOR_BUFFER(&p->eigenvalue));
+    MCOR_BUFFER(&p->offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&p->eigenvalue));
 }
 
 mcor_status mcor_evaluate_cap_points(mcor_context* context, const cl_int* nodes,
@@ -185,7 +186,7 @@ double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, in
     : fmin(margin, 0);
 }
 
-static bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
+bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
 {
   const mcor_options* options = context->run.options;
   const double weight = mcor_get_real(context, v->weight, i);

@@ -201,10 +201,8 @@ static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_
   return status == MCOR_OK ? unmapped : status;
 }
 
-mcor_status mcor_make_cap_face(
-  mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face)
+mcor_status mcor_make_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face)
 {
-  mcor_set_cap_extent(context, axis, upper, face);
   MCOR_TRY(mcor_note_face(context, iso_value, face));
   /* The first one is for the nodes in none. */
   const size_t nodes = ((size_t)face->tile_count + 1) * MCOR_CAP_TILE * MCOR_CAP_TILE;
@@ -224,6 +222,13 @@ mcor_status mcor_make_cap_face(
     }
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_make_cap_face(
+  mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face)
+{
+  mcor_set_cap_extent(context, axis, upper, face);
+  return mcor_make_cap_tiles(context, iso_value, face);
 }
 
 mcor_status mcor_check_caps(mcor_context* context)

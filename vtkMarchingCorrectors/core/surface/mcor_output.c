@@ -6,6 +6,7 @@
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
+#include "mcor_fill.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
@@ -46,6 +47,24 @@ static mcor_status mcor_count_used(mcor_context* context, int* count)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, 3 * (size_t)mesh->triangle_count,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
   return mcor_scan(context, &mesh->scanned, vertices, count);
+}
+
+/* Counts all vertices. */
+static mcor_status mcor_count_all(mcor_context* context, int* count)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->vertex_count + 1;
+  cl_int* scanned = malloc(n * sizeof *scanned);
+  MCOR_RETURN_IF(!scanned, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %zu points could not be allocated.", n);
+  for (size_t v = 0; v < n; ++v)
+  {
+    scanned[v] = (cl_int)v;
+  }
+  *count = mesh->vertex_count;
+  const mcor_status status = mcor_write(context, &mesh->scanned, scanned, n * sizeof *scanned);
+  free(scanned);
+  return status;
 }
 
 /* The buffers of the views. */
@@ -392,17 +411,21 @@ static mcor_status mcor_add_boundary_eigenvalue(
 }
 
 static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,
-  mcor_download* download, mcor_surface* surface)
+  bool all, mcor_download* download, mcor_surface* surface)
 {
   const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
   int count;
-  MCOR_TRY(mcor_count_used(context, &count));
+  MCOR_TRY(all ? mcor_count_all(context, &count) : mcor_count_used(context, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
     (long long)(base + count));
   if (count > 0)
   {
     MCOR_TRY(mcor_map_vertices(context, download));
+  }
+  if (count > 0 && !all)
+  {
+    mcor_number_lines(context, download->scanned, base);
   }
   MCOR_TRY(mcor_keep_cells(context, surface));
   MCOR_TRY(mcor_find_counted(context, &download->owned));
@@ -444,20 +467,32 @@ static void mcor_release_vertices(mcor_context* context)
     &m->vertex_weight, &m->means, &m->flag, &m->scanned, &context->trim.eigenvalue);
 }
 
-/* Appends the mesh of one iso value to the surface. */
-mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
+static mcor_status mcor_append_vertices(
+  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
 {
   mcor_download download = { 0 };
   mcor_status status = mcor_keep_cuts(context, &download.cuts);
   mcor_release_construction(context);
   if (status == MCOR_OK)
   {
-    status = mcor_append_mesh(context, input, iso, &download, surface);
+    status = mcor_append_mesh(context, input, iso, all, &download, surface);
   }
   const mcor_status unmapped = mcor_unmap_vertices(context, &download);
   mcor_release_vertices(context);
   free(download.owned);
   free(download.cuts);
   return status != MCOR_OK ? status : unmapped;
+}
+
+/* Appends the mesh of one iso value to the surface. */
+mcor_status mcor_append_output(
+  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
+{
+  return mcor_append_vertices(context, input, iso, false, surface);
+}
+
+mcor_status mcor_append_points(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface)
+{
+  return mcor_append_vertices(context, input, 0, true, surface);
 }

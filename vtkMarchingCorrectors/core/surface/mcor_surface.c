@@ -36,6 +36,7 @@ void mcor_free_surface(mcor_surface* surface)
   free(surface->triangle_keys);
   free(surface->line_offsets);
   free(surface->line_points);
+  free(surface->band_value);
   for (int a = 0; surface->attributes && a < surface->attribute_count; ++a)
   {
     free(surface->attributes[a]);

@@ -76,11 +76,10 @@ mcor_status mcor_trim_cells(
 
 /* ---- Surface ---- */
 
-/* Room for the keys and flags of the mesh's triangles behind those of the surface. */
-static mcor_status mcor_extend_kept(mcor_context* context, mcor_surface* surface)
+mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface)
 {
   mcor_box* box = &context->box;
-  const size_t count = (size_t)surface->triangle_count + (size_t)context->mesh.triangle_count;
+  const size_t count = (size_t)(surface->triangle_count + more);
   bool good = true;
   if (box->is_part)
   {
@@ -109,7 +108,7 @@ mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_extend_kept(context, surface));
+  MCOR_TRY(mcor_extend_kept(context, mesh->triangle_count, surface));
   if (triangles == 0)
   {
     return MCOR_OK;

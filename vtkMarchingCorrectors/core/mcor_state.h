@@ -1,0 +1,323 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_state_h
+#define mcor_state_h
+
+/* The state of a context: a struct for each phase, the call under way, and what is kept. */
+
+#include "mcor_cl.h"
+#include "mcor_parts.h"
+#include "mcor_shared.h"
+
+#define MCOR_LEVEL_LIMIT 32
+
+/* Highest level of adaptive cubes. */
+#define MCOR_TREE_LEVEL_LIMIT 24
+
+/* The virtual grid: world position = (origin + fixed / step) * edge, along each axis. Lengths on the device
+ * are in cubes, 2^fix_bits fixed-point units. An edge is a cube long, but where no cube divides all periods:
+ * then a cube, as a length, is a little longer than any edge, see mcor_fit_steps. */
+typedef struct mcor_lattice
+{
+  double cube, edge[3];
+  int64_t step[3];           /* an edge in fixed-point units, at most 2^fix_bits */
+  int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
+  int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
+  int fix_bits;
+  int top; /* highest level of adaptive cubes; 0: uniform */
+  int blocks[3];
+  int period[3], period_first[3]; /* cells, 0: open; where one begins, from origin */
+} mcor_lattice;
+
+/* On the way to the search grid. */
+typedef struct mcor_stage_data
+{
+  mcor_buffer x, y, z, inv_h, size, level; /* of the particles in the order of the input */
+  mcor_buffer values;                      /* real, of one component, in that order */
+  mcor_buffer density;                     /* where volumes are computed */
+  mcor_buffer flags, keys;                 /* of coincident particles */
+  mcor_buffer found;                       /* int: what a kernel found in any of them */
+} mcor_stage_data;
+
+/* [III-A] */
+typedef struct mcor_grid
+{
+  int count; /* particles on the device */
+  int level_count, bucket_shift;
+  mcor_level levels[MCOR_LEVEL_LIMIT];
+  mcor_buffer level_buffer, buckets, cell_keys, order;
+  mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
+  mcor_buffer value;
+  /* As seen from a level of adaptive cubes, in its cells' edges; see mcor_view_level. */
+  int view;
+  mcor_buffer view_levels, view_inv_h;
+  int most_in_cell;       /* particles, at least MCOR_USUAL_IN_CELL */
+  mcor_buffer side_flags; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
+  bool has_solids;
+} mcor_grid;
+
+/* What is known of the bricks that exist. */
+typedef struct mcor_brick_data
+{
+  int count;
+  mcor_buffer bricks;        /* int4: position in bricks */
+  mcor_buffer known;         /* ulong: nodes evaluated, all or none of a brick */
+  mcor_buffer cells;         /* ulong: cells to examine for this iso value */
+  mcor_buffer examined;      /* ulong: those whose nodes have been asked for */
+  mcor_buffer value, weight; /* real [64] */
+  mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
+} mcor_brick_data;
+
+/* [III-B] Blocks where there may be surface, and the bricks that exist in them. */
+typedef struct mcor_bricks
+{
+  int block_count, block_shift;
+  mcor_buffer block_keys, block_buckets;
+  mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
+  mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
+  mcor_buffer bits, base;             /* [block_count][16] */
+  mcor_buffer seed_bits, seeds; /* of complete seeds: bricks as in bits; ulong, cells by slot */
+  mcor_brick_data now;
+  mcor_buffer neighbours; /* see mcor_brick_neighbours */
+  bool neighbours_valid;
+  mcor_buffer placed, slot_of;                       /* of mcor_append_bricks, see mcor_brick.cl */
+  mcor_buffer need, fresh;                           /* fresh: see mcor_march_need */
+  mcor_buffer bit_counts;                            /* of mcor_count_bits */
+  mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
+  mcor_buffer regions;                               /* int: those to examine */
+  mcor_buffer pair_cells; /* ulong [block_count][512]: cells between pairs */
+  mcor_buffer found;      /* int: what a kernel found in any brick, or how many regions */
+} mcor_bricks;
+
+/* [III-D] One iso value's surface while it is made. */
+typedef struct mcor_mesh
+{
+  mcor_buffer used, edges, vertex_base, triangle_base;
+  int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
+  int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
+  int cap_first;
+  uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap.c */
+  int triangle_count;
+  mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
+  mcor_buffer means; /* real [vertex_count][attributes.count] */
+  mcor_buffer triangles;
+  mcor_buffer scanned;                           /* of the output, see mcor_is_output */
+  int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
+} mcor_mesh;
+
+/* Some of 4^3 bricks of adaptive cubes, aligned to multiples of 4: bit x + 4 y + 16 z. */
+typedef struct mcor_cluster
+{
+  uint64_t key; /* its number in its level, see mcor_cluster_key */
+  uint64_t bricks;
+} mcor_cluster;
+
+/* A set of bricks of one level. */
+typedef struct mcor_brick_set
+{
+  mcor_cluster* slots;    /* [capacity]; one without bricks is free */
+  size_t capacity;        /* a power of 2, or 0 */
+  size_t clusters, count; /* of bricks */
+} mcor_brick_set;
+
+/* Leaves of adaptive cubes; see mcor_tree.h. */
+typedef struct mcor_tree
+{
+  int top;                                    /* highest level of leaves */
+  bool is_plane;                              /* all bricks are of the lowest layer */
+  int period[3], period_first[3];             /* as in mcor_lattice */
+  mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 2]; /* up to one above */
+  uint64_t key_limit;
+  mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
+  cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */
+  cl_uint* finer; /* [leaf_count]: what is finer around each, see MCOR_DIRECTION */
+  int leaf_count, first_leaf[MCOR_TREE_LEVEL_LIMIT + 2];
+  /* Leaves that are parts of one brick follow each other: first of each such region. */
+  cl_int* regions; /* [region_count + 1] */
+  int region_count, first_region[MCOR_TREE_LEVEL_LIMIT + 2];
+} mcor_tree;
+
+/* Marching of leaves; see mcor_adaptive.c. Slots are those of mcor_brick_data. */
+typedef struct mcor_adaptive
+{
+  int count;                                 /* leaves where there may be surface */
+  int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
+  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
+  int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
+  mcor_buffer rungs;      /* mcor_rung, of all levels of leaves */
+  mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
+  mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
+  mcor_buffer states, chosen;              /* int, uchar: of all leaves */
+  mcor_buffer proofs, mixed;           /* uchar: of slots; of leaves where there may be surface */
+  mcor_buffer cells;                   /* int4: those where there may be surface, in order */
+  mcor_buffer finer;                   /* uint: where their neighbours are finer */
+  mcor_buffer wanted, requests, index; /* keys of bricks with nodes of theirs */
+  mcor_buffer keys, buckets;           /* of slots */
+  int bucket_shift;
+  mcor_buffer tables;    /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
+  mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
+  mcor_buffer flat;      /* int, of each leaf, scanned */
+  mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
+} mcor_adaptive;
+
+/* Of adaptive cubes, which cells pairs reach; see mcor_adaptive_pair.c. Masks are of the leaves where there
+ * may be surface. */
+typedef struct mcor_adaptive_pairs
+{
+  int place_count;
+  mcor_buffer place_keys, place_leaves; /* ulong, sorted; int */
+  mcor_buffer seeds, reached, grown;    /* ulong: marked by pairs; by now; when last looked at */
+  mcor_buffer domain;                   /* ulong: where growth may go */
+  mcor_buffer heard;                    /* int4: cells that other boxes have reached */
+  mcor_buffer found;                    /* int: what a kernel found in any leaf */
+} mcor_adaptive_pairs;
+
+/* Of MCOR_TOPOLOGY_FIELD. */
+typedef struct mcor_topology_data
+{
+  mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
+  mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
+  mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
+  mcor_buffer plain, used; /* ulong: of adaptive cubes, see mcor_adaptive_topology.c */
+} mcor_topology_data;
+
+/* Points at which the field is evaluated, see mcor_make_groups. */
+typedef struct mcor_points
+{
+  mcor_buffer flags, groups;
+} mcor_points;
+
+/* Points that are evaluated in sorted order, as nodes and offsets; in_: as they came. */
+typedef struct mcor_point_batch
+{
+  mcor_buffer keys, order, in_node, in_offset, node, offset;
+  cl_int first[3], bricks[3]; /* the bricks that its points are in: fewer make shorter keys */
+} mcor_point_batch;
+
+/* [III-D.3] */
+typedef struct mcor_trim_data
+{
+  mcor_buffer eigenvalue;            /* real, at vertices; what the vertex threshold may apply to */
+  mcor_buffer margin;                /* real, at vertices; see mcor_trim_margin */
+  mcor_buffer remaining, cuts;       /* per batch of triangles */
+  mcor_buffer keys, distinct, index; /* of cut edges */
+  mcor_buffer triangles;
+} mcor_trim_data;
+
+/* mcor_scan.c. flags and order: of mcor_unique. */
+typedef struct mcor_sort_data
+{
+  mcor_buffer sums, keys, values, histogram, order, flags;
+} mcor_sort_data;
+
+/* One component of an attribute. */
+typedef struct mcor_component
+{
+  int attribute, component;
+  double shift, scale; /* on the device: (value - shift) * scale */
+  double low, high;    /* of a probe's, over fluid particles: no mean of theirs is beyond */
+} mcor_component;
+
+/* The components that vary, and those of them that are on the device. */
+typedef struct mcor_attributes
+{
+  mcor_component* varying; /* [varying_count] */
+  int varying_count;
+  int first, count;
+  mcor_buffer sorted; /* real [count][grid.count] */
+  uint64_t kept; /* attributes_version of a probe, where all of it holds for the next one; or 0 */
+  mcor_buffer nearest; /* int, particle per vertex */
+} mcor_attributes;
+
+/* Who counts a vertex; 0: nobody. */
+enum
+{
+  MCOR_OWN = 1,
+  MCOR_ANOTHERS = 2 /* another rank */
+};
+
+/* The cells that a call owns; see mcor_box.c. */
+typedef struct mcor_box
+{
+  bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
+  int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
+  int halves[6];          /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
+  int near[6];            /* the same of those whose particles are on the device */
+  bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
+  double points[6];
+  int begin[3], end[3]; /* the same of those whose particles are on the device */
+  int whole_first[3], whole_last[3], whole_halves[6]; /* cells that any rank owns */
+  mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
+  mcor_buffer clipped; /* ulong per brick, of mcor_count_cells */
+  uint8_t* kept;       /* per triangle of the surface: 1 of an owned cell; NULL: all are */
+  cl_ulong* told;      /* per brick or leaf, cells that others know of; see mcor_pair_rounds.c */
+  int told_count;
+} mcor_box;
+
+/* The call under way; options are NULL between calls. */
+typedef struct mcor_run
+{
+  const mcor_options* options;
+  struct mcor_filling* fill; /* of iso values that are done, see mcor_fill.h; NULL */
+  mcor_statistics* statistics;
+  int iso_number; /* of the iso value under way */
+  mcor_phase phase;
+  double phase_begin;
+  const char* doing;             /* what runs, as last reported */
+  double fraction, fraction_end; /* last reported, also by a first attempt; where what runs ends */
+  double report_time;            /* of the last report */
+  bool building_told;            /* in this phase */
+  double correction_count, correction_sum, correction_squares;
+  int64_t evaluations_counted; /* of vertices_corrected */
+} mcor_run;
+
+/* The data set of the last call, and which of its results hold; see mcor_reuse.c. */
+typedef struct mcor_kept
+{
+  mcor_input input;
+  mcor_options options;
+  mcor_globals globals; /* given; 0 where none were; its arrays are not kept */
+  uint64_t splits;      /* of their split bricks, a hash */
+  bool uses_solids;     /* solid particles are on the device */
+  bool grid, value;
+  bool nodes; /* bricks hold node values of the current scalar */
+} mcor_kept;
+
+struct mcor_context
+{
+  bool created; /* false: mcor_create_context failed */
+  char error[4096];
+  mcor_run run;
+
+  /* The device, and what is on it whatever the data. */
+  mcor_cl cl;
+  mcor_buffer case_table;
+  mcor_sort_data sort;
+  double report_interval; /* between launches, seconds; at least that */
+  int probe_batch;        /* points; 0 before the first probe */
+
+  /* The data set. */
+  mcor_kept kept;
+  mcor_measure measure;
+  mcor_lattice lattice;
+  mcor_plane plane; /* of the call under way */
+  mcor_box box;
+  mcor_stage_data stage;
+  mcor_grid grid;
+  int32_t* source;       /* [grid.count] input index of each device particle; NULL: the same */
+  double value_shift;    /* A0 */
+  double largest_weight; /* no particle has a greater V / (scaled h)^3 */
+  mcor_attributes attributes;
+  mcor_tree tree;
+
+  /* The surface of one iso value. */
+  mcor_bricks bricks;
+  mcor_adaptive adaptive;
+  mcor_adaptive_pairs adaptive_pairs;
+  mcor_topology_data topology;
+  mcor_mesh mesh;
+  mcor_points points;
+  mcor_trim_data trim;
+};
+
+#endif

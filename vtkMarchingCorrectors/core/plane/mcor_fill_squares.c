@@ -1,0 +1,330 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Squares cut into polygons of one band each, and what trimming leaves of these, as triangles. All run
+ * through borders with what they enclose on their left. */
+
+#include "mcor_fill.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A node, or a line's vertex, on the border of a square, and the border's part from there to the next one. */
+typedef struct mcor_fill_corner
+{
+  int32_t ref; /* see mcor_fill_triangle */
+  double margin;
+  int level; /* of the line; -1: a node */
+  int32_t vertex;
+  bool falls; /* the border goes from above the line to below */
+  int band;   /* of the part */
+  bool done;  /* it is in a polygon */
+  /* Where the part is: on the edge of this lower node, the part-th from there; where it begins and ends. */
+  cl_int u, v, axis, part;
+  double from, to;
+} mcor_fill_corner;
+
+/* A corner of a polygon, and whether a line leads to the next one. */
+typedef struct mcor_fill_side
+{
+  mcor_fill_corner* corner;
+  bool is_line;
+} mcor_fill_side;
+
+/* Corners of a polygon at most: nodes, and vertices of the two lines beside a band. */
+#define MCOR_FILL_MOST 12
+
+typedef struct mcor_fill_job
+{
+  mcor_context* context;
+  mcor_filling* fill;
+  uint64_t square;
+  mcor_fill_corner* border; /* [4 + 4 * level_count] */
+  int count;
+  cl_int u, v;
+} mcor_fill_job;
+
+static bool mcor_fill_room(void** array, int64_t count, int64_t* room, size_t width)
+{
+  if (count < *room)
+  {
+    return true;
+  }
+  const int64_t more = 2 * *room + 4096;
+  void* grown = realloc(*array, (size_t)more * width);
+  *array = grown ? grown : *array;
+  *room = grown ? more : *room;
+  return grown != NULL;
+}
+
+static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
+{
+  return mcor_fail(context, MCOR_DEVICE_ERROR,
+    "What is filled does not fit the lines at node %d %d. Please report it.", at->u, at->v);
+}
+
+/* ---- The border ---- */
+
+static mcor_status mcor_add_vertex(mcor_fill_job* job, int level, mcor_fill_corner* corner)
+{
+  const mcor_fill_line* line = &job->fill->lines[job->fill->levels[level]];
+  const int32_t v =
+    mcor_find_cap_number(&line->edges, mcor_fill_key(corner->u, corner->v, corner->axis));
+  if (v < 0 || (line->margin[v] > 0 && line->number[v] < 0))
+  {
+    return mcor_does_not_fit(job->context, corner);
+  }
+  corner->ref = -1 - line->number[v];
+  corner->margin = line->margin[v];
+  corner->level = level;
+  corner->vertex = v;
+  corner->from = line->offset[v];
+  return MCOR_OK;
+}
+
+/* Side s, from its first node to before the other one. */
+static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
+{
+  const mcor_filling* fill = job->fill;
+  const mcor_cap_face* face = &fill->face;
+  const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 }, next = (s + 1) % 4;
+  const int64_t begin = mcor_cap_index(face, job->u + corner_u[s], job->v + corner_v[s]),
+                end = mcor_cap_index(face, job->u + corner_u[next], job->v + corner_v[next]);
+  const int first = fill->band[begin], last = fill->band[end], parts = abs(last - first);
+  for (int i = 0; i <= parts; ++i)
+  {
+    mcor_fill_corner* corner = &job->border[job->count++];
+    *corner = (mcor_fill_corner){ .ref = (int32_t)begin,
+      .margin = face->margin[begin],
+      .level = -1,
+      .falls = last < first,
+      .band = last < first ? first - i : first + i,
+      .u = face->first[0] + job->u + (s == 1),
+      .v = face->first[1] + job->v + (s == 2),
+      .axis = s & 1,
+      .part = s < 2 ? i : parts - i,
+      .from = s < 2 ? 0 : 1 };
+    MCOR_TRY(
+      i > 0 ? mcor_add_vertex(job, last < first ? first - i : first + i - 1, corner) : MCOR_OK);
+    if (i > 0)
+    {
+      corner[-1].to = corner->from;
+    }
+    corner->to = s < 2 ? 1 : 0;
+  }
+  return MCOR_OK;
+}
+
+/* The corner at the other end of the line from corner i. Of a level there are two on the border, or four
+ * which lines join around what is below, or above. */
+static int mcor_fill_mate(const mcor_fill_job* job, int i)
+{
+  const mcor_fill_corner* corners = job->border;
+  const mcor_fill_line* line = &job->fill->lines[job->fill->levels[corners[i].level]];
+  const bool joined = mcor_find_cap_number(&line->joined, job->square) >= 0;
+  const int step = corners[i].falls == joined ? 1 : job->count - 1;
+  int mate = (i + step) % job->count;
+  while (corners[mate].level != corners[i].level)
+  {
+    mate = (mate + step) % job->count;
+  }
+  return mate;
+}
+
+/* ---- Polygons ---- */
+
+static mcor_status mcor_add_fan(mcor_fill_job* job, const int32_t* refs, int count, int band)
+{
+  mcor_filling* fill = job->fill;
+  for (int i = 1; i + 1 < count; ++i)
+  {
+    if (!mcor_fill_room((void**)&fill->triangles, fill->triangle_count, &fill->triangle_room,
+          sizeof *fill->triangles))
+    {
+      return mcor_no_fill_memory(job->context);
+    }
+    fill->triangles[fill->triangle_count++] = (mcor_fill_triangle){
+      .corner = { refs[0], refs[i], refs[i + 1] }, .band = band, .square = job->square
+    };
+  }
+  return MCOR_OK;
+}
+
+static int mcor_compare_fill_keys(const void* x, const void* y)
+{
+  const cl_ulong *a = x, *b = y;
+  return (*a > *b) - (*a < *b);
+}
+
+/* Where trimming cuts a line. */
+static mcor_status mcor_find_line_cut(
+  mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
+{
+  const mcor_fill_line* line = &job->fill->lines[job->fill->levels[p->level]];
+  const cl_ulong low = (cl_ulong)(p->vertex < q->vertex ? p->vertex : q->vertex),
+                 high = (cl_ulong)(p->vertex < q->vertex ? q->vertex : p->vertex),
+                 key = low << 32 | high;
+  const cl_ulong* cut = line->cut_count > 0
+    ? bsearch(&key, line->cuts, (size_t)line->cut_count, sizeof key, mcor_compare_fill_keys)
+    : NULL;
+  const int32_t number = cut ? line->number[line->vertex_count + (cut - line->cuts)] : -1;
+  *ref = -1 - number;
+  return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
+}
+
+/* Where it cuts the border's part from corner p to q. */
+static mcor_status mcor_find_cut(
+  mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
+{
+  mcor_filling* fill = job->fill;
+  const uint64_t edge = mcor_fill_key(p->u, p->v, p->axis);
+  /* Keys of a map are one number: parts are told apart above those of edges. */
+  const uint64_t key = edge ^ (uint64_t)p->part << 44;
+  const int32_t index = mcor_cap_number(&fill->cut_of, key, (int32_t)fill->cut_count);
+  if (index < 0 ||
+    !mcor_fill_room((void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts))
+  {
+    return mcor_no_fill_memory(job->context);
+  }
+  *ref = (int32_t)(fill->node_count + index);
+  if (index == fill->cut_count)
+  {
+    const bool inside = p->margin > 0;
+    fill->cuts[fill->cut_count++] = (mcor_fill_cut){
+      .key = { mcor_fill_node_key(p->u, p->v), (uint64_t)p->axis << 32 | (uint32_t)p->part },
+      .u = p->u,
+      .v = p->v,
+      .axis = p->axis,
+      .inside = inside ? p->from : p->to,
+      .outside = inside ? p->to : p->from,
+      .inside_margin = inside ? p->margin : q->margin,
+      .outside_margin = inside ? q->margin : p->margin,
+      .band = p->band,
+      .index = index
+    };
+  }
+  return MCOR_OK;
+}
+
+/* What trimming leaves of a polygon: each run of corners inside, with the cuts before and behind it. */
+static mcor_status mcor_add_polygon(
+  mcor_fill_job* job, const mcor_fill_side* sides, int count, int band)
+{
+  int start = 0, length = 0;
+  while (start < count && sides[start].corner->margin > 0)
+  {
+    ++start;
+  }
+  const bool whole = start == count;
+  int32_t run[MCOR_FILL_MOST + 2];
+  for (int i = 1; i <= count; ++i)
+  {
+    const mcor_fill_side* before = &sides[(start + i - 1) % count];
+    const mcor_fill_corner *p = before->corner, *q = sides[(start + i) % count].corner;
+    const bool inside = q->margin > 0;
+    if (inside != (p->margin > 0))
+    {
+      MCOR_TRY(before->is_line ? mcor_find_line_cut(job, p, q, &run[length])
+                               : mcor_find_cut(job, p, q, &run[length]));
+      ++length;
+    }
+    if (inside)
+    {
+      run[length++] = q->ref;
+    }
+    else
+    {
+      MCOR_TRY(mcor_add_fan(job, run, length, band));
+      length = 0;
+    }
+  }
+  return whole ? mcor_add_fan(job, run, length, band) : MCOR_OK;
+}
+
+/* The polygon that the border's part from corner i on is of. */
+static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
+{
+  mcor_fill_side sides[MCOR_FILL_MOST];
+  const int band = job->border[i].band;
+  int count = 0;
+  for (int at = i; !job->border[at].done;)
+  {
+    const int next = (at + 1) % job->count;
+    const bool meets_line = job->border[next].level >= 0;
+    if (count + 1 + meets_line > MCOR_FILL_MOST || job->border[at].band != band)
+    {
+      return mcor_does_not_fit(job->context, &job->border[at]);
+    }
+    job->border[at].done = true;
+    sides[count++] = (mcor_fill_side){ &job->border[at], false };
+    if (meets_line)
+    {
+      sides[count++] = (mcor_fill_side){ &job->border[next], true };
+    }
+    at = meets_line ? mcor_fill_mate(job, next) : next;
+  }
+  return mcor_add_polygon(job, sides, count, band);
+}
+
+/* ---- Squares ---- */
+
+/* Square (u, v) of the face, whose nodes are valid. */
+static mcor_status mcor_fill_square(mcor_fill_job* job)
+{
+  job->count = 0;
+  for (int s = 0; s < 4; ++s)
+  {
+    MCOR_TRY(mcor_add_border_side(job, s));
+  }
+  for (int i = 0; i < job->count; ++i)
+  {
+    MCOR_TRY(
+      job->border[i].band > 0 && !job->border[i].done ? mcor_add_polygon_from(job, i) : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+/* Whether the nodes are valid, and some above the least level. */
+static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
+{
+  bool valid = true, above = false;
+  for (int c = 0; c < 4; ++c)
+  {
+    const int64_t node = mcor_cap_index(&fill->face, u + (c & 1), v + (c >> 1));
+    valid = valid && (fill->face.state[node] & MCOR_CAP_VALID);
+    above = above || fill->band[node] > 0;
+  }
+  return valid && above;
+}
+
+static mcor_status mcor_fill_rows(mcor_fill_job* job)
+{
+  const mcor_cap_face* face = &job->fill->face;
+  for (int v = 0; v + 1 < face->count[1]; ++v)
+  {
+    const int32_t* tile = face->tile + (int64_t)(v / MCOR_CAP_TILE) * face->tiles[0];
+    MCOR_TRY(mcor_report_launch(job->context));
+    for (int u = 0; u + 1 < face->count[0]; ++u)
+    {
+      if (tile[u / MCOR_CAP_TILE] == 0)
+      {
+        u = u / MCOR_CAP_TILE * MCOR_CAP_TILE + MCOR_CAP_TILE - 1;
+        continue;
+      }
+      job->u = u;
+      job->v = v;
+      job->square = mcor_fill_key(face->first[0] + u, face->first[1] + v, 0);
+      MCOR_TRY(mcor_is_filled(job->fill, u, v) ? mcor_fill_square(job) : MCOR_OK);
+    }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
+{
+  mcor_fill_job job = { .context = context, .fill = fill };
+  job.border = malloc((4 + 4 * (size_t)fill->level_count) * sizeof *job.border);
+  const mcor_status status = job.border ? mcor_fill_rows(&job) : mcor_no_fill_memory(context);
+  free(job.border);
+  return status;
+}

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Which particles are fluid: as chosen, or as an array tells.
+#include "vtkSPHParticles.h"
+
+#include "vtkMarchingCorrectorsValues.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <sstream>
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::CollectSolids()
+{
+  this->FluidCount = static_cast<vtkIdType>(this->Core.count);
+  this->Core.ignore_solids = this->Description.IgnoreSolids ? 1 : 0;
+  const std::string name = RealName(this->Description.FluidArrayName);
+  if (name.empty())
+  {
+    return true;
+  }
+  this->Fluid = this->Find("fluid", name);
+  if (!this->Fluid || !this->HasOneComponent("fluid", this->Fluid))
+  {
+    return false;
+  }
+  this->Solid.resize(std::max<size_t>(static_cast<size_t>(this->Core.count), 1));
+  this->FluidCount =
+    vtkMarchingCorrectorsMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
+  this->Core.solid = this->Solid.data();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkSPHParticles::ListTypes(
+  const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+{
+  std::multimap<int, std::string> names;
+  vtkPointData* pointData = points->GetPointData();
+  for (int i = 0; RealName(choice.FluidArrayName).empty() && i < pointData->GetNumberOfArrays();
+       ++i)
+  {
+    vtkDataArray* array = pointData->GetArray(i);
+    const int rank = array ? mcor_name_priority(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
+    if (rank >= 0 && array->GetNumberOfComponents() == 1)
+    {
+      names.emplace(rank, array->GetName());
+    }
+  }
+  std::vector<std::string> list;
+  for (const auto& name : names)
+  {
+    list.push_back(name.second);
+  }
+  return list;
+}
+
+//------------------------------------------------------------------------------
+void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points)
+{
+  double range[2];
+  for (const std::string& name : ListTypes(choice, points))
+  {
+    if (FindWholeRange(points, name, range) &&
+      mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
+    {
+      choice.FluidArrayName = name;
+      return;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
+{
+  const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
+    points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
+  const bool whole = std::all_of(counts.begin(), counts.end(),
+    [](const std::pair<const double, vtkIdType>& count)
+    { return count.first == std::floor(count.first); });
+  if (whole && !counts.empty())
+  {
+    range[0] = counts.begin()->first;
+    range[1] = counts.rbegin()->first;
+  }
+  return whole && !counts.empty();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::DescribeFluid() const
+{
+  std::ostringstream text;
+  if (this->Fluid)
+  {
+    text << NameOf(this->Fluid) << " = " << this->Description.FluidValue;
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkSPHParticles::DescribeUnusedType()
+{
+  for (const std::string& name : ListTypes(this->Description, this->Points))
+  {
+    std::vector<double> values;
+    std::vector<std::int64_t> counts;
+    for (const auto& count : vtkMarchingCorrectorsCountValues(
+           this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
+    {
+      values.push_back(count.first);
+      counts.push_back(count.second);
+    }
+    const std::unique_ptr<char, decltype(&std::free)> text(
+      mcor_describe_unused_type(
+        name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())),
+      std::free);
+    if (text)
+    {
+      return text.get();
+    }
+  }
+  return {};
+}

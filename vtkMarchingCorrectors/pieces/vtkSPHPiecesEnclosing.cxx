@@ -177,10 +177,22 @@ vtkIdType Enclosing(const Columns& columns, const std::vector<vtkSPHPiece>& piec
   }
   return total > 0 ? found : -1;
 }
+
+/** The same place, within the period. */
+Triple WithinPeriod(const double period[6], const Triple& point)
+{
+  Triple at = point;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = period[2 * a], length = period[2 * a + 1] - low;
+    at[a] -= length > 0.0 ? std::floor((at[a] - low) / length) * length : 0.0;
+  }
+  return at;
+}
 }
 
 //------------------------------------------------------------------------------
-// A point may be in a piece a period away.
+// A point may be whole periods away; within the period, in a piece that sticks out of it at the other side.
 std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   const std::vector<Triple>& points, const std::vector<vtkIdType>& without) const
 {
@@ -216,10 +228,11 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
     {
       for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
       {
+        const Triple home = WithinPeriod(this->Period, points[i]);
         for (size_t s = 0; s < shifts.size() && found[i] < 0; ++s)
         {
-          const Triple at = { { points[i][0] + shifts[s][0], points[i][1] + shifts[s][1],
-            points[i][2] + shifts[s][2] } };
+          const Triple at = { { home[0] + shifts[s][0], home[1] + shifts[s][1],
+            home[2] + shifts[s][2] } };
           found[i] = Enclosing(columns, this->Pieces, at, without.empty() ? -1 : without[i]);
         }
       }

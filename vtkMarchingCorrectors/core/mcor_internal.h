@@ -110,6 +110,18 @@ static inline double mcor_wall_share(const mcor_context* context)
   return share < 0 ? context->measure.wall_share : share;
 }
 
+/* Whether the surface ends at solids, too. */
+static inline bool mcor_ends_at_solids(const mcor_context* context)
+{
+  return context->grid.has_solids && mcor_wall_share(context) > 0;
+}
+
+/* The share of the weight that the fluid needs; 0: none. */
+static inline double mcor_fluid_share(const mcor_context* context)
+{
+  return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
+}
+
 /* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
 static inline bool mcor_wants_pairs(const mcor_options* options)
 {
@@ -222,7 +234,6 @@ mcor_status mcor_trim(mcor_context* context, double iso);
 /* What is trimmed by, at the vertices on lattice edges, and where it ends. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
-double mcor_fluid_share(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
 double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */

@@ -10,6 +10,13 @@
 /* Boundary flag of vertices that caps alone have. */
 #define MCOR_CAP_FLAG 8
 
+/* Whether the free surface is closed where it ends at solids, see mcor_cap_wall.c. */
+static inline bool mcor_caps_walls(const mcor_context* context)
+{
+  return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
+    mcor_fluid_share(context) > 0;
+}
+
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
 mcor_status mcor_cap(mcor_context* context, double iso);
 
@@ -73,8 +80,6 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
  * box); -1: none does. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
-/* Whether the free surface is closed where it ends at solids, see mcor_cap_wall.c. */
-bool mcor_caps_walls(const mcor_context* context);
 /* Of a face whose extent is known; iso_value: of the field itself. */
 mcor_status mcor_make_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face);
 mcor_status mcor_make_cap_face(

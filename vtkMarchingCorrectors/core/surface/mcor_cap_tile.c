@@ -43,12 +43,6 @@ bool mcor_makes_caps(const mcor_context* context)
   return makes || mcor_caps_walls(context);
 }
 
-bool mcor_caps_walls(const mcor_context* context)
-{
-  return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
-    mcor_fluid_share(context) > 0;
-}
-
 void mcor_free_cap_face(mcor_cap_face* face)
 {
   free(face->tile);

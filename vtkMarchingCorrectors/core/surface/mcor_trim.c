@@ -43,18 +43,6 @@ static const mcor_buffer* mcor_threshold_quantity(const mcor_context* context)
                                            : &context->mesh.vertex_weight;
 }
 
-/* Whether the surface ends at solids, too. */
-static bool mcor_ends_at_solids(const mcor_context* context)
-{
-  return context->grid.has_solids && mcor_wall_share(context) > 0;
-}
-
-/* The share of the weight that the fluid needs; 0: none. */
-double mcor_fluid_share(const mcor_context* context)
-{
-  return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
-}
-
 double mcor_least_fluid(const mcor_context* context)
 {
   return context->run.options->field == MCOR_SHEPARD

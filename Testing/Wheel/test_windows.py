@@ -69,7 +69,7 @@ def install(python, wheels, wheel, environment):
     pip, = (python.parent / "Lib" / "ensurepip" / "_bundled").glob("pip-*.whl")
     begin = time.monotonic()
     run("wine", python, f"{pip}/pip", "--disable-pip-version-check", "--no-cache-dir", "install", "--no-index",
-        "--find-links", wheels, "--no-compile", wheel, env=environment)
+        "--find-links", wheels, "--no-compile", "--no-warn-script-location", wheel, env=environment)
     print(f"pip install: {time.monotonic() - begin:.1f} s")
 
 

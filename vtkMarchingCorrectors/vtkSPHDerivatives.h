@@ -4,40 +4,37 @@
  * @class   vtkSPHDerivatives
  * @brief   gradients of SPH particle arrays, vorticity, Q-criterion, lambda2
  *
- * vtkSPHDerivatives adds to SPH particles, at each particle, the SPH gradient of one of their point
- * arrays, and of a vector with three components what is made of its gradient. The array is chosen
- * with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name); the default is that of
- * vtkMarchingCorrectors. The particles are described as for vtkMarchingCorrectors, see vtkSPHAlgorithm.
+ * vtkSPHDerivatives adds the SPH gradient of a point array to the particles and, for a vector with three
+ * components, the quantities below. The array is chosen with SetInputArrayToProcess(0, 0, 0,
+ * FIELD_ASSOCIATION_POINTS, name); the default is that of vtkMarchingCorrectors. vtkSPHAlgorithm describes
+ * the particles.
  *
  *     standard            G_i = sum_j V_j (A_j - A_i) grad W(x_i - x_j, s h_j)
  *     corrected (default) M_i^-1 G_i,  M_i = sum_j V_j grad W(x_i - x_j, s h_j) (x_j - x_i)^T
  *
- * The corrected form is exact for a linear A, whatever the order of the particles and also at the
- * end of the fluid, wherever M_i can be inverted; where it cannot, as in spray, the standard form is
- * taken.
+ * The corrected form is exact for a linear A, also at the end of the fluid, wherever M_i can be inverted;
+ * where it cannot, as in spray, the standard form is used.
  *
- * The output is the input and these point arrays; those made of J, the gradient of a vector, with
- * J = S + O, S symmetric and O antisymmetric:
+ * The output is the input with these point arrays (J = S + O: the gradient of a vector, S symmetric, O
+ * antisymmetric):
  *
  *     Gradients            3 values per component: d/dx, d/dy, d/dz of the first, then the next
- *     GradientsCorrected   1 where the corrected form was taken, 0 where the standard one
+ *     GradientsCorrected   1 where the corrected form was used, else 0
  *     Divergence           tr J
  *     Vorticity            curl
  *     Q-criterion          (tr(J)^2 - tr(J J)) / 2, as in vtkGradientFilter
  *     Lambda2              the middle eigenvalue of S S + O O; below 0 in the core of a vortex; not in two dimensions
  *     StrainRate           S, nine values
  *
- * They are float where the input array is, else double. Sums are over fluid particles; solid
- * particles have zeros. Where the input has an array of such a name, the new one is called NAME_SPH, see
- * SetReplaceArrays().
+ * They are float if the input array is, else double. Sums are over fluid particles; solid particles get
+ * zeros. If the input has an array of such a name, the new one is called NAME_SPH, see SetReplaceArrays().
  *
- * Composite data give composite data.
+ * If the controller has several processes, they share the work: each gets the derivatives at its particles,
+ * the same to the last bit as from one process. Particles that vtkGhostType marks as duplicates get zeros.
  *
  * @warning
- * A block that is taken by itself, see SetBlocks(), has at a cut the gradients of an end of the fluid. So
- * has a piece, but where the controller has many processes: these share the work, each gets the
- * derivatives of its particles, the same to the last bit as where one process has them all. Particles
- * that vtkGhostType marks as duplicates get zeros.
+ * At a cut, a block that is taken by itself, see SetBlocks(), has gradients as at an end of the fluid; so
+ * has a piece that no processes share.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe vtkGradientFilter
@@ -67,7 +64,7 @@ public:
 
   ///@{
   /**
-   * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
+   * Also leave solid particles out when volumes are computed from positions. Off by default.
    */
   vtkSetMacro(IgnoreSolids, vtkTypeBool);
   vtkGetMacro(IgnoreSolids, vtkTypeBool);
@@ -76,7 +73,7 @@ public:
 
   ///@{
   /**
-   * Take the corrected form of the gradient. On by default.
+   * Use the corrected form of the gradient. On by default.
    */
   vtkSetMacro(CorrectGradients, vtkTypeBool);
   vtkGetMacro(CorrectGradients, vtkTypeBool);
@@ -94,8 +91,8 @@ public:
 
   ///@{
   /**
-   * The name of the gradient's array, "Gradients" by default: for those who need the gradients of
-   * several arrays. That of the array that marks the corrected ones is this and "Corrected".
+   * The name of the gradient's array, "Gradients" by default. The array that marks corrected gradients has
+   * this name and "Corrected".
    */
   vtkSetStdStringFromCharMacro(ResultArrayName);
   vtkGetCharFromStdStringMacro(ResultArrayName);
@@ -103,8 +100,7 @@ public:
 
   ///@{
   /**
-   * Put the new arrays in the place of those that have their names. Off by default: then they are called
-   * NAME_SPH.
+   * Replace existing arrays of the same names. Off by default: the new ones are then called NAME_SPH.
    */
   vtkSetMacro(ReplaceArrays, vtkTypeBool);
   vtkGetMacro(ReplaceArrays, vtkTypeBool);
@@ -113,8 +109,8 @@ public:
 
   ///@{
   /**
-   * Add what is made of the gradient of a vector; for other arrays these do nothing. All are on by
-   * default, but the strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
+   * Add these quantities of the gradient of a vector; no effect for other arrays. On by default, except the
+   * strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
    */
   vtkSetMacro(ComputeDivergence, vtkTypeBool);
   vtkGetMacro(ComputeDivergence, vtkTypeBool);

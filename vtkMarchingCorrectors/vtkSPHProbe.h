@@ -20,23 +20,22 @@
  *     NAME_Gradient         of each of these arrays and of WeightSum, if ComputeGradients is on: 3
  *                           values per component: d/dx, d/dy, d/dz of the first, then the next
  *
- * Where a point is not valid, the arrays, but WeightSum, are 0, or what was chosen, see SetNullValue(). Active
- * scalars become the particles' velocities, else their first vector or scalar that varies. Arrays that were there under these
- * names are replaced. Arrays of other types, such as identifiers, are left out, as are those named
- * by AddExcludedArray(); one that is NaN or infinite at a fluid particle is left out with a warning.
+ * At invalid points, the arrays other than WeightSum are 0, or as chosen, see SetNullValue(). Existing arrays
+ * of these names are replaced. The active scalars become the velocities, else the first vector or scalar
+ * of the particles that varies. Arrays of other types, such as identifiers, are left out, as are those
+ * named by AddExcludedArray(); one that is NaN or infinite at a fluid particle is left out with a warning.
  * Only fluid particles count.
  *
- * The value at a point does not depend on the other points, on their order or on that of the
- * particles. Points are treated some at a time, so that little memory is needed beside that of the
- * output; points out of all particles' reach cost next to nothing.
+ * The value at a point depends neither on the other points nor on the order of points or particles. Points
+ * are processed in batches, so that little memory is needed beside the output; points that no particle
+ * reaches cost next to nothing.
  *
- * Where the controller has many processes, they share the work: each has some of the points and some
- * of the particles, or none, and gets the values at its points, the same to the last bit as where one
- * process has all of both. Points marked by vtkGhostType are points like others, particles so marked do
- * not count.
+ * If the controller has several processes, they share the work: each has some of the points and particles,
+ * or none, and gets the values at its points, the same to the last bit as from one process. Particles that
+ * vtkGhostType marks as duplicates do not count; such points do.
  *
- * Composite data at port 0 give composite data. Particles in several blocks are taken together, with
- * the arrays that all blocks have.
+ * Composite data at port 0 give composite data. Particles in several blocks are taken together, with the
+ * arrays that all blocks have.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHDerivatives vtkSPHInterpolator vtkProbeFilter
@@ -74,7 +73,7 @@ public:
 
   ///@{
   /**
-   * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
+   * Also leave solid particles out when volumes are computed from positions. Off by default.
    */
   vtkSetMacro(IgnoreSolids, vtkTypeBool);
   vtkGetMacro(IgnoreSolids, vtkTypeBool);
@@ -100,7 +99,7 @@ public:
 
   ///@{
   /**
-   * Add the particles' arrays; off, WeightSum and the mask alone. On by default.
+   * Add the particles' arrays; off: only WeightSum and the mask. On by default.
    */
   vtkSetMacro(InterpolateAttributes, vtkTypeBool);
   vtkGetMacro(InterpolateAttributes, vtkTypeBool);
@@ -118,7 +117,7 @@ public:
 
   ///@{
   /**
-   * What arrays, but WeightSum and the mask, are where a point is not valid: NaN, or NullValue, 0 by default.
+   * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by default).
    * NaNOutside is off by default.
    */
   vtkSetMacro(NaNOutside, vtkTypeBool);

@@ -4,20 +4,19 @@
  * @class   vtkSPHResample
  * @brief   the field of SPH particles on a slice, along a line or in a volume
  *
- * vtkSPHResample is vtkSPHProbe for those who have no points yet: the particles are its one input, and it
- * makes the points:
+ * vtkSPHResample is a vtkSPHProbe that makes its own points; the particles are its only input:
  *
- *     SLICE (default)   quads of a plane, around what the box of the fluid's particles has of it
+ *     SLICE (default)   quads of a plane, over the part of it in the box of the fluid's particles
  *     LINE              points from Point1 to Point2, with their distance from the first as arc_length
  *     VOLUME            a vtkImageData around that box
  *
- * With FitBounds (the default) the slice goes through the middle of the fluid, the line along the longest
- * side of its box, through the middle, and the volume is that box; all with 3 % of the longest side around.
+ * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the middle
+ * along the longest side of its box, and the volume is that box, all with a margin of 3 % of that side.
  *
  * Where there is no fluid (less than WeightThreshold) arrays are NaN, see SetNaNOutside(), and a slice has
  * no quads, see SetOnlyFluid(). Active scalars are velocities, else the first vector or scalar that varies.
  *
- * Blocks of composite data are one set of particles, always. Where the controller has many processes, each
+ * Blocks of composite data always form one set of particles. If the controller has several processes, each
  * has a part of the volume; a slice or line is on the first one.
  *
  * @sa

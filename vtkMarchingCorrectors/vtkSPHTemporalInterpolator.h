@@ -4,41 +4,37 @@
  * @class   vtkSPHTemporalInterpolator
  * @brief   SPH particles at any time between the steps that are stored
  *
- * Readers of simulations offer particles at some times, the stored steps. This filter offers them at
- * any time from the first step to the last: at a stored one as they are, between two of them
- * interpolated. It asks upstream for the two steps around the time and keeps them, so that an
- * animation reads each step once. Its output is what vtkMarchingCorrectors and the other SPH filters
- * take as input.
+ * Readers of simulations provide particles at the stored steps. This filter provides them at any time
+ * from the first step to the last, interpolated between two steps. It keeps the two steps around the
+ * requested time, so that an animation reads each step once. vtkMarchingCorrectors and the other SPH
+ * filters take its output.
  *
- * Between two steps at t0 and t1 a particle is recognised by its number, whatever its place in the
- * files. Its position is the cubic Hermite curve through both positions with both velocities as
- * tangents; float and double arrays are interpolated linearly; integers, strings and the numbers
- * themselves are those of the nearer step. A particle that is in one of the two steps alone belongs
- * to the half of the interval next to that step, moves there with the velocity that it has in it, and
- * keeps its values. Particles stand in the order of the nearer step; in the middle, that is the later
- * one.
+ * Particles are matched between two steps by their ids, in any order. The position follows the cubic
+ * Hermite curve through both positions with both velocities as tangents; float and double arrays are
+ * linear in time; integers, strings and ids are those of the nearer step. A particle that is in only one
+ * of the two steps exists in the half of the interval next to that step, moves with the velocity that it
+ * has there, and keeps its values. Particles are in the order of the nearer step (in the middle: of the
+ * later one).
  *
- * Numbers and velocities are point arrays, found by their usual names (case, blanks, "_" and "-" do
- * not matter) unless they are named; the numbers also as the active global ids:
+ * Ids and velocities are point arrays, found by their usual names (case, blanks, "_" and "-" do not
+ * matter) unless they are named; ids are also found as the active global ids:
  *
- *     number     Idp ParticleId ParticleIds PartId id ids GlobalIds GlobalId gid pid iorig
+ *     id         Idp ParticleId ParticleIds PartId id ids GlobalIds GlobalId gid pid iorig
  *     velocity   Velocity Velocities vel v
  *
- * In place of a name, "(automatic)" and "(none)" mean the same as an empty one. Without numbers, or with numbers
- * that two particles share, there is nothing between two steps but an error that says so; stored
- * steps need none. Without a velocity (or with UseVelocities off) positions are linear in time,
- * and particles of one step alone stay where they are. So it is, with a warning, where the velocities
- * do not fit the positions: where the particles (100 or more) moved less than half or more than twice
- * as far as their mean velocities say. Then the steps' times have another unit than the velocities,
- * which TimeScale mends, or are too far apart.
+ * As a name, "(automatic)" and "(none)" mean the same as an empty one. Without ids, or if two particles
+ * share one, it is an error to request a time between two steps. Without velocities (or with
+ * UseVelocities off) positions are linear in time, and particles of only one step stay where they are.
+ * The same is done, with a warning, if the particles (100 or more) moved less than half or more than twice
+ * as far as their mean velocities say: the steps' times are then in another unit than the velocities, see
+ * TimeScale, or too far apart.
  *
- * The output is a vtkPolyData with the points and point arrays; where the input has cells, each
- * particle is a vertex. Composite data give composite data: block by block, the same tree in both
- * steps. Arrays that only one of the two steps has are left out between them, with a warning.
+ * The output is a vtkPolyData with the points and point arrays; if the input has cells, each particle is a
+ * vertex. Composite data must have the same tree in both steps, and give composite data. Arrays that only
+ * one of the two steps has are left out between them, with a warning.
  *
  * @warning
- * Particles that cross a periodic boundary from one step to the next fly through the whole domain
- * between them.
+ * Particles that cross a periodic boundary fly through the whole domain between the two steps.
  *
  * @sa
  * vtkMarchingCorrectors vtkTemporalInterpolator
@@ -67,8 +63,8 @@ public:
 
   ///@{
   /**
-   * The point array of the particles' numbers: whole numbers of any type, each one once. Empty (the
-   * default): found by name.
+   * The point array of particle ids: whole numbers of any type, each occurring once. Empty (the default):
+   * found by name.
    */
   vtkSetStdStringFromCharMacro(IdArrayName);
   vtkGetCharFromStdStringMacro(IdArrayName);
@@ -102,9 +98,8 @@ public:
 
   ///@{
   /**
-   * Into how many steps each interval between two stored ones is divided, for those who ask which
-   * steps there are (ParaView's animation does). 1, the default: the stored steps alone. Every other
-   * time can be asked for, too.
+   * The number of steps that are announced for each interval between two stored ones, as ParaView's
+   * animation needs them. 1, the default: only the stored steps. Any other time can be requested, too.
    */
   vtkSetClampMacro(ResampleFactor, int, 1, 1000000);
   vtkGetMacro(ResampleFactor, int);
@@ -119,8 +114,7 @@ public:
   ///@}
 
   /**
-   * The sentence that says why the last update failed; empty if it did not. It is also reported as a
-   * VTK error.
+   * Why the last update failed, in one sentence, which is also reported as a VTK error; else empty.
    */
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
@@ -130,7 +124,7 @@ public:
   void SetInputData(vtkDataObject* particles);
 
   /**
-   * The output, nullptr where it is composite.
+   * The output; nullptr if it is composite.
    */
   vtkPolyData* GetOutput();
 

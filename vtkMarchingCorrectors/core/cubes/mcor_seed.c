@@ -40,16 +40,13 @@ static mcor_status mcor_count_seeds(mcor_context* context, const mcor_buffer* se
   return MCOR_OK;
 }
 
-/* Places the bricks that the regions leave uncertain, which are the seeds, and those that are known
- * from earlier iso values; lists these regions. */
-static mcor_status mcor_test_regions(
+/* Requests the bricks that the regions leave uncertain, and lists these regions. */
+static mcor_status mcor_find_regions(
   mcor_context* context, double iso, mcor_buffer* list, int* listed)
 {
   mcor_bricks* bricks = &context->bricks;
   const int regions = bricks->block_count * MCOR_BLOCK_REGIONS;
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   mcor_buffer* list_count = &bricks->found;
-  MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
   MCOR_TRY(mcor_reserve(context, list, (size_t)regions * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, list_count, 0, sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
@@ -60,8 +57,20 @@ static mcor_status mcor_test_regions(
   cl_int count;
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
   *listed = count;
+  return MCOR_OK;
+}
+
+/* Places the bricks that the regions leave uncertain, which are the seeds, and those that are known
+ * from earlier iso values; lists these regions. */
+static mcor_status mcor_test_regions(
+  mcor_context* context, double iso, mcor_buffer* list, int* listed)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
+  MCOR_TRY(mcor_is_plane(context) ? mcor_find_seeds_in_plane(context, iso)
+                                  : mcor_find_regions(context, iso, list, listed));
   MCOR_TRY(mcor_void_bricks(context));
-  MCOR_TRY(mcor_void_above_plane(context));
   MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));
   return mcor_place_bricks(context);
@@ -90,7 +99,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer* list = &bricks->regions;
-  int listed;
+  int listed = 0;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
   MCOR_TRY(mcor_count_seeds(context, &bricks->seeds));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));

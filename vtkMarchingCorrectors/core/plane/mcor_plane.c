@@ -30,12 +30,8 @@ static void mcor_find_constant(
   const mcor_array* positions, int64_t count, int axis, double* low, double* high)
 {
   const double first = count > 0 ? mcor_array_at(positions, 0, axis) : 0;
-  int64_t i = 1;
-  while (i < count && mcor_array_at(positions, i, axis) == first)
-  {
-    ++i;
-  }
-  const bool constant = count > 0 && i >= count && isfinite(first);
+  const bool constant = count > 0 && isfinite(first) &&
+    mcor_array_at(positions, count - 1, axis) == first && mcor_is_constant(positions, count, axis);
   *low = constant ? first : count > 0 ? -DBL_MAX : DBL_MAX;
   *high = constant ? first : -*low;
 }
@@ -143,14 +139,30 @@ typedef struct mcor_flatten_job
 {
   const mcor_plane* plane;
   mcor_array positions;
-  double* to;
+  void* to;        /* of the positions' type, points as doubles */
   bool are_points; /* which may lie off the plane */
 } mcor_flatten_job;
 
-static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t last)
+/* Positions in single precision, which they keep. */
+static void mcor_flatten_floats(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_flatten_job* job = data;
-  double x[MCOR_CHUNK];
+  const int u = mcor_plane_axis(job->plane, 0), v = mcor_plane_axis(job->plane, 1);
+  const float* from = job->positions.data;
+  float* to = job->to;
+  for (int64_t i = 3 * first; i < 3 * last; i += 3)
+  {
+    to[i] = from[i + u];
+    to[i + 1] = from[i + v];
+    to[i + 2] = 0;
+  }
+  (void)slice;
+}
+
+static void mcor_flatten_doubles(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_flatten_job* job = data;
+  double x[MCOR_CHUNK], *to = job->to;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
@@ -160,7 +172,7 @@ static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t las
       for (int i = 0; i < count; ++i)
       {
         const bool off = a == 2 && job->are_points && x[i] != job->plane->at;
-        job->to[3 * (begin + i) + a] = a < 2 ? x[i] : off ? NAN : 0;
+        to[3 * (begin + i) + a] = a < 2 ? x[i] : off ? NAN : 0;
       }
     }
   }
@@ -189,15 +201,16 @@ static void mcor_flatten_sides(const mcor_plane* plane, const double from[6], do
 static mcor_status mcor_flatten_positions(mcor_context* context, mcor_flat* flat)
 {
   const mcor_input* input = &flat->input;
-  flat->positions = malloc((size_t)input->count * 3 * sizeof(double) + 1);
+  const bool floats = input->positions.type == MCOR_FLOAT32;
+  flat->positions =
+    malloc((size_t)input->count * 3 * (floats ? sizeof(float) : sizeof(double)) + 1);
   MCOR_RETURN_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for %lld particles could not be allocated.", (long long)input->count);
   mcor_flatten_job job = { &context->plane, input->positions, flat->positions, false };
   job.positions.components = 3;
-  MCOR_TRY(
-    mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job, NULL));
+  MCOR_TRY(mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN,
+    floats ? mcor_flatten_floats : mcor_flatten_doubles, &job, NULL));
   flat->input.positions.data = flat->positions;
-  flat->input.positions.type = MCOR_FLOAT64;
   flat->input.positions.components = 3;
   return MCOR_OK;
 }
@@ -210,7 +223,7 @@ mcor_status mcor_flatten_points(
     "Host memory for %lld points could not be allocated.", (long long)count);
   mcor_flatten_job job = { &context->plane, *points, *flat, true };
   job.positions.components = 3;
-  mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job);
+  mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_flatten_doubles, &job);
   *turned = (mcor_array){ .data = *flat, .type = MCOR_FLOAT64, .components = 3 };
   return MCOR_OK;
 }
@@ -250,7 +263,7 @@ mcor_status mcor_flatten(
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }
-  return mcor_flatten_positions(context, flat);
+  return mcor_has_positions(input) ? mcor_flatten_positions(context, flat) : MCOR_OK;
 }
 
 void mcor_unflatten_doubles(

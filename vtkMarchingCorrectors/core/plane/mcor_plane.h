@@ -18,7 +18,7 @@ typedef struct mcor_flat
   mcor_input input;
   mcor_options options;
   mcor_ranks ranks;
-  double* positions;
+  void* positions;
 } mcor_flat;
 
 static inline bool mcor_is_plane(const mcor_context* context)
@@ -54,7 +54,7 @@ double mcor_plane_factor(mcor_sph_kernel kernel);
 
 /* mcor_plane_march.c: what nodes in the plane are, those above are too; nothing else is a brick. */
 mcor_status mcor_spread_signs(mcor_context* context);
-mcor_status mcor_void_above_plane(mcor_context* context);
+mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso);
 mcor_status mcor_count_lines(mcor_context* context);
 /* Of all cells of leaves those that are squares. */
 mcor_status mcor_keep_squares(mcor_context* context, int leaves);

@@ -16,18 +16,16 @@ mcor_status mcor_spread_signs(mcor_context* context)
         MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
-/* As if a box ended at the lowest layer of bricks. */
-mcor_status mcor_void_above_plane(mcor_context* context)
+/* Requests the bricks that are not certain. */
+mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso)
 {
   const mcor_bricks* bricks = &context->bricks;
-  static const int first[3] = { -1, -1, -1 }, last[3] = { INT32_MAX, INT32_MAX, 1 };
-  return !mcor_is_plane(context)
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
-        (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
-        MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
-        MCOR_BUFFER(&bricks->block_keys), MCOR_CELL_ARGS(first, last, 0, 0),
-        MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
+  return MCOR_LAUNCH(context, "mcor_plane_seeds", MCOR_HEAVY,
+    (size_t)bricks->block_count * MCOR_BLOCK_REGIONS, MCOR_GRID_ARGS(context),
+    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states),
+    MCOR_BUFFER(&bricks->seed_bits));
 }
 
 /* In place of mcor_march_count. */

@@ -94,8 +94,8 @@ __kernel void mcor_adaptive_plane_count(MCOR_LEAF_PARAMS, __global const uchar* 
       const int side = mcor_plane_side(&ring, s), axis = side >> 5, lower = side & 31;
       const mcor_leaf_edge edge = mcor_leaf_edge_of(&leaf, cell, nodes.split, axis, lower);
       __global uint* words = quadrants + edge.slot * (long)MCOR_QUADRANT_WORDS + 8 * axis;
-      const int first = (axis == 0 ? lower / 3 : lower % 3) ? 1 : 0; /* the square is below, above */
-      for (int q = first; q < 4; q += 2)
+      const int across = axis == 0 ? lower / 3 : lower % 3;
+      for (int q = across > 0; q < 4; q += 2) /* on the side where the square is */
       {
         atomic_or(words + 2 * q + (edge.node >> 5), 1u << (edge.node & 31));
       }
@@ -107,8 +107,8 @@ __kernel void mcor_adaptive_plane_count(MCOR_LEAF_PARAMS, __global const uchar* 
 
 /* One work-item = one leaf. Reads used squares, masks, decisions and edge numbering. Writes lines, as triangles
  * whose last corner is given twice, and, if wanted, the keys of their cells; see mcor_plane_lines. */
-__kernel void mcor_adaptive_plane_lines(MCOR_LEAF_PARAMS, __global const int4* cells, MCOR_SIDES_PARAMS,
-  MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
+__kernel void mcor_adaptive_plane_lines(MCOR_LEAF_PARAMS, __global const int4* cells,
+  MCOR_SIDES_PARAMS, MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
   __global ulong* line_cells, __global const ulong* used, __global const ulong* edges,
   __global const int* vertex_base, __global const int* line_base, __global int* lines)
 {
@@ -144,8 +144,8 @@ __kernel void mcor_adaptive_plane_lines(MCOR_LEAF_PARAMS, __global const int4* c
       for (int k = 0; k < 2; ++k)
       {
         const int side = mcor_plane_side(&ring, k ? end : s);
-        lines[3 * to + k] = mcor_leaf_vertex(
-          &leaf, cell, nodes.split, side >> 5, side & 31, edges, vertex_base);
+        lines[3 * to + k] =
+          mcor_leaf_vertex(&leaf, cell, nodes.split, side >> 5, side & 31, edges, vertex_base);
       }
       lines[3 * to + 2] = lines[3 * to + 1];
       if (follows)

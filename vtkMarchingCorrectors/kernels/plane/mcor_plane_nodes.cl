@@ -76,8 +76,8 @@ mcor_query mcor_plane_query(const mcor_grid* grid, int4 brick, int first, int x,
 void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global real* node_value,
   __global real* node_weight)
 {
-  mcor_query query = mcor_plane_query(
-    grid, brick, first, MCOR_LANES == 1 ? 0 : MCOR_BRICK - 1, MCOR_PLANE_ROWS - 1);
+  mcor_query query =
+    mcor_plane_query(grid, brick, first, MCOR_LANES == 1 ? 0 : MCOR_BRICK - 1, MCOR_PLANE_ROWS - 1);
   real at[3];
   for (int a = 0; a < 3; ++a)
   {
@@ -97,7 +97,54 @@ void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global 
   mcor_plane_store(&sums, node_value + first, node_weight + first);
 }
 
+/* The state of a region's nodes in the plane, `cubes` along an edge, by raw values or by a bound. */
+int mcor_plane_state(const mcor_grid* grid, int4 brick, int cubes, const mcor_seed_limits* limits)
+{
+  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
+  mcor_query query = mcor_plane_query(grid, brick, 0, cubes, cubes);
+  const int state =
+    of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(grid, &query, limits->side_flags) : 3];
+  if (state != MCOR_EXAMINE)
+  {
+    return state;
+  }
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  return mcor_seed_state(grid, &query, &tile, false, limits);
+}
+
 #if MCOR_OF_FIELD
+/* One work-item = one region. As mcor_seed_regions; above the plane nothing is examined. Regions are not listed:
+ * bounds on bricks cost more than their few nodes. */
+__kernel void mcor_plane_seeds(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
+  const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
+  MCOR_SEED_PARAMS, __global uchar* states, __global uint* brick_bits)
+{
+  const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
+  if (block >= block_count)
+  {
+    return;
+  }
+  const int number = mcor_region_number(region);
+  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, number);
+  int state = brick.z > 0 ? MCOR_VOID : block_states[block];
+  if (state == MCOR_EXAMINE)
+  {
+    const mcor_grid grid = MCOR_GRID;
+    const mcor_seed_limits limits = MCOR_SEED_LIMITS;
+    state = mcor_plane_state(&grid, brick, MCOR_REGION_CUBES - 1, &limits);
+  }
+  for (int b = 0; b < 8; ++b)
+  {
+    const int m = number + mcor_region_offset(b);
+    states[m] = (uchar)(b < 4 ? state : MCOR_VOID);
+    if (states[m] == MCOR_EXAMINE)
+    {
+      mcor_request_brick(brick_bits, m);
+    }
+  }
+}
+
 /* One work-item = MCOR_LANES nodes of a brick. Evaluates them where they are needed. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* need, __global real* node_value, __global real* node_weight)
@@ -147,15 +194,7 @@ __kernel void mcor_adaptive_plane_regions(MCOR_GRID_PARAMS, const int first, con
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int begin = regions[region], end = regions[region + 1];
   const int4 brick = leaves[begin] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
-  mcor_query query = mcor_plane_query(&grid, brick, 0, MCOR_REGION_CUBES, MCOR_REGION_CUBES);
-  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
-  int state = of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(&grid, &query, side_flags) : 3];
-  if (state == MCOR_EXAMINE)
-  {
-    mcor_tile tile;
-    mcor_tile_init(&tile);
-    state = mcor_seed_state(&grid, &query, &tile, false, &limits);
-  }
+  const int state = mcor_plane_state(&grid, brick, MCOR_REGION_CUBES, &limits);
   for (int i = begin; i < end; ++i)
   {
     states[i] = mcor_leaf_state(state, finer[i]);

@@ -14,20 +14,23 @@ static mcor_status mcor_heard(mcor_context* context, int failed)
   return MCOR_OK;
 }
 
+/* Of no values, as of no samples where there is no fluid, which all ranks know, callers hear nothing. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {
   const mcor_ranks* ranks = context->run.options->ranks;
-  return ranks ? mcor_heard(context, ranks->reduce_doubles(ranks->user, reduction, values, count))
-               : MCOR_OK;
+  return ranks && count > 0
+    ? mcor_heard(context, ranks->reduce_doubles(ranks->user, reduction, values, count))
+    : MCOR_OK;
 }
 
 mcor_status mcor_reduce_counts(
   mcor_context* context, mcor_reduction reduction, int64_t* values, int count)
 {
   const mcor_ranks* ranks = context->run.options->ranks;
-  return ranks ? mcor_heard(context, ranks->reduce_counts(ranks->user, reduction, values, count))
-               : MCOR_OK;
+  return ranks && count > 0
+    ? mcor_heard(context, ranks->reduce_counts(ranks->user, reduction, values, count))
+    : MCOR_OK;
 }
 
 mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value)

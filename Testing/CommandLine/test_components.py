@@ -164,6 +164,7 @@ class Components(CommandLineTest):
         fluid = len(within) - edges
         self.assertEqual((water["closed"], water["particles"]), ("1", str(fluid)))
         self.assertAlmostEqual(float(water["volume"]) / (fluid * spacing ** 3), 0.95, delta=0.05)
+        self.assertIn(" of them in caps); area", self.extract(*FREE, *walls, "--capping").stdout)
 
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),

@@ -144,10 +144,19 @@ std::string DescribeCorrection(vtkFieldData* run)
 /// There may be more triangles than before: what a cut leaves of one is one or two.
 std::string DescribeTrimming(vtkFieldData* run)
 {
-  return run->HasArray("Lines") ||
-      Number(run, "Triangles") == Number(run, "TrianglesBeforeTrimming")
-    ? ""
-    : " (trimmed from " + Format(run, "TrianglesBeforeTrimming") + ", some of which it cut in two)";
+  const double caps = run->HasArray("CapTriangles") ? Number(run, "CapTriangles") : 0.0;
+  std::string text;
+  if (!run->HasArray("Lines") &&
+    Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
+  {
+    text =
+      "trimmed from " + Format(run, "TrianglesBeforeTrimming") + ", some of which it cut in two";
+  }
+  if (caps > 0.0)
+  {
+    text += (text.empty() ? "" : "; ") + Format(run, "CapTriangles") + " of them in caps";
+  }
+  return text.empty() ? "" : " (" + text + ")";
 }
 
 /// "SeedCellsNotIntersected" -> "seed_cells_not_intersected", "search grid" -> "search_grid"

@@ -54,7 +54,7 @@ class Plane(CommandLineTest):
 
     def test_what_has_no_lines(self):
         stl = self.directory / "surface.stl"
-        self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "would hold no lines")
+        self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
         self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "have lines")
 
     def test_particle_distance(self):

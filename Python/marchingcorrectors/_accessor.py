@@ -130,7 +130,7 @@ class SphAccessor:
     @_method(DERIVATIVES)
     def derivatives(self, array: str, *, form: str = "corrected", **options: Unpack[Particles]) -> pyvista.DataSet:
         """A copy of the particles with "Gradients" of a point array; of one with three components
-        also "Divergence", "Vorticity", "Q-criterion", "Lambda2" and "StrainRate".
+        also "Divergence", "Vorticity", "Q-criterion", "Lambda2" (not in two dimensions) and "StrainRate".
 
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
@@ -138,7 +138,8 @@ class SphAccessor:
         check_names(SphAccessor.derivatives, options, DERIVATIVES + OWN)
         words = self._words({**options, "attributes": []})
         words["attributes"] = {"array": self._array(array)}
-        gradients = _functions.derivatives(self._particles.points, form=form, **words).gradients.get("array")
+        found = _functions.derivatives(self._particles.points, form=form, **words)
+        gradients = found.gradients.get("array")
         if gradients is None:
             raise InvalidArgument(f"The point array '{array}' is NaN or infinite at a particle.")
         result = self._particles.copy()
@@ -146,7 +147,10 @@ class SphAccessor:
         if gradients.shape[1:] == (3, 3):
             names = {"divergence": "Divergence", "vorticity": "Vorticity", "q_criterion": "Q-criterion",
                      "lambda2": "Lambda2", "strain_rate": "StrainRate"}
-            for name, values in _functions.flow(gradients).items():
+            flow = _functions.flow(gradients)
+            if found.statistics["dimension"] == 2:
+                del flow["lambda2"]  # the middle one of three eigenvalues
+            for name, values in flow.items():
                 result.point_data[names[name]] = values.reshape(len(values), -1) if values.ndim > 1 else values
         return result
 

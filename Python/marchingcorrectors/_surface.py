@@ -46,12 +46,13 @@ class Result:
         return "; ".join(names) or "none"
 
 
-CELLS = ("points", "triangles", "triangle_keys", "line_points", "line_offsets")
+CELLS = ("points", "triangles", "triangle_keys", "line_points", "line_offsets", "band_value")
 
 
 @dataclass(eq=False, repr=False)
 class Surface(Result):
-    """A triangle mesh, or lines of two dimensions. Arrays that were not asked for are None; all own their memory."""
+    """A triangle mesh, or lines of two dimensions, which may be filled. Arrays that were not asked for are None; all own
+    their memory."""
 
     points: np.ndarray  #: (points, 3) float64, unit of the positions (L)
     triangles: np.ndarray  #: (triangles, 3) int32; the right-hand normal points to lower values
@@ -68,6 +69,7 @@ class Surface(Result):
     triangle_keys: Optional[np.ndarray] = None  #: (triangles, 2) uint64
     line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other
     line_offsets: Optional[np.ndarray] = None  #: (lines + 1,) int64: where each line begins in line_points
+    band_value: Optional[np.ndarray] = None  #: filled: (triangles,) float64, the iso value with which the band begins
     #: {name: (points,) or (points, components)}: float64 means of real arrays, others as they are
     attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
     #: {name: particle} of the attributes that are left out, being NaN or infinite there
@@ -82,8 +84,13 @@ class Surface(Result):
             return []
         return np.split(self.line_points, self.line_offsets[1:-1]) if len(self.line_offsets) > 1 else []
 
+    def line_values(self):
+        """The iso value of each of the lines, which needs the array iso_value."""
+        return self.iso_value[self.line_points[self.line_offsets[:-1]]]
+
     def __repr__(self):
-        cells = f"{len(self.triangles)} triangles" if self.line_offsets is None else f"{len(self.lines)} lines"
+        cells = [f"{len(self.lines)} lines"] if self.line_offsets is not None else []
+        cells = ", ".join(cells + [f"{len(self.triangles)} triangles"] if len(self.triangles) or not cells else cells)
         return (f"<Surface: {len(self.points)} points, {cells}; "
                 f"arrays: {self._names(CELLS)}>")
 
@@ -105,12 +112,15 @@ class Surface(Result):
         faces = np.insert(self.triangles.astype(np.int64), 0, 3, axis=1).ravel()
         mesh = pyvista.PolyData(self.points, faces) if len(faces) else pyvista.PolyData(self.points)
         if self.line_offsets is not None:
-            mesh = pyvista.PolyData(self.points, lines=np.concatenate([[0]] + [
-                part for line in self.lines for part in ([len(line)], line)])[1:].astype(np.int64))
+            lines = np.concatenate([[0]] + [part for line in self.lines for part in ([len(line)], line)])[1:]
+            mesh = pyvista.PolyData(self.points, faces=faces if len(faces) else None,
+                                    lines=lines.astype(np.int64) if len(lines) or not len(faces) else None)
         for name, array in self.point_arrays().items():
             mesh.point_data[name] = array
-        if self.triangle_keys is not None:
+        if self.triangle_keys is not None and self.line_offsets is None:
             mesh.cell_data["TriangleKeys"] = self.triangle_keys
+        if self.band_value is not None:
+            mesh.cell_data["BandValue"] = np.concatenate([self.line_values(), self.band_value])
         if self.normals is not None:
             mesh.point_data.active_normals_name = "Normals"
         mesh.set_active_scalars(None)  # colours are for the user to choose
@@ -133,9 +143,13 @@ class Surface(Result):
                   for name, array in self.point_arrays().items() if array.dtype.kind in "fiub"}
         cells = [("triangle", self.triangles)]
         if self.line_offsets is not None:
-            cells = [("line", np.concatenate([np.empty((0, 2), np.int32)] + [
-                np.stack([line[:-1], line[1:]], axis=1) for line in self.lines]))]
-        return meshio.Mesh(self.points, cells, point_data=arrays)
+            lines = ("line", np.concatenate([np.empty((0, 2), np.int32)] + [
+                np.stack([line[:-1], line[1:]], axis=1) for line in self.lines]))
+            cells = [lines] + (cells if len(self.triangles) else [])
+        if self.band_value is None or len(cells) == 1:
+            return meshio.Mesh(self.points, cells, point_data=arrays)
+        of_lines = np.repeat(self.line_values(), np.diff(self.line_offsets) - 1)
+        return meshio.Mesh(self.points, cells, point_data=arrays, cell_data={"BandValue": [of_lines, self.band_value]})
 
     def save(self, path):
         """Writes a file, whose name's end tells the format.

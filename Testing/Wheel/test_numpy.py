@@ -145,6 +145,18 @@ class Results(unittest.TestCase):
         area = 0.5 * (z[:-1] * x[1:] - z[1:] * x[:-1]).sum()
         self.assertAlmostEqual(area, -np.pi * 0.4 ** 2, delta=0.03)
         self.assertAlmostEqual(area, surface.statistics["area"], delta=1e-9)
+        filled = mc.isosurface(flat, distance, (0.4, 0.2), smoothing_length=H, volume=0.01, filled=True)
+        corners = filled.points[filled.triangles]
+        areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 1]
+        self.assertEqual((len(filled.lines), sorted(set(filled.band_value))), (2, [0.2, 0.4]))
+        self.assertTrue((areas > 0).all())
+        self.assertAlmostEqual(areas.sum(), filled.statistics["area"], delta=1e-9)
+        self.assertAlmostEqual(areas[filled.band_value == 0.2].sum(), np.pi * (0.4 ** 2 - 0.2 ** 2), delta=0.03)
+        self.assertEqual(filled.line_values().tolist(), [0.4, 0.2])
+        self.assertIn(f"2 lines, {len(areas)} triangles", repr(filled))
+        self.assertIsNone(surface.band_value)
+        with self.assertRaisesRegex(mc.InvalidArgument, "Filling is for two dimensions"):
+            sphere(filled=True)
         space = quietly(mc.isosurface, flat, distance, 0.4, smoothing_length=H, volume=0.01, dimension=3)
         self.assertEqual(space.lines, [])
         with self.assertRaisesRegex(mc.InvalidData, "do not share one coordinate"):

@@ -127,6 +127,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     // Of zeros, it is no box to the core; here it is one that was not thought of, and is refused.
     options.box[0] += mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
   }
+  options.filled = this->Filled;
   options.capping = !this->Capping ? MCOR_CAP_NONE : this->UseBox ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
@@ -444,6 +445,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "Capping: " << this->Capping << "\n";
+  os << indent << "Filled: " << this->Filled << "\n";
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
   os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
   os << indent << "Preview: " << this->Preview << "\n";

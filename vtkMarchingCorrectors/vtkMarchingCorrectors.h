@@ -335,6 +335,18 @@ public:
 
   ///@{
   /**
+   * Of particles in a plane, fill the region above the least iso value, off by default: by triangles beside the lines,
+   * whose points they share, inside of what trimming leaves. The other values divide it into bands. The cell array
+   * "BandValue" has the iso value with which a triangle's band begins, and that of a line. In three dimensions it is
+   * an error.
+   */
+  vtkSetMacro(Filled, vtkTypeBool);
+  vtkGetMacro(Filled, vtkTypeBool);
+  vtkBooleanMacro(Filled, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * Box as its lower corner and its lengths, for ParaView's box widget.
    */
   void SetPanelBoxPosition(double x, double y, double z);
@@ -569,6 +581,7 @@ protected:
   vtkTypeBool UseBox = 0;
   double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   vtkTypeBool Capping = 0;
+  vtkTypeBool Filled = 0;
   int SeedMode = COMPLETE;
   int CubeSizeMode = ADAPTIVE;
   int CubeLevelLimit = 24;

@@ -353,6 +353,13 @@ void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyDa
 //------------------------------------------------------------------------------
 std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
 {
+  if (mesh->GetNumberOfLines() > 0 && mesh->GetNumberOfPolys() == 0)
+  {
+    return "The input has lines, as particles in a plane give, and no surface that pieces could be "
+           "of. "
+           "With Filled, there are triangles between them; put vtkTriangleFilter, with PassLines "
+           "off, behind it.";
+  }
   const bool hasOthers = mesh->GetNumberOfCells() != mesh->GetNumberOfPolys() ||
     (mesh->GetNumberOfPolys() > 0 && mesh->GetPolys()->IsHomogeneous() != 3);
   return hasOthers ? "The surface has cells that are no triangles. Put vtkTriangleFilter, with "

@@ -53,7 +53,8 @@ PROPERTIES = {
     "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
     "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"),
     "DetectFluid": (0, "flag"), "Blocks": (0, "int", 0, 1),
-    "WallShare": (-1.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Trim": (1, "flag"),
+    "WallShare": (-1.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Filled": (0, "flag"),
+    "Trim": (1, "flag"),
     "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
     "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
     "ComputeCorrectionLength": (0, "flag"), "ComputeResidual": (0, "flag"), "ComputeBoundaryFlag": (0, "flag"),
@@ -359,6 +360,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             options.box[:] = choice.Box if any(choice.Box) else (5e-324, 0, 0, 0, 0, 0)  # refused, see the C++ filter
         options.periodic[:] = choice.PeriodicBounds
         options.capping = (2 if choice.UseBox else 1) if choice.Capping else 0  # MCOR_CAP_BOX, MCOR_CAP_PERIOD
+        options.filled = choice.Filled
         options.node_threshold = choice.NodeThreshold
         options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
         ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (

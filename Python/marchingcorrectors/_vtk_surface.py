@@ -38,7 +38,11 @@ def build_mesh(surface, particles, output, as_float):
     points.SetData(numpy_to_vtk(where.astype(np.float32 if as_float else np.float64, copy=False), deep=True))
     output.SetPoints(points)
     build_triangles(arrays["triangles"], output)
-    build_lines(take_lines(surface), output)
+    lines = take_lines(surface)
+    build_lines(lines, output)
+    if arrays["band_value"] is not None:
+        of_lines = arrays["iso_value"][lines["line_points"][lines["line_offsets"][:-1]]] if surface.line_count else []
+        add(output.GetCellData(), "BandValue", np.concatenate([of_lines, arrays["band_value"]]))
     build_carried(surface, particles, data, arrays["nearest_particle"])
     for option, name in COMPUTED.items():
         if arrays[option] is not None:
@@ -206,7 +210,7 @@ def add_statistics(data, s, surface, options):
     add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
     if s["dimension"] == 2:
         add_real(data, "Length", s["length"])
-    if s["dimension"] != 2 or s["is_closed"]:
+    if s["dimension"] != 2 or s["is_closed"] or options.filled:
         add_real(data, "Area", s["area"])
     if s["dimension"] != 2 and s["is_closed"]:
         add_real(data, "Volume", s["volume"])
@@ -242,6 +246,8 @@ def add_parameters(data, particles, arguments, wall_share):
     if o.level_limit:
         add_text(data, "CubeSizeMode", "adaptive")
         add_count(data, "CubeLevelLimit", o.level_limit)
+    if o.filled:
+        add_count(data, "Filled", 1)
     if any(o.box):
         add_real(data, "Box", *o.box)
     periodic = any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3))

@@ -56,7 +56,7 @@ class Usage(CommandLineTest):
                 --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
                 --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
                 --memory-limit --list-devices --stats --screenshot --repeat --quiet --help
-                --version --precision --support-radius --output-precision --box --periodic --capping --times
+                --version --precision --support-radius --output-precision --box --periodic --capping --filled --times
                 --time-step --slice --line --resolution --color-by --color-range --up --view""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
 

@@ -52,6 +52,53 @@ class Plane(CommandLineTest):
         self.refuse(self.extract(*ISO, "--dimension", "2"), 1, "do not share one coordinate exactly")
         self.refuse(self.extract(*ISO, "--dimension", "4"), 2, "auto, 2 or 3|auto.*2.*3")
 
+    def test_filled(self):
+        free = self.succeed("--free-surface")["statistics"]
+        filled = self.succeed("--free-surface", "--filled")
+        run = filled["statistics"]
+        self.assertEqual((self.cells("Lines"), self.cells("Polys")), (1, run["triangles"]))
+        self.assertGreater(run["triangles"], 1000)
+        self.assertEqual((run["lines"], filled["parameters"]["filled"]), (1, 1))
+        self.assertAlmostEqual(run["area"], free["area"], delta=1e-9)
+        self.assertIn('Name="BandValue"', self.output.read_text())
+        bands = self.succeed("--scalar", "Radius", "--iso", "0.5,-1,0.25", "--filled", "--seeds", "pairs")["statistics"]
+        self.assertAlmostEqual(bands["area"], 4, delta=0.1)  # cut where the fluid ends
+        stl = self.directory / "surface.stl"
+        result = self.run_program(self.input, stl, "--free-surface", "--filled", "--no-attributes")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
+
+    def test_film_between_steps(self):
+        """A square that moves along x: half way between two steps it is half way."""
+        self.arrays["Idp"] = list(range(len(self.points)))
+        self.arrays["Velocity"] = [(0.5, 0.0, 0.0)] * len(self.points)
+        for i in range(2):
+            moved = [(x + 0.5 * i, y, z) for x, y, z in self.points]
+            files.write_vtp(self.directory / f"step_{i}.vtp", moved, self.arrays)
+        files.write_pvd(self.directory / "steps.pvd", [("0", "step_0.vtp"), ("1", "step_1.vtp")])
+        result = self.run_program("steps.pvd", "half_%d.obj", "--free-surface", "--filled", "--times", "0,0.5,1", "--no-attributes")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        middles = []
+        for i in range(3):
+            rows = [row.split() for row in (self.directory / f"half_{i}.obj").read_text().splitlines()]
+            x = [float(row[1]) for row in rows if row[0] == "v"]
+            middles.append(0.5 * (min(x) + max(x)))
+            self.assertEqual({float(row[2]) for row in rows if row[0] == "v"}, {0.25})
+            self.assertGreater(sum(row[0] == "f" for row in rows), 1000)
+        self.assertAlmostEqual(middles[1] - middles[0], 0.25, delta=1e-3)
+        self.assertAlmostEqual(middles[2] - middles[0], 0.5, delta=1e-3)
+
+    def test_line_of_a_probe(self):
+        result = self.run_program(self.input, self.output, "--line=-1.5,0.25,0,1.5,0.25,0", "--resolution", "31")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertRegex(result.stdout, r"points +31, (1[89]|2[0-5]) of them valid")
+        away = self.run_program(self.input, self.output, "--line=-1.5,0.5,0,1.5,0.5,0", "--resolution", "31")
+        self.assertRegex(away.stdout, r"points +31, 0 of them valid")
+
+    def test_filled_in_space(self):
+        files.write_vtp(self.input, *files.lattice())
+        self.refuse(self.extract(*ISO, "--filled"), 1, "Filling is for two dimensions")
+
     def test_what_has_no_lines(self):
         stl = self.directory / "surface.stl"
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
@@ -69,6 +116,9 @@ class Plane(CommandLineTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("Lambda2", self.output.read_text())
         self.assertIn("Q-criterion", self.output.read_text())
+        self.output.unlink()
+        self.refuse(self.extract("--derive", "Velocity", "--scalar", "Lambda2", "--iso", "-1"), 1,
+                    "not in two dimensions; use Q-criterion")
 
 
 if __name__ == "__main__":

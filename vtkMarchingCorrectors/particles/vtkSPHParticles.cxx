@@ -322,7 +322,11 @@ vtkDataArray* vtkSPHParticles::Check(
 {
   if (!array)
   {
+    const bool isPlane = name == "Lambda2" && this->Points->GetPointData()->HasArray("Q-criterion");
     this->Error = "There is no point array " + Quote(name) + " for the " + role + ". " +
+      (isPlane ? "Lambda2 is the middle one of three eigenvalues, which there are not in two "
+                 "dimensions; use Q-criterion. "
+               : "") +
       this->ListPointArrays();
     return nullptr;
   }

@@ -4,6 +4,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -83,6 +84,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   output->SetPoints(points);
   this->BuildTriangles(output);
   this->BuildLines(output);
+  this->BuildBands(output);
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
@@ -134,6 +136,25 @@ void vtkMarchingCorrectorsOutput::BuildLines(vtkPolyData* output)
   vtkNew<vtkCellArray> lines;
   lines->SetData(offsets, points);
   output->SetLines(lines);
+}
+
+//------------------------------------------------------------------------------
+// Of lines, which come before triangles, and of these.
+void vtkMarchingCorrectorsOutput::BuildBands(vtkPolyData* output)
+{
+  const mcor_surface& s = this->Surface;
+  if (!s.band_value)
+  {
+    return;
+  }
+  vtkNew<vtkDoubleArray> values;
+  values->SetNumberOfValues(s.line_count + s.triangle_count);
+  for (vtkIdType i = 0; i < s.line_count; ++i)
+  {
+    values->SetValue(i, s.iso_value[s.line_points[s.line_offsets[i]]]);
+  }
+  std::copy_n(s.band_value, s.triangle_count, values->GetPointer(0) + s.line_count);
+  vtkSPHAddArray(output->GetCellData(), "BandValue", values);
 }
 
 //------------------------------------------------------------------------------
@@ -381,7 +402,7 @@ void vtkMarchingCorrectorsOutput::AddMeasures(vtkFieldData* fieldData) const
   {
     vtkSPHAddReal(fieldData, "Length", { s.length });
   }
-  if (s.dimension != 2 || s.is_closed)
+  if (s.dimension != 2 || s.is_closed || this->Options.filled)
   {
     vtkSPHAddReal(fieldData, "Area", { s.area });
   }
@@ -433,6 +454,10 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   if (isPeriodic || o.capping != MCOR_CAP_NONE)
   {
     vtkSPHAddCount(fieldData, "Capping", { o.capping != MCOR_CAP_NONE ? 1 : 0 });
+  }
+  if (o.filled)
+  {
+    vtkSPHAddCount(fieldData, "Filled", { 1 });
   }
   if (mcor_has_box(&o))
   {

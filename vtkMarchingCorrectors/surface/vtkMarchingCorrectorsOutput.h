@@ -42,6 +42,7 @@ public:
 private:
   void BuildTriangles(vtkPolyData* output);
   void BuildLines(vtkPolyData* output);
+  void BuildBands(vtkPolyData* output);
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);

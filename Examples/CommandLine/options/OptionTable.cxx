@@ -276,6 +276,10 @@ const Options TheMethod = {
     "close the surface at the sides of the period and the box, where values exceed the iso value; "
     "with --solids wall also the free surface at walls",
     [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
+  { "--filled", "",
+    "in two dimensions, triangles fill the region above the least iso value, in bands from each "
+    "value to the next",
+    [](Job& j, Text, Text) { j.Surface->FilledOn(); } },
   { "--seeds", "pairs|complete",
     "seeds as in the paper, or complete seeds, which miss nothing (default)",
     [](Job& j, Text n, Text v)

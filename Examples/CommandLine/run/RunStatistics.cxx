@@ -23,7 +23,7 @@ const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArra
   "DensityArray" };
 const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
   "Mass", "Density", "IsoValues", "Field", "Kernel", "SeedMode", "Topology", "Precision",
-  "CubeSize", "CubeSizeMode", "CubeLevelLimit", "Box", "PeriodicBounds", "Capping",
+  "CubeSize", "CubeSizeMode", "CubeLevelLimit", "Box", "PeriodicBounds", "Capping", "Filled",
   "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection", "VertexThreshold",
   "Tolerance", "IterationLimit", "Preview" };
 const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",

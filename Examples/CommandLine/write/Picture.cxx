@@ -10,6 +10,7 @@
 #include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkCamera.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetMapper.h"
 #include "vtkLightKit.h"
@@ -250,7 +251,15 @@ public:
     vtkDataArray* scalars =
       data->GetPointData()->GetArray("IsoValue"); // of a surface its iso value
     double range[2] = { 0.0, 0.0 };
-    if (colors.ArrayOf(data))
+    vtkDataArray* bands = data->GetCellData()->GetArray("BandValue");
+    if (bands && !colors.ArrayOf(data))
+    {
+      bands->GetRange(range);
+      mapper->SetScalarModeToUseCellFieldData();
+      mapper->SelectColorArray("BandValue");
+      mapper->SetScalarRange(range);
+    }
+    else if (colors.ArrayOf(data))
     {
       mapper->SelectColorArray(colors.GetName().c_str());
       mapper->SetLookupTable(colors.GetTable());
@@ -272,6 +281,33 @@ public:
     actor->GetProperty()->SetLineWidth(3.0);
     actor->GetProperty()->SetPointSize(3.0);
     this->Renderer->AddActor(actor);
+    if (bands)
+    {
+      this->ShowBorders(vtkPolyData::SafeDownCast(data));
+    }
+  }
+
+  /// The lines between what is filled, on both sides of it.
+  void ShowBorders(vtkPolyData* filled)
+  {
+    vtkNew<vtkPolyData> lines;
+    lines->SetPoints(filled->GetPoints());
+    lines->SetLines(filled->GetLines());
+    const double* bounds = filled->GetBounds();
+    const double off = 1e-3 * filled->GetLength();
+    for (const double side : { -off, off })
+    {
+      vtkNew<vtkPolyDataMapper> mapper;
+      mapper->SetInputData(lines);
+      vtkNew<vtkActor> actor;
+      actor->SetMapper(mapper);
+      actor->SetPosition(bounds[0] == bounds[1] ? side : 0.0, bounds[2] == bounds[3] ? side : 0.0,
+        bounds[4] == bounds[5] ? side : 0.0);
+      actor->GetProperty()->SetColor(0.1, 0.1, 0.1);
+      actor->GetProperty()->SetLineWidth(2.0);
+      actor->GetProperty()->LightingOff();
+      this->Renderer->AddActor(actor);
+    }
   }
 
   void ShowOutline(const vtkBoundingBox& box)

@@ -248,7 +248,8 @@ std::string SurfaceBytes(
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
   std::string bytes;
-  if (surface->GetNumberOfLines() > 0 && !EndsWith(file, ".vtp"))
+  if (surface->GetNumberOfLines() > 0 && surface->GetNumberOfPolys() == 0 &&
+    !EndsWith(file, ".vtp"))
   {
     throw std::runtime_error(file +
       " could not be written: such a file cannot hold lines, which two dimensions give. "

@@ -99,6 +99,10 @@ class Program(unittest.TestCase):
         """In a plane: all points, arrays and lines are those of one process, on squares of one size and of several."""
         plane = self.write_plane()
         pieces = write_pieces(plane, self.folder.name, 3)
+        refused = self.run_ranks(pieces, self.path("filled.vtp"), "--free-surface", "--smoothing-length", "PlaneLength",
+                                 "--volume", "PlaneArea", "--filled")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("Filled regions are made by one process alone", refused.stderr)
         for cubes in "uniform", "adaptive":
             how = ["--scalar", "Speed", "--iso", "1,2", "--smoothing-length", "PlaneLength", "--volume", "PlaneArea",
                    "--cubes", cubes, "--quiet"]

@@ -355,8 +355,7 @@ std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
 {
   if (mesh->GetNumberOfLines() > 0 && mesh->GetNumberOfPolys() == 0)
   {
-    return "The input has lines, as particles in a plane give, and no surface that pieces could be "
-           "of. "
+    return "The input has lines, as particles in a plane give, and no surface with pieces. "
            "With Filled, there are triangles between them; put vtkTriangleFilter, with PassLines "
            "off, behind it.";
   }

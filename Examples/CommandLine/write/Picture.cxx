@@ -14,6 +14,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetMapper.h"
 #include "vtkLightKit.h"
+#include "vtkLookupTable.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkOutlineSource.h"
@@ -257,7 +258,12 @@ public:
       bands->GetRange(range);
       mapper->SetScalarModeToUseCellFieldData();
       mapper->SelectColorArray("BandValue");
-      mapper->SetScalarRange(range);
+      vtkNew<vtkLookupTable> table;
+      table->SetHueRange(0.6, 0.05); // from blue to red
+      table->SetSaturationRange(0.45, 0.65);
+      table->SetTableRange(range);
+      mapper->SetLookupTable(table);
+      mapper->UseLookupTableScalarRangeOn();
     }
     else if (colors.ArrayOf(data))
     {

@@ -156,7 +156,8 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
   int outside = 0, first = 0;
   for (int i = 0; i < o->iso_count; ++i)
   {
-    const bool is_outside = o->iso_values[i] < low || o->iso_values[i] > high;
+    /* A region may be filled from below all values on. */
+    const bool is_outside = (o->iso_values[i] < low && !o->filled) || o->iso_values[i] > high;
     first = is_outside && outside == 0 ? i : first;
     outside += is_outside;
   }

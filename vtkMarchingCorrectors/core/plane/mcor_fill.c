@@ -48,9 +48,8 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
   const double least = fill->lines[fill->levels[0]].value;
   MCOR_RETURN_IF(options->field == MCOR_SUM && options->node_threshold == 0 && least <= 0, context,
     MCOR_INVALID_ARGUMENT,
-    "The region above %g has no end: without a node threshold the sum is 0 in all empty space. Use "
-    "a "
-    "node threshold, or iso values above 0, to fill it.",
+    "The region above %g has no end: without a node threshold the sum is 0 in all empty space. "
+    "Use a node threshold, or iso values above 0, to fill it.",
     least);
   MCOR_TRY(mcor_find_bands(context, fill));
   MCOR_TRY(mcor_fill_squares(context, fill));

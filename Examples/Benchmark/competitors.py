@@ -29,36 +29,49 @@ def peak_bytes():
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
+def lattice(particles, cube, dimension):
+    """An image of nodes at whole multiples of the cube size, around the particles; in two dimensions in the plane z = 0."""
+    import vtk
+    low = [int(b // cube) - 2 for b in particles.GetBounds()[:2 * dimension:2]]
+    high = [int(b // cube) + 3 for b in particles.GetBounds()[1:2 * dimension:2]]
+    image = vtk.vtkImageData()
+    image.SetOrigin(*[cube * i for i in low] + [0] * (3 - dimension))
+    image.SetSpacing(cube, cube, cube)
+    image.SetDimensions(*[b - a + 1 for a, b in zip(low, high)] + [1] * (3 - dimension))
+    return image
+
+
+def interpolator(particles, image, h, dimension):
+    """Not run yet."""
+    import vtk
+    kernel = vtk.vtkSPHCubicKernel()
+    kernel.SetSpatialStep(h)
+    kernel.SetDimension(dimension)
+    made = vtk.vtkSPHInterpolator()
+    made.SetInputData(image)
+    made.SetSourceData(particles)
+    made.SetLocator(vtk.vtkStaticPointLocator())
+    made.SetKernel(kernel)
+    made.SetMassArrayName("Mass")
+    made.SetDensityArrayName("Density")
+    made.SetShepardNormalization(True)
+    return made
+
+
 def run_vtk(path):
     import vtk
     particles = sets.read(path)
     h = particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
-    cube = CUBE_FACTOR * h
-    low = [int(b // cube) - 2 for b in particles.GetBounds()[::2]]
-    high = [int(b // cube) + 3 for b in particles.GetBounds()[1::2]]
-    image = vtk.vtkImageData()
-    image.SetOrigin(*(cube * i for i in low))
-    image.SetSpacing(cube, cube, cube)
-    image.SetDimensions(*(b - a + 1 for a, b in zip(low, high)))
+    image = lattice(particles, CUBE_FACTOR * h, 3)
 
     begin = time.perf_counter()
-    kernel = vtk.vtkSPHCubicKernel()
-    kernel.SetSpatialStep(h)
-    kernel.SetDimension(3)
-    interpolator = vtk.vtkSPHInterpolator()
-    interpolator.SetInputData(image)
-    interpolator.SetSourceData(particles)
-    interpolator.SetLocator(vtk.vtkStaticPointLocator())
-    interpolator.SetKernel(kernel)
-    interpolator.SetMassArrayName("Mass")
-    interpolator.SetDensityArrayName("Density")
-    interpolator.SetShepardNormalization(True)
+    field = interpolator(particles, image, h, 3)
     for i in range(particles.GetPointData().GetNumberOfArrays()):
         name = particles.GetPointData().GetArrayName(i)
         if name not in ("Swirl", "Mass", "Density"):
-            interpolator.AddExcludedArray(name)
+            field.AddExcludedArray(name)
     contour = vtk.vtkFlyingEdges3D()
-    contour.SetInputConnection(interpolator.GetOutputPort())
+    contour.SetInputConnection(field.GetOutputPort())
     contour.SetInputArrayToProcess(0, 0, 0, 0, "Swirl")
     contour.SetValue(0, 0.0)
     contour.Update()

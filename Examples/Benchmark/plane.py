@@ -20,6 +20,11 @@ import sys
 import tempfile
 import time
 
+import competitors
+import sets
+
+sys.path.insert(0, str(sets.GENERATORS))
+
 SMOOTHING_LENGTH = 1.3  # the spacing is 1
 ISO = 0.2
 
@@ -27,8 +32,8 @@ ISO = 0.2
 def make(path, count):
     """A jittered lattice with a scalar that winds."""
     import numpy
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk
+
+    import particle_file
     side = round(count ** 0.5)
     j, i = numpy.mgrid[0:side, 0:side]
     random = numpy.random.default_rng(1)
@@ -37,52 +42,20 @@ def make(path, count):
         x[:, a] = lattice.ravel() + 0.3 * (random.random(side * side) - 0.5)
     u, v = x[:, 0] / side, x[:, 1] / side
     swirl = numpy.sin(6 * numpy.pi * u) * numpy.sin(4 * numpy.pi * v) + 0.2 * numpy.sin(20 * u + 13 * v)
-    points = vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(x, deep=True))
-    particles = vtk.vtkPolyData()
-    particles.SetPoints(points)
-    for name, values in (("Swirl", swirl.astype(numpy.float32)), ("Mass", numpy.ones(side * side, numpy.float32)),
-                         ("Density", numpy.ones(side * side, numpy.float32))):
-        array = numpy_to_vtk(values, deep=True)
-        array.SetName(name)
-        particles.GetPointData().AddArray(array)
-    writer = vtk.vtkXMLPolyDataWriter()
-    writer.SetFileName(str(path))
-    writer.SetInputData(particles)
-    writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOff()
-    writer.SetCompressorTypeToNone()
-    writer.Write()
+    ones = numpy.ones(side * side, numpy.float32)
+    arrays = {"Swirl": swirl.astype(numpy.float32), "Mass": ones, "Density": ones}
+    particle_file.write(str(path), particle_file.poly_data(x, arrays))
 
 
 def run_vtk(path):
     """In a process of its own: prints what it took."""
     import vtk
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(path)
-    reader.Update()
-    particles = reader.GetOutput()
-    cube = 0.5 * SMOOTHING_LENGTH
-    low = [int(b // cube) - 2 for b in particles.GetBounds()[::2]]
-    high = [int(b // cube) + 3 for b in particles.GetBounds()[1::2]]
-    image = vtk.vtkImageData()
-    image.SetOrigin(cube * low[0], cube * low[1], 0)
-    image.SetSpacing(cube, cube, cube)
-    image.SetDimensions(high[0] - low[0] + 1, high[1] - low[1] + 1, 1)
+    particles = sets.read(path)
+    image = competitors.lattice(particles, competitors.CUBE_FACTOR * SMOOTHING_LENGTH, 2)
     begin, cpu = time.perf_counter(), time.process_time()
-    kernel = vtk.vtkSPHCubicKernel()
-    kernel.SetSpatialStep(SMOOTHING_LENGTH)
-    kernel.SetDimension(2)
-    interpolator = vtk.vtkSPHInterpolator()
-    interpolator.SetInputData(image)
-    interpolator.SetSourceData(particles)
-    interpolator.SetLocator(vtk.vtkStaticPointLocator())
-    interpolator.SetKernel(kernel)
-    interpolator.SetMassArrayName("Mass")
-    interpolator.SetDensityArrayName("Density")
-    interpolator.SetShepardNormalization(True)
+    field = competitors.interpolator(particles, image, SMOOTHING_LENGTH, 2)
     contour = vtk.vtkFlyingEdges2D()
-    contour.SetInputConnection(interpolator.GetOutputPort())
+    contour.SetInputConnection(field.GetOutputPort())
     contour.SetInputArrayToProcess(0, 0, 0, 0, "Swirl")
     contour.SetValue(0, ISO)
     contour.Update()

@@ -68,6 +68,13 @@ class Plane(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
+    def test_too_many_squares_to_fill(self):
+        """Said before lines are made: a few particles with a small smoothing length make squares small everywhere."""
+        self.arrays["SmoothingLength"] = self.arrays["SmoothingLength"][:]
+        self.arrays["SmoothingLength"][0] *= 5e-4
+        files.write_vtp(self.input, self.points, self.arrays)
+        self.refuse(self.extract("--free-surface", "--filled"), 1, "too many to be filled")
+
     def test_film_between_steps(self):
         """A square that moves along x: half way between two steps it is half way."""
         self.arrays["Idp"] = list(range(len(self.points)))
@@ -78,6 +85,7 @@ class Plane(CommandLineTest):
         files.write_pvd(self.directory / "steps.pvd", [("0", "step_0.vtp"), ("1", "step_1.vtp")])
         result = self.run_program("steps.pvd", "half_%d.obj", "--free-surface", "--filled", "--times", "0,0.5,1", "--no-attributes")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.stdout.count(" triangles, "), 3, result.stdout)
         middles = []
         for i in range(3):
             rows = [row.split() for row in (self.directory / f"half_{i}.obj").read_text().splitlines()]

@@ -70,8 +70,10 @@ static mcor_status mcor_extract_all(
   MCOR_TRY(mcor_prepare(context, input, options, mcor_uses_solids(input, options)));
   MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
   MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
-    "Filling is for two dimensions, but these particles do not lie in a plane: they have a surface, "
+    "Filling is for two dimensions, but these particles do not lie in a plane: they have a "
+    "surface, "
     "which encloses what would be filled. Turn it off.");
+  MCOR_TRY(context->grid.count > 0 ? mcor_begin_fill(context) : MCOR_OK);
   for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
   {
     MCOR_TRY(mcor_extract_iso(context, input, i, surface));

@@ -240,9 +240,11 @@ private:
     this->List(false);
     if (!this->Options.Quiet)
     {
+      const vtkIdType triangles = run.Surface->GetNumberOfPolys(),
+                      lines = triangles > 0 ? 0 : run.Surface->GetNumberOfLines();
       std::cout << Printable(this->Label(i)) << ": " << run.Surface->GetNumberOfPoints()
-                << " points, " << run.Surface->GetNumberOfCells()
-                << (run.Surface->GetNumberOfLines() > 0 ? " lines, " : " triangles, ")
+                << " points, " << (lines > 0 ? lines : triangles)
+                << (lines > 0 ? " lines, " : " triangles, ")
                 << std::setprecision(3) << run.WallSeconds << " s" << std::endl;
     }
   }

@@ -3,7 +3,7 @@
 
 /* Caps at the sides of a box: they close what it cuts, and leave the surface's own points and triangles as they are. */
 
-#include "core_fixture.h"
+#include "cap_check.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -48,46 +48,6 @@ static core_set make_sponge(void)
   return set;
 }
 
-/* The share of random places between the planes that are in fluid, times their volume, and its error. */
-static double sample_volume(const core_set* set, const double planes[6], double* error)
-{
-  enum
-  {
-    SAMPLES = 30000
-  };
-  const oracle_particles particles = core_oracle(set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
-  uint64_t seed = 3;
-  int inside = 0;
-  for (int i = 0; i < SAMPLES; ++i)
-  {
-    double at[3];
-    oracle_sample sample;
-    for (int a = 0; a < 3; ++a)
-    {
-      at[a] = planes[2 * a] + random_unit(&seed) * (planes[2 * a + 1] - planes[2 * a]);
-    }
-    oracle_evaluate(&field, NULL, at, &sample);
-    inside += sample.weight >= iso;
-  }
-  oracle_free_field(&field);
-  const double share = (double)inside / SAMPLES;
-  const double whole = (planes[1] - planes[0]) * (planes[3] - planes[2]) * (planes[5] - planes[4]);
-  *error = whole * sqrt(share * (1 - share) / SAMPLES);
-  return whole * share;
-}
-
-static void check_prefix(const mcor_surface* open, const mcor_surface* closed)
-{
-  assert_true(open->point_count > 100 && closed->point_count > open->point_count);
-  assert_true(
-    memcmp(open->points, closed->points, (size_t)open->point_count * 3 * sizeof(double)) == 0);
-  assert_true(memcmp(open->triangles, closed->triangles,
-                (size_t)open->triangle_count * 3 * sizeof *open->triangles) == 0);
-  assert_int_equal(closed->triangle_count - open->triangle_count, closed->statistics.cap_triangles);
-}
-
 /* Points of caps alone are on planes; their normals point out. */
 static void check_caps(const mcor_surface* open, const mcor_surface* closed, const double planes[6])
 {
@@ -121,8 +81,8 @@ static void check_box(
   assert_true(!open.statistics.is_closed);
   CORE_CHECK(
     closed.statistics.is_closed, "%lld triangles are open", (long long)closed.triangle_count);
-  check_prefix(&open, &closed);
-  double planes[6], error;
+  cap_check_prefix(&open, &closed);
+  double planes[6];
   find_planes(box, closed.statistics.cube_size, planes);
   for (int s = 0; s < 6; ++s) /* beyond the block there is nothing */
   {
@@ -136,9 +96,7 @@ static void check_box(
   check_caps(&open, &closed, planes);
   if (periodic[1] == 0)
   {
-    const double expected = sample_volume(set, planes, &error);
-    CORE_CHECK(fabs(closed.statistics.volume - expected) < 4 * error,
-      "volume %g instead of %g +- %g", closed.statistics.volume, expected, error);
+    cap_check_volume(&closed, set, planes, iso, 1);
   }
   mcor_free_surface(&open);
   mcor_free_surface(&closed);

@@ -4,7 +4,7 @@
 /* Caps where the free surface ends at solids: they close it, leave its own points and triangles as they are, and
  * hold the volume where fluid weighs enough; in boxes, too. */
 
-#include "core_fixture.h"
+#include "cap_check.h"
 #include "core_parts.h"
 
 #include <math.h>
@@ -12,6 +12,7 @@
 #include <string.h>
 
 static const double iso = 0.5;
+static const double tank[6] = { -10, 10, -10, 10, -10, 10 };
 
 static mcor_options wall_options(double share)
 {
@@ -54,35 +55,6 @@ static core_set make_tank(void)
   return set;
 }
 
-/* The volume that is fluid, by random places in the tank, and its error. */
-static double sample_volume(const core_set* set, double share, double* error)
-{
-  enum
-  {
-    SAMPLES = 40000
-  };
-  const oracle_particles particles = core_oracle(set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
-  uint64_t seed = 3;
-  int inside = 0;
-  for (int i = 0; i < SAMPLES; ++i)
-  {
-    double at[3];
-    oracle_sample sample;
-    for (int a = 0; a < 3; ++a)
-    {
-      at[a] = 20 * (random_unit(&seed) - 0.5);
-    }
-    oracle_evaluate(&field, NULL, at, &sample);
-    inside += sample.weight >= iso && sample.weight > (1 - share) * sample.trim_weight;
-  }
-  oracle_free_field(&field);
-  const double part = (double)inside / SAMPLES;
-  *error = 8000 * sqrt(part * (1 - part) / SAMPLES);
-  return 8000 * part;
-}
-
 static void check_tank(mcor_context* context, double share, mcor_topology topology)
 {
   core_set set = make_tank();
@@ -96,17 +68,11 @@ static void check_tank(mcor_context* context, double share, mcor_topology topolo
   options.capping = MCOR_CAP_PERIOD;
   CORE_OK(context, mcor_extract(context, &input, &options, &closed));
   assert_true(!open.statistics.is_closed && open.point_count > 1000);
-  assert_memory_equal(open.points, closed.points, (size_t)open.point_count * 3 * sizeof(double));
-  assert_memory_equal(
-    open.triangles, closed.triangles, (size_t)open.triangle_count * 3 * sizeof *open.triangles);
-  assert_int_equal(closed.triangle_count - open.triangle_count, closed.statistics.cap_triangles);
+  cap_check_prefix(&open, &closed);
   assert_true(closed.statistics.is_closed);
   const mesh_report report = core_check_pinched_mesh(&closed);
   assert_int_equal(report.boundary_edges, 0);
-  double error;
-  const double expected = sample_volume(&set, share, &error);
-  CORE_CHECK(fabs(closed.statistics.volume - expected) < 4 * error, "volume %g instead of %g +- %g",
-    closed.statistics.volume, expected, error);
+  cap_check_volume(&closed, &set, tank, iso, share);
   for (int64_t p = open.point_count; p < closed.point_count; ++p)
   {
     const float* n = closed.normals + 3 * p;
@@ -178,10 +144,7 @@ static void test_full(void** state)
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
   assert_true(surface.statistics.is_closed);
   assert_int_equal(surface.triangle_count, surface.statistics.cap_triangles);
-  double error;
-  const double expected = sample_volume(&set, 0.4, &error);
-  CORE_CHECK(fabs(surface.statistics.volume - expected) < 4 * error,
-    "volume %g instead of %g +- %g", surface.statistics.volume, expected, error);
+  cap_check_volume(&surface, &set, tank, iso, 0.4);
   mcor_free_surface(&surface);
   core_free_set(&set);
 }

@@ -151,6 +151,18 @@ mcor_status mcor_read(
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
+/* Several to be read; *data is NULL before. */
+typedef struct mcor_mapping
+{
+  const mcor_buffer* buffer;
+  size_t bytes;
+  void** data;
+} mcor_mapping;
+/* Where one fails, those behind it are not mapped. */
+mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
+/* Of those that are mapped. Returns `status`, or, where that is MCOR_OK, the first failure. */
+mcor_status mcor_unmap_all(
+  mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
 /* The same for bytes [first, last). */
 mcor_status mcor_fill_range(

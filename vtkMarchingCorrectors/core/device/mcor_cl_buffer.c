@@ -202,6 +202,26 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
   return MCOR_OK;
 }
 
+mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    MCOR_TRY(mcor_map(context, mappings[i].buffer, mappings[i].bytes, false, mappings[i].data));
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_unmap_all(
+  mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    const mcor_status unmapped = mcor_unmap(context, mappings[i].buffer, mappings[i].data);
+    status = status == MCOR_OK ? unmapped : status;
+  }
+  return status;
+}
+
 /* Of so many bytes those to fill or copy between two reports: about 10 ms of memory not touched yet. */
 static size_t mcor_step_of(size_t bytes)
 {

@@ -159,33 +159,19 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
   const size_t n = (size_t)run->inside, real = context->cl.real_size,
                arrays = (size_t)context->attributes.count;
   mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
-  struct
-  {
-    const mcor_buffer* buffer;
-    size_t bytes;
-    void** view;
-  } const views[] = { { &run->batch.order, n * sizeof(cl_int), &job.views.order },
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.views.order },
     { &run->weight, n * real, &job.views.weight },
     { &run->sums, n * arrays * real, &job.views.sums },
     { &run->weight_gradient, n * 3 * real, &job.views.weight_gradient },
     { &run->gradients, n * 3 * arrays * real, &job.views.gradients } };
   const int count = run->samples->weight_gradient ? 5 : 3;
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    status = mcor_map(context, views[i].buffer, views[i].bytes, false, views[i].view);
-  }
+  mcor_status status = mcor_map_all(context, views, count);
   if (status == MCOR_OK)
   {
     status =
       mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL);
   }
-  for (int i = 0; i < count; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, views[i].buffer, views[i].view);
-    status = status == MCOR_OK ? unmapped : status;
-  }
-  return status;
+  return mcor_unmap_all(context, views, count, status);
 }
 
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)

@@ -40,7 +40,7 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
 {
   const mcor_options* options = context->run.options;
   mcor_filling* fill = context->run.fill;
-  if (!fill || context->box.is_empty)
+  if (!fill)
   {
     return MCOR_OK;
   }

@@ -9,11 +9,11 @@
 #include "mcor_cap.h"
 #include "mcor_cap_map.h"
 
-/* Nodes of one brick that marching has evaluated, bits x + 4 y; joined: squares. */
+/* Nodes of one brick that marching has evaluated, bits x + 4 y. */
 typedef struct mcor_fill_brick
 {
   cl_int x, y; /* in bricks */
-  uint16_t known, above, valid, joined;
+  uint16_t known, above, valid;
 } mcor_fill_brick;
 
 /* One iso value's lines, as trimming has left them. */
@@ -67,7 +67,9 @@ typedef struct mcor_filling
   int64_t triangle_count, triangle_room;
 } mcor_filling;
 
-/* mcor_fill_lines.c. After trimming, and as soon as the points of the surface are numbered: keeps what is to be known of the
+/* mcor_fill_lines.c. Before all else, where lines are to be filled: whether they can be. */
+mcor_status mcor_begin_fill(mcor_context* context);
+/* After trimming, and as soon as the points of the surface are numbered: keeps what is to be known of the
  * lines of the iso value under way, where they are to be filled. iso: relative to A0. */
 mcor_status mcor_take_lines(mcor_context* context, double iso);
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);

@@ -3,15 +3,29 @@
 
 /* What filling keeps of each iso value's lines. */
 
+#include "mcor_box.h"
 #include "mcor_fill.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static mcor_status mcor_begin_fill(mcor_context* context)
+/* All nodes of the box's squares. */
+static void mcor_set_fill_extent(const mcor_context* context, mcor_cap_face* face)
+{
+  const mcor_box* box = &context->box;
+  *face = (mcor_cap_face){ .axis = 2, .across = { 0, 1 } };
+  for (int a = 0; a < 2; ++a)
+  {
+    face->first[a] = box->first[a];
+    face->count[a] = box->last[a] - box->first[a] + 1;
+    face->tiles[a] = (face->count[a] - 1) / MCOR_CAP_TILE + 1;
+  }
+}
+
+mcor_status mcor_begin_fill(mcor_context* context)
 {
   const int count = context->run.options->iso_count;
-  if (context->run.fill)
+  if (!context->run.options->filled || context->box.is_empty)
   {
     return MCOR_OK;
   }
@@ -22,9 +36,12 @@ static mcor_status mcor_begin_fill(mcor_context* context)
     context->run.fill->levels = malloc((size_t)count * sizeof *context->run.fill->levels);
     context->run.fill->line_count = context->run.fill->lines ? count : 0;
   }
-  return context->run.fill && context->run.fill->lines && context->run.fill->levels
-    ? MCOR_OK
-    : mcor_no_fill_memory(context);
+  if (!context->run.fill || !context->run.fill->lines || !context->run.fill->levels)
+  {
+    return mcor_no_fill_memory(context);
+  }
+  mcor_set_fill_extent(context, &context->run.fill->face);
+  return mcor_note_cap_tiles(context, 1, &context->run.fill->face);
 }
 
 /* Views of vertices, and of bricks. */
@@ -41,42 +58,17 @@ enum
   MCOR_FILL_VIEWS
 };
 
-typedef struct mcor_fill_view
-{
-  const mcor_buffer* buffer;
-  size_t bytes;
-  void* data;
-} mcor_fill_view;
-
-static mcor_status mcor_take_views(mcor_context* context, mcor_fill_view* views, int count,
-  mcor_fill_line* line,
-  mcor_status (*take)(mcor_context* context, const mcor_fill_view* views, mcor_fill_line* line))
-{
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    status = mcor_map(context, views[i].buffer, views[i].bytes, false, &views[i].data);
-  }
-  status = status == MCOR_OK ? take(context, views, line) : status;
-  for (int i = 0; i < count; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, views[i].buffer, &views[i].data);
-    status = status == MCOR_OK ? unmapped : status;
-  }
-  return status;
-}
-
 static mcor_status mcor_take_fill_vertices(
-  mcor_context* context, const mcor_fill_view* views, mcor_fill_line* line)
+  mcor_context* context, void* const views[], mcor_fill_line* line)
 {
   const double threshold = mcor_real_of(context, mcor_trim_threshold(context));
   for (int v = 0; v < line->vertex_count; ++v)
   {
-    const cl_int* node = (const cl_int*)views[MCOR_FILL_NODE].data + 4 * (size_t)v;
+    const cl_int* node = (const cl_int*)views[MCOR_FILL_NODE] + 4 * (size_t)v;
     const int axis = node[3] & 3;
-    line->offset[v] = mcor_get_real(context, views[MCOR_FILL_OFFSET].data, 4 * (int64_t)v + axis);
+    line->offset[v] = mcor_get_real(context, views[MCOR_FILL_OFFSET], 4 * (int64_t)v + axis);
     line->margin[v] = mcor_is_trimmed(context)
-      ? mcor_get_real(context, views[MCOR_FILL_QUANTITY].data, v) - threshold
+      ? mcor_get_real(context, views[MCOR_FILL_QUANTITY], v) - threshold
       : INFINITY;
     if (mcor_cap_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) < 0)
     {
@@ -105,21 +97,25 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   MCOR_TRY(cuts > 0
       ? mcor_read(context, &context->trim.distinct, 0, line->cuts, cuts * sizeof *line->cuts)
       : MCOR_OK);
-  mcor_fill_view views[] = { { .buffer = &mesh->node, .bytes = n * 4 * sizeof(cl_int) },
-    { .buffer = &mesh->offset, .bytes = n * 4 * real },
-    { .buffer = mcor_trim_quantity(context), .bytes = n * real } };
-  return mcor_take_views(
-    context, views, mcor_is_trimmed(context) ? 3 : 2, line, mcor_take_fill_vertices);
+  void* views[3] = { NULL };
+  const mcor_mapping mappings[] = { [MCOR_FILL_NODE] = { &mesh->node, n * 4 * sizeof(cl_int),
+                                      &views[MCOR_FILL_NODE] },
+    [MCOR_FILL_OFFSET] = { &mesh->offset, n * 4 * real, &views[MCOR_FILL_OFFSET] },
+    [MCOR_FILL_QUANTITY] = { mcor_trim_quantity(context), n * real, &views[MCOR_FILL_QUANTITY] } };
+  const int count = mcor_is_trimmed(context) ? 3 : 2;
+  mcor_status status = mcor_map_all(context, mappings, count);
+  status = status == MCOR_OK ? mcor_take_fill_vertices(context, views, line) : status;
+  return mcor_unmap_all(context, mappings, count, status);
 }
 
 /* Of the lowest layer of bricks. */
 static mcor_status mcor_take_fill_bricks(
-  mcor_context* context, const mcor_fill_view* views, mcor_fill_line* line)
+  mcor_context* context, void* const views[], mcor_fill_line* line)
 {
   for (int slot = 0; slot < context->bricks.now.count; ++slot)
   {
-    const cl_int* at = (const cl_int*)views[MCOR_FILL_BRICKS].data + 4 * (size_t)slot;
-    const cl_ulong* decisions = views[MCOR_FILL_DECISIONS].data;
+    const cl_int* at = (const cl_int*)views[MCOR_FILL_BRICKS] + 4 * (size_t)slot;
+    const cl_ulong* decisions = views[MCOR_FILL_DECISIONS];
     const cl_ulong joined =
       decisions ? decisions[(size_t)slot * MCOR_DECISION_MASKS + 2] & 0xffff : 0;
     if (at[2] != 0)
@@ -128,9 +124,9 @@ static mcor_status mcor_take_fill_bricks(
     }
     line->bricks[line->brick_count++] = (mcor_fill_brick){ .x = at[0],
       .y = at[1],
-      .known = (uint16_t)((const cl_ulong*)views[MCOR_FILL_KNOWN].data)[slot],
-      .above = (uint16_t)((const cl_ulong*)views[MCOR_FILL_ABOVE].data)[slot],
-      .valid = (uint16_t)((const cl_ulong*)views[MCOR_FILL_VALID].data)[slot] };
+      .known = (uint16_t)((const cl_ulong*)views[MCOR_FILL_KNOWN])[slot],
+      .above = (uint16_t)((const cl_ulong*)views[MCOR_FILL_ABOVE])[slot],
+      .valid = (uint16_t)((const cl_ulong*)views[MCOR_FILL_VALID])[slot] };
     for (int n = 0; n < 16; ++n)
     {
       const uint64_t key =
@@ -147,28 +143,33 @@ static mcor_status mcor_take_fill_bricks(
 static mcor_status mcor_take_bricks(mcor_context* context, mcor_fill_line* line)
 {
   const mcor_brick_data* now = &context->bricks.now;
-  const size_t n = (size_t)now->count;
+  const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
   line->bricks = malloc(n * sizeof *line->bricks);
-  mcor_fill_view views[MCOR_FILL_VIEWS] = {
-    { .buffer = &now->bricks, .bytes = 4 * n * sizeof(cl_int) },
-    { .buffer = &now->known, .bytes = n * sizeof(cl_ulong) },
-    { .buffer = &now->above, .bytes = n * sizeof(cl_ulong) },
-    { .buffer = &now->valid, .bytes = n * sizeof(cl_ulong) },
-    { .buffer = &context->topology.decisions, .bytes = n * MCOR_DECISION_MASKS * sizeof(cl_ulong) }
+  if (!line->bricks)
+  {
+    return mcor_no_fill_memory(context);
+  }
+  void* views[MCOR_FILL_VIEWS] = { NULL };
+  const mcor_mapping mappings[MCOR_FILL_VIEWS] = {
+    [MCOR_FILL_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_FILL_BRICKS] },
+    [MCOR_FILL_KNOWN] = { &now->known, mask, &views[MCOR_FILL_KNOWN] },
+    [MCOR_FILL_ABOVE] = { &now->above, mask, &views[MCOR_FILL_ABOVE] },
+    [MCOR_FILL_VALID] = { &now->valid, mask, &views[MCOR_FILL_VALID] },
+    [MCOR_FILL_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
+      &views[MCOR_FILL_DECISIONS] }
   };
-  return line->bricks ? mcor_take_views(context, views,
-                          mcor_is_resolved(context) ? MCOR_FILL_VIEWS : MCOR_FILL_DECISIONS, line,
-                          mcor_take_fill_bricks)
-                      : mcor_no_fill_memory(context);
+  const int count = mcor_is_resolved(context) ? MCOR_FILL_VIEWS : MCOR_FILL_DECISIONS;
+  mcor_status status = mcor_map_all(context, mappings, count);
+  status = status == MCOR_OK ? mcor_take_fill_bricks(context, views, line) : status;
+  return mcor_unmap_all(context, mappings, count, status);
 }
 
 mcor_status mcor_take_lines(mcor_context* context, double iso)
 {
-  if (!context->run.options->filled)
+  if (!context->run.fill)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_begin_fill(context));
   mcor_fill_line* line = &context->run.fill->lines[context->run.iso_number];
   line->iso = mcor_real_of(context, iso);
   line->value = context->run.options->iso_values[context->run.iso_number];

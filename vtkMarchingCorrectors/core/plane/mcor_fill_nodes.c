@@ -4,7 +4,6 @@
 /* Between which iso values nodes are, whether they are valid, and how far inside of what trimming leaves.
  * Where marching has evaluated them its answer is taken, as lines are made of it. */
 
-#include "mcor_box.h"
 #include "mcor_fill.h"
 
 #include <stdlib.h>
@@ -12,19 +11,6 @@
 
 /* Points evaluated at a time. */
 #define MCOR_FILL_BATCH (1 << 18)
-
-/* All nodes of the box's squares. */
-static void mcor_set_fill_extent(const mcor_context* context, mcor_cap_face* face)
-{
-  const mcor_box* box = &context->box;
-  *face = (mcor_cap_face){ .axis = 2, .across = { 0, 1 } };
-  for (int a = 0; a < 2; ++a)
-  {
-    face->first[a] = box->first[a];
-    face->count[a] = box->last[a] - box->first[a] + 1;
-    face->tiles[a] = (face->count[a] - 1) / MCOR_CAP_TILE + 1;
-  }
-}
 
 /* ---- Values ---- */
 
@@ -140,8 +126,7 @@ static void mcor_take_signs(const mcor_fill_line* line, const double* values, mc
 mcor_status mcor_find_bands(mcor_context* context, mcor_filling* fill)
 {
   mcor_cap_face* face = &fill->face;
-  mcor_set_fill_extent(context, face);
-  MCOR_TRY(mcor_make_cap_tiles(context, 1, face));
+  MCOR_TRY(mcor_make_cap_nodes(context, face));
   const size_t nodes = ((size_t)face->tile_count + 1) * MCOR_CAP_TILE * MCOR_CAP_TILE;
   fill->node_count = (int64_t)nodes;
   fill->band = calloc(nodes, sizeof *fill->band);

@@ -297,34 +297,22 @@ static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
   return valid && above;
 }
 
-static mcor_status mcor_fill_rows(mcor_fill_job* job)
+static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face, int u, int v)
 {
-  const mcor_cap_face* face = &job->fill->face;
-  for (int v = 0; v + 1 < face->count[1]; ++v)
-  {
-    const int32_t* tile = face->tile + (int64_t)(v / MCOR_CAP_TILE) * face->tiles[0];
-    MCOR_TRY(mcor_report_launch(job->context));
-    for (int u = 0; u + 1 < face->count[0]; ++u)
-    {
-      if (tile[u / MCOR_CAP_TILE] == 0)
-      {
-        u = u / MCOR_CAP_TILE * MCOR_CAP_TILE + MCOR_CAP_TILE - 1;
-        continue;
-      }
-      job->u = u;
-      job->v = v;
-      job->square = mcor_fill_key(face->first[0] + u, face->first[1] + v, 0);
-      MCOR_TRY(mcor_is_filled(job->fill, u, v) ? mcor_fill_square(job) : MCOR_OK);
-    }
-  }
-  return MCOR_OK;
+  mcor_fill_job* job = data;
+  job->u = u;
+  job->v = v;
+  job->square = mcor_fill_key(face->first[0] + u, face->first[1] + v, 0);
+  return mcor_is_filled(job->fill, u, v) ? mcor_fill_square(job) : MCOR_OK;
 }
 
 mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
 {
   mcor_fill_job job = { .context = context, .fill = fill };
   job.border = malloc((4 + 4 * (size_t)fill->level_count) * sizeof *job.border);
-  const mcor_status status = job.border ? mcor_fill_rows(&job) : mcor_no_fill_memory(context);
+  const mcor_status status = job.border
+    ? mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job)
+    : mcor_no_fill_memory(context);
   free(job.border);
   return status;
 }

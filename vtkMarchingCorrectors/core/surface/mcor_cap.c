@@ -48,34 +48,21 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
 }
 
 /* Numbers of squares ascend, and are above the keys of all cells. */
-static void mcor_begin_cap_square(mcor_cap_job* job, const mcor_cap_face* face, int u, int v)
+static mcor_status mcor_cap_numbered_square(void* data, const mcor_cap_face* face, int u, int v)
 {
+  mcor_cap_job* job = data;
   const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
   const bool owned =
     u >= face->owned[0] && u < face->end[0] && v >= face->owned[1] && v < face->end[1];
   job->square = MCOR_CAP_SQUARE | side << 42 | (cl_ulong)(face->first[1] + v) << 21 |
     (cl_ulong)(face->first[0] + u) | (owned ? 0 : MCOR_RING_CELL);
   job->lookups = 0;
+  return mcor_cap_square(job, face, u, v);
 }
 
 static mcor_status mcor_cap_squares(mcor_cap_job* job, const mcor_cap_face* face)
 {
-  for (int v = 0; v + 1 < face->count[1]; ++v)
-  {
-    const int32_t* tile = face->tile + (int64_t)(v / MCOR_CAP_TILE) * face->tiles[0];
-    MCOR_TRY(mcor_report_launch(job->context));
-    for (int u = 0; u + 1 < face->count[0]; ++u)
-    {
-      if (tile[u / MCOR_CAP_TILE] == 0)
-      {
-        u = u / MCOR_CAP_TILE * MCOR_CAP_TILE + MCOR_CAP_TILE - 1;
-        continue;
-      }
-      mcor_begin_cap_square(job, face, u, v);
-      MCOR_TRY(mcor_cap_square(job, face, u, v));
-    }
-  }
-  return MCOR_OK;
+  return mcor_visit_cap_squares(job->context, face, mcor_cap_numbered_square, job);
 }
 
 /* The lower and the upper side of an axis, where the box has them. */
@@ -136,16 +123,10 @@ static mcor_status mcor_make_caps(mcor_cap_job* job, double iso, mcor_cap_points
 static mcor_status mcor_end_cap_views(mcor_cap_job* job)
 {
   mcor_context* context = job->context;
-  const mcor_status unmapped[] = { mcor_unmap(context, &context->mesh.node, &job->node),
-    mcor_unmap(context, &context->mesh.offset, &job->offset),
-    mcor_unmap(context, mcor_trim_quantity(context), &job->quantity),
-    mcor_unmap(context, &context->trim.distinct, &job->distinct) };
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < 4; ++i)
-  {
-    status = status == MCOR_OK ? unmapped[i] : status;
-  }
-  return status;
+  const mcor_mapping mappings[] = { { &context->mesh.node, 0, &job->node },
+    { &context->mesh.offset, 0, &job->offset }, { mcor_trim_quantity(context), 0, &job->quantity },
+    { &context->trim.distinct, 0, &job->distinct } };
+  return mcor_unmap_all(context, mappings, 4, MCOR_OK);
 }
 
 mcor_status mcor_cap(mcor_context* context, double iso)

@@ -80,8 +80,25 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
  * box); -1: none does. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
-/* Of a face whose extent is known; iso_value: of the field itself. */
-mcor_status mcor_make_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face);
+/* Of a face whose extent is known: which tiles there are, or that they are too many; iso_value: of the field itself. */
+mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face);
+/* Then numbers of the tiles, and room for their nodes. */
+mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face);
+/* Views of the particles on the device. */
+typedef struct mcor_cap_particles
+{
+  void* views
+    [5]; /* positions; 1 / scaled smoothing length; with solids the weight in the fluid's sums */
+} mcor_cap_particles;
+mcor_status mcor_map_cap_particles(mcor_context* context, mcor_cap_particles* particles);
+mcor_status mcor_unmap_cap_particles(
+  mcor_context* context, mcor_cap_particles* particles, mcor_status status);
+/* Where particle i is, in nodes from the lattice's origin. Returns how far it reaches, in cubes, or a bit more. */
+double mcor_place_cap_particle(
+  const mcor_context* context, const mcor_cap_particles* particles, int64_t i, double x[3]);
+/* Calls `visit` for all squares, by their lower nodes, of tiles that there are. */
+mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_face* face,
+  mcor_status (*visit)(void* data, const mcor_cap_face* face, int u, int v), void* data);
 mcor_status mcor_make_cap_face(
   mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face);
 /* Whether there is room for the caps. */

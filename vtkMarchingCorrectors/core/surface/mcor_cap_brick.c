@@ -111,25 +111,17 @@ static mcor_status mcor_reach_wall(
   return MCOR_OK;
 }
 
-/* views: positions along x, y, z; 1 / scaled smoothing length; weight in the fluid's sums. */
 static mcor_status mcor_reach_walls(
-  mcor_context* context, mcor_wall* wall, void* const views[5], bool solids)
+  mcor_context* context, mcor_wall* wall, const mcor_cap_particles* particles, bool solids)
 {
-  const mcor_lattice* lattice = &context->lattice;
-  const double support = mcor_support_factor(context->run.options->sph_kernel);
   for (int64_t i = 0; i < context->grid.count; ++i)
   {
-    const bool is_solid = mcor_get_real(context, views[4], i) == 0;
-    double x[3];
-    for (int a = 0; a < 3 && is_solid == solids; ++a)
+    if ((mcor_get_real(context, particles->views[4], i) == 0) == solids)
     {
-      x[a] = (context->cl.real_size == sizeof(cl_double) ? (double)((const cl_long*)views[a])[i]
-                                                         : (double)((const cl_int*)views[a])[i]) /
-        (double)lattice->step[a];
+      double x[3];
+      const double reach = mcor_place_cap_particle(context, particles, i, x);
+      MCOR_TRY(mcor_reach_wall(context, wall, x, reach, solids));
     }
-    MCOR_TRY(is_solid == solids ? mcor_reach_wall(context, wall, x,
-                                    support / mcor_get_real(context, views[3], i) * 1.001, solids)
-                                : MCOR_OK);
   }
   return MCOR_OK;
 }
@@ -170,23 +162,11 @@ static mcor_status mcor_sort_wall(mcor_context* context, mcor_wall* wall)
 
 static mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall)
 {
-  const mcor_grid* g = &context->grid;
-  const mcor_buffer* buffers[5] = { &g->px, &g->py, &g->pz, &g->inv_h, &g->fluid_weight };
-  const size_t bytes =
-    (size_t)g->count * context->cl.real_size; /* fixed-point numbers are as long */
-  void* views[5] = { NULL };
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < 5 && status == MCOR_OK; ++i)
-  {
-    status = mcor_map(context, buffers[i], bytes, false, &views[i]);
-  }
-  status = status == MCOR_OK ? mcor_reach_walls(context, wall, views, true) : status;
-  status = status == MCOR_OK ? mcor_reach_walls(context, wall, views, false) : status;
-  for (int i = 0; i < 5; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, buffers[i], &views[i]);
-    status = status == MCOR_OK ? unmapped : status;
-  }
+  mcor_cap_particles particles = { { NULL } };
+  mcor_status status = mcor_map_cap_particles(context, &particles);
+  status = status == MCOR_OK ? mcor_reach_walls(context, wall, &particles, true) : status;
+  status = status == MCOR_OK ? mcor_reach_walls(context, wall, &particles, false) : status;
+  status = mcor_unmap_cap_particles(context, &particles, status);
   return status == MCOR_OK ? mcor_sort_wall(context, wall) : status;
 }
 
@@ -219,26 +199,18 @@ static mcor_status mcor_take_wall_bricks(mcor_context* context, const mcor_wall*
 {
   const mcor_brick_data* now = &context->bricks.now;
   const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
-  const mcor_buffer* buffers[5] = { &now->bricks, &now->known, &now->above, &context->mesh.used,
-    &context->topology.decisions };
-  const size_t bytes[5] = { 4 * n * sizeof(cl_int), mask, mask, mask, MCOR_DECISION_MASKS * mask };
   const int count = n == 0 ? 0 : context->run.options->topology == MCOR_TOPOLOGY_FIELD ? 5 : 4;
   void* views[5] = { NULL };
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    status = mcor_map(context, buffers[i], bytes[i], false, &views[i]);
-  }
+  const mcor_mapping mappings[5] = { { &now->bricks, 4 * n * sizeof(cl_int), &views[0] },
+    { &now->known, mask, &views[1] }, { &now->above, mask, &views[2] },
+    { &context->mesh.used, mask, &views[3] },
+    { &context->topology.decisions, MCOR_DECISION_MASKS * mask, &views[4] } };
+  const mcor_status status = mcor_map_all(context, mappings, count);
   if (status == MCOR_OK && count > 0)
   {
     mcor_take_wall_masks(context, views, wall);
   }
-  for (int i = 0; i < count; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, buffers[i], &views[i]);
-    status = status == MCOR_OK ? unmapped : status;
-  }
-  return status;
+  return mcor_unmap_all(context, mappings, count, status);
 }
 
 /* ---- what it does not know ---------------------------------------------------------------------- */

@@ -83,28 +83,24 @@ static mcor_status mcor_take_bricks(mcor_context* context, mcor_cap_face* face)
   const mcor_brick_data* now = &context->bricks.now;
   const size_t n = (size_t)now->count;
   const bool resolved = context->run.options->topology == MCOR_TOPOLOGY_FIELD;
-  const mcor_buffer* buffers[MCOR_CAP_VIEWS] = { &now->bricks, &now->known, &now->above,
-    &now->valid, &context->mesh.used, &context->topology.decisions };
-  const size_t bytes[MCOR_CAP_VIEWS] = { 4 * n * sizeof(cl_int), n * sizeof(cl_ulong),
-    n * sizeof(cl_ulong), n * sizeof(cl_ulong), n * sizeof(cl_ulong),
-    n * MCOR_DECISION_MASKS * sizeof(cl_ulong) };
+  const size_t mask = n * sizeof(cl_ulong);
   const int count = n == 0 ? 0 : resolved ? MCOR_CAP_VIEWS : MCOR_CAP_VIEW_DECISIONS;
   void* views[MCOR_CAP_VIEWS] = { NULL };
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    status = mcor_map(context, buffers[i], bytes[i], false, &views[i]);
-  }
+  const mcor_mapping mappings[MCOR_CAP_VIEWS] = {
+    [MCOR_CAP_VIEW_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_CAP_VIEW_BRICKS] },
+    [MCOR_CAP_VIEW_KNOWN] = { &now->known, mask, &views[MCOR_CAP_VIEW_KNOWN] },
+    [MCOR_CAP_VIEW_ABOVE] = { &now->above, mask, &views[MCOR_CAP_VIEW_ABOVE] },
+    [MCOR_CAP_VIEW_VALID] = { &now->valid, mask, &views[MCOR_CAP_VIEW_VALID] },
+    [MCOR_CAP_VIEW_CELLS] = { &context->mesh.used, mask, &views[MCOR_CAP_VIEW_CELLS] },
+    [MCOR_CAP_VIEW_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
+      &views[MCOR_CAP_VIEW_DECISIONS] }
+  };
+  const mcor_status status = mcor_map_all(context, mappings, count);
   if (status == MCOR_OK && count > 0)
   {
     mcor_take_masks(context, views, face);
   }
-  for (int i = 0; i < count; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, buffers[i], &views[i]);
-    status = status == MCOR_OK ? unmapped : status;
-  }
-  return status;
+  return mcor_unmap_all(context, mappings, count, status);
 }
 
 /* ---- what it does not know --------------------------------------------------------------------- */
@@ -158,15 +154,9 @@ mcor_status mcor_evaluate_cap_points(mcor_context* context, const cl_int* nodes,
 mcor_status mcor_unmap_cap_values(
   mcor_context* context, const mcor_cap_points* p, mcor_cap_values* v)
 {
-  const mcor_status unmapped[] = { mcor_unmap(context, &p->value, &v->value),
-    mcor_unmap(context, &p->gradient, &v->gradient), mcor_unmap(context, &p->weight, &v->weight),
-    mcor_unmap(context, &p->eigenvalue, &v->eigenvalue) };
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < 4; ++i)
-  {
-    status = status == MCOR_OK ? unmapped[i] : status;
-  }
-  return status;
+  const mcor_mapping mappings[] = { { &p->value, 0, &v->value }, { &p->gradient, 0, &v->gradient },
+    { &p->weight, 0, &v->weight }, { &p->eigenvalue, 0, &v->eigenvalue } };
+  return mcor_unmap_all(context, mappings, 4, MCOR_OK);
 }
 
 double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)

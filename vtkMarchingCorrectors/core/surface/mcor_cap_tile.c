@@ -98,7 +98,12 @@ static mcor_status mcor_note_tiles(
       *tile = 1;
     }
   }
-  MCOR_RETURN_IF(face->tile_count > MCOR_CAP_TILE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+  const bool is_much = face->tile_count > MCOR_CAP_TILE_LIMIT;
+  MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
+    "Use a larger cube size, or do not fill.",
+    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, context->lattice.cube);
+  MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes of a side along %c are within reach of particles, with cube size "
     "%g: too many for a cap. Use a larger cube size, or no caps.",
     MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, 'x' + face->axis, context->lattice.cube);
@@ -129,55 +134,73 @@ static mcor_status mcor_note_particle(
   return mcor_note_tiles(context, face, low, high);
 }
 
-/* Views of the particles on the device. */
-typedef struct mcor_cap_particles
-{
-  void* views[4]; /* positions along x, y, z; 1 / scaled smoothing length */
-} mcor_cap_particles;
-
-static mcor_status mcor_map_particles(
-  mcor_context* context, bool map, mcor_cap_particles* particles)
+/* Fixed-point numbers are as long as reals. */
+static int mcor_list_particles(
+  const mcor_context* context, mcor_cap_particles* particles, mcor_mapping mappings[5])
 {
   const mcor_grid* g = &context->grid;
-  const mcor_buffer* buffers[4] = { &g->px, &g->py, &g->pz, &g->inv_h };
-  const size_t n = (size_t)g->count * context->cl.real_size; /* fixed-point numbers are as long */
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < 4; ++i)
+  const mcor_buffer* buffers[5] = { &g->px, &g->py, &g->pz, &g->inv_h, &g->fluid_weight };
+  for (int i = 0; i < 5; ++i)
   {
-    const mcor_status one = map ? mcor_map(context, buffers[i], n, false, &particles->views[i])
-                                : mcor_unmap(context, buffers[i], &particles->views[i]);
-    status = status == MCOR_OK ? one : status;
+    mappings[i] =
+      (mcor_mapping){ buffers[i], (size_t)g->count * context->cl.real_size, &particles->views[i] };
   }
-  return status;
+  return context->grid.has_solids ? 5 : 4;
+}
+
+mcor_status mcor_map_cap_particles(mcor_context* context, mcor_cap_particles* particles)
+{
+  mcor_mapping mappings[5];
+  const int count = mcor_list_particles(context, particles, mappings);
+  return mcor_map_all(context, mappings, count);
+}
+
+mcor_status mcor_unmap_cap_particles(
+  mcor_context* context, mcor_cap_particles* particles, mcor_status status)
+{
+  mcor_mapping mappings[5];
+  const int count = mcor_list_particles(context, particles, mappings);
+  return mcor_unmap_all(context, mappings, count, status);
+}
+
+double mcor_place_cap_particle(
+  const mcor_context* context, const mcor_cap_particles* particles, int64_t i, double x[3])
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    const void* view = particles->views[a];
+    x[a] = (context->cl.real_size == sizeof(cl_double) ? (double)((const cl_long*)view)[i]
+                                                       : (double)((const cl_int*)view)[i]) /
+      (double)context->lattice.step[a];
+  }
+  return mcor_support_factor(context->run.options->sph_kernel) /
+    mcor_get_real(context, particles->views[3], i) * 1.001;
 }
 
 static mcor_status mcor_note_particles(
   mcor_context* context, const mcor_cap_particles* particles, mcor_cap_face* face)
 {
-  const double support = mcor_support_factor(context->run.options->sph_kernel);
   for (int64_t i = 0; i < context->grid.count; ++i)
   {
     double x[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      const void* view = particles->views[a];
-      x[a] = (context->cl.real_size == sizeof(cl_double) ? (double)((const cl_long*)view)[i]
-                                                         : (double)((const cl_int*)view)[i]) /
-        (double)context->lattice.step[a];
-    }
-    MCOR_TRY(mcor_note_particle(
-      context, face, x, support / mcor_get_real(context, particles->views[3], i) * 1.001));
+    const double reach = mcor_place_cap_particle(context, particles, i, x);
+    MCOR_TRY(mcor_note_particle(context, face, x, reach));
   }
   return MCOR_OK;
 }
 
 /* Finds the tiles: those that particles reach, or all where empty space is above the iso value. */
-static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_cap_face* face)
+mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face)
 {
   const bool empty_is_above = context->run.options->field != MCOR_SHEPARD && iso_value <= 0;
   const double low[2] = { 0, 0 }, high[2] = { face->count[0], face->count[1] };
   const size_t places = (size_t)face->tiles[0] * (size_t)face->tiles[1];
-  MCOR_RETURN_IF(places > MCOR_CAP_PLACE_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+  const bool is_much = places > MCOR_CAP_PLACE_LIMIT;
+  MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
+    "The plane has %lld x %lld nodes, too many to be filled. Use a larger cube size, or do not "
+    "fill.",
+    (long long)face->count[0], (long long)face->count[1]);
+  MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
     "A side has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
     "caps.",
     (long long)face->count[0], (long long)face->count[1]);
@@ -189,15 +212,13 @@ static mcor_status mcor_note_face(mcor_context* context, double iso_value, mcor_
     return mcor_note_tiles(context, face, low, high);
   }
   mcor_cap_particles particles = { { NULL } };
-  mcor_status status = mcor_map_particles(context, true, &particles);
+  mcor_status status = mcor_map_cap_particles(context, &particles);
   status = status == MCOR_OK ? mcor_note_particles(context, &particles, face) : status;
-  const mcor_status unmapped = mcor_map_particles(context, false, &particles);
-  return status == MCOR_OK ? unmapped : status;
+  return mcor_unmap_cap_particles(context, &particles, status);
 }
 
-mcor_status mcor_make_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face)
+mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face)
 {
-  MCOR_TRY(mcor_note_face(context, iso_value, face));
   /* The first one is for the nodes in none. */
   const size_t nodes = ((size_t)face->tile_count + 1) * MCOR_CAP_TILE * MCOR_CAP_TILE;
   face->place = malloc(((size_t)face->tile_count + 1) * sizeof *face->place);
@@ -222,7 +243,28 @@ mcor_status mcor_make_cap_face(
   mcor_context* context, int axis, int upper, double iso_value, mcor_cap_face* face)
 {
   mcor_set_cap_extent(context, axis, upper, face);
-  return mcor_make_cap_tiles(context, iso_value, face);
+  MCOR_TRY(mcor_note_cap_tiles(context, iso_value, face));
+  return mcor_make_cap_nodes(context, face);
+}
+
+mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_face* face,
+  mcor_status (*visit)(void* data, const mcor_cap_face* face, int u, int v), void* data)
+{
+  for (int v = 0; v + 1 < face->count[1]; ++v)
+  {
+    const int32_t* tile = face->tile + (int64_t)(v / MCOR_CAP_TILE) * face->tiles[0];
+    MCOR_TRY(mcor_report_launch(context));
+    for (int u = 0; u + 1 < face->count[0]; ++u)
+    {
+      if (tile[u / MCOR_CAP_TILE] == 0)
+      {
+        u = u / MCOR_CAP_TILE * MCOR_CAP_TILE + MCOR_CAP_TILE - 1;
+        continue;
+      }
+      MCOR_TRY(visit(data, face, u, v));
+    }
+  }
+  return MCOR_OK;
 }
 
 mcor_status mcor_check_caps(mcor_context* context)
@@ -244,7 +286,7 @@ mcor_status mcor_check_caps(mcor_context* context)
     {
       mcor_cap_face face;
       mcor_set_cap_extent(context, a, !has_lower, &face);
-      status = mcor_note_face(context, least, &face);
+      status = mcor_note_cap_tiles(context, least, &face);
       mcor_free_cap_face(&face);
     }
   }

@@ -67,32 +67,31 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
   return status;
 }
 
-/* The buffers of the views. */
-static void mcor_list_buffers(mcor_context* context, const mcor_buffer* buffers[MCOR_VIEW_COUNT])
+static void mcor_list_mappings(
+  const mcor_context* context, mcor_download* d, mcor_mapping mappings[MCOR_VIEW_COUNT])
 {
   const mcor_mesh* mesh = &context->mesh;
-  buffers[MCOR_VIEW_SCANNED] = &mesh->scanned;
-  buffers[MCOR_VIEW_NODE] = &mesh->node;
-  buffers[MCOR_VIEW_OFFSET] = &mesh->offset;
-  buffers[MCOR_VIEW_LINEAR] = &mesh->linear;
-  buffers[MCOR_VIEW_VALUE] = &mesh->field_value;
-  buffers[MCOR_VIEW_GRADIENT] = &mesh->gradient;
-  buffers[MCOR_VIEW_WEIGHT] = &mesh->vertex_weight;
-  buffers[MCOR_VIEW_FLAG] = &mesh->flag;
+  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
+  mappings[MCOR_VIEW_SCANNED] = (mcor_mapping){ &mesh->scanned, (n + 1) * sizeof(cl_int), NULL };
+  mappings[MCOR_VIEW_NODE] = (mcor_mapping){ &mesh->node, n * 4 * sizeof(cl_int), NULL };
+  mappings[MCOR_VIEW_OFFSET] = (mcor_mapping){ &mesh->offset, n * 4 * real, NULL };
+  mappings[MCOR_VIEW_LINEAR] =
+    (mcor_mapping){ &mesh->linear, (size_t)mesh->march_count * real, NULL };
+  mappings[MCOR_VIEW_VALUE] = (mcor_mapping){ &mesh->field_value, n * real, NULL };
+  mappings[MCOR_VIEW_GRADIENT] = (mcor_mapping){ &mesh->gradient, n * 4 * real, NULL };
+  mappings[MCOR_VIEW_WEIGHT] = (mcor_mapping){ &mesh->vertex_weight, n * real, NULL };
+  mappings[MCOR_VIEW_FLAG] = (mcor_mapping){ &mesh->flag, n, NULL };
+  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
+  {
+    mappings[i].data = &d->views[i];
+  }
 }
 
 static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
 {
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  const size_t bytes[MCOR_VIEW_COUNT] = { (n + 1) * sizeof(cl_int), n * 4 * sizeof(cl_int),
-    n * 4 * real, (size_t)mesh->march_count * real, n * real, n * 4 * real, n * real, n };
-  const mcor_buffer* buffers[MCOR_VIEW_COUNT];
-  mcor_list_buffers(context, buffers);
-  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
-  {
-    MCOR_TRY(mcor_map(context, buffers[i], bytes[i], false, &d->views[i]));
-  }
+  mcor_mapping mappings[MCOR_VIEW_COUNT];
+  mcor_list_mappings(context, d, mappings);
+  MCOR_TRY(mcor_map_all(context, mappings, MCOR_VIEW_COUNT));
   d->scanned = d->views[MCOR_VIEW_SCANNED];
   d->node = d->views[MCOR_VIEW_NODE];
   d->offset = d->views[MCOR_VIEW_OFFSET];
@@ -106,15 +105,9 @@ static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
 
 static mcor_status mcor_unmap_vertices(mcor_context* context, mcor_download* d)
 {
-  const mcor_buffer* buffers[MCOR_VIEW_COUNT];
-  mcor_list_buffers(context, buffers);
-  mcor_status status = MCOR_OK;
-  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, buffers[i], &d->views[i]);
-    status = status == MCOR_OK ? unmapped : status;
-  }
-  return status;
+  mcor_mapping mappings[MCOR_VIEW_COUNT];
+  mcor_list_mappings(context, d, mappings);
+  return mcor_unmap_all(context, mappings, MCOR_VIEW_COUNT, MCOR_OK);
 }
 
 /* Room for `count` more elements of `width` bytes; *array may be NULL. */

@@ -1,0 +1,45 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "cap_check.h"
+
+#include <math.h>
+
+void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
+{
+  assert_true(open->point_count > 100 && closed->point_count > open->point_count);
+  assert_memory_equal(open->points, closed->points, (size_t)open->point_count * 3 * sizeof(double));
+  assert_memory_equal(
+    open->triangles, closed->triangles, (size_t)open->triangle_count * 3 * sizeof *open->triangles);
+  assert_int_equal(closed->triangle_count - open->triangle_count, closed->statistics.cap_triangles);
+}
+
+void cap_check_volume(
+  const mcor_surface* closed, const core_set* set, const double planes[6], double iso, double share)
+{
+  enum
+  {
+    SAMPLES = 40000
+  };
+  const oracle_particles particles = core_oracle(set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
+  uint64_t seed = 3;
+  int inside = 0;
+  for (int i = 0; i < SAMPLES; ++i)
+  {
+    double at[3];
+    oracle_sample sample;
+    for (int a = 0; a < 3; ++a)
+    {
+      at[a] = planes[2 * a] + random_unit(&seed) * (planes[2 * a + 1] - planes[2 * a]);
+    }
+    oracle_evaluate(&field, NULL, at, &sample);
+    inside += sample.weight >= iso && sample.weight > (1 - share) * sample.trim_weight;
+  }
+  oracle_free_field(&field);
+  const double part = (double)inside / SAMPLES;
+  const double whole = (planes[1] - planes[0]) * (planes[3] - planes[2]) * (planes[5] - planes[4]);
+  const double expected = whole * part, error = whole * sqrt(part * (1 - part) / SAMPLES);
+  CORE_CHECK(fabs(closed->statistics.volume - expected) < 4 * error,
+    "volume %g instead of %g +- %g", closed->statistics.volume, expected, error);
+}

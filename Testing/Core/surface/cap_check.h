@@ -1,0 +1,17 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef cap_check_h
+#define cap_check_h
+
+/* What holds of a surface with caps, whatever they close. */
+
+#include "core_fixture.h"
+
+/* Fails unless the surface without caps is the beginning of the one with caps, which are the rest of it. */
+void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed);
+/* Fails unless the volume is that between `planes` where the weight sum of fluid is the iso value, and solids
+ * have no more than `share` of all weight (1: whatever they have): the oracle's, at random places. */
+void cap_check_volume(const mcor_surface* closed, const core_set* set, const double planes[6],
+  double iso, double share);
+
+#endif

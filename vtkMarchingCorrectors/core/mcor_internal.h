@@ -308,7 +308,8 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 /* Kernel arguments of MCOR_GRID_PARAMS, MCOR_BLOCK_PARAMS and MCOR_BRICK_PARAMS. */
 #define MCOR_GRID_ARGS(c)                                                                          \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
-    MCOR_INT((c)->lattice.fix_bits + (c)->grid.view), MCOR_EDGE_ARGS(c),                           \
+    MCOR_REAL(ldexp(1, -(c)->lattice.fix_bits - (c)->grid.view)),                                  \
+    MCOR_REAL(ldexp(1, (c)->lattice.fix_bits + (c)->grid.view)), MCOR_EDGE_ARGS(c),                \
     MCOR_BUFFER((c)->grid.view > 0 ? &(c)->grid.view_levels : &(c)->grid.level_buffer),            \
     MCOR_BUFFER(&(c)->grid.buckets), MCOR_BUFFER(&(c)->grid.cell_keys),                            \
     MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py), MCOR_BUFFER(&(c)->grid.pz),            \

@@ -157,7 +157,7 @@ static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
   MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, run->count, MCOR_INT(run->first),
-    MCOR_INT(run->count), MCOR_INT(context->lattice.fix_bits), MCOR_EDGE_ARGS(context),
+    MCOR_INT(run->count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
     MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(bounded),
     MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&run->batch.in_node),
     MCOR_BUFFER(&run->batch.in_offset), MCOR_BUFFER(&context->points.flags)));

@@ -272,10 +272,10 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   const double scale = context->run.options->h_scale;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(mcor_is_plane(context) ? mcor_cube_root(scale * scale) : scale),
-    MCOR_BUFFER(&grid->order), MCOR_BUFFER(density), MCOR_INT(context->lattice.fix_bits),
-    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz),
-    MCOR_BUFFER(&grid->inv_h), MCOR_REAL(low[0]), MCOR_REAL(low[1]), MCOR_REAL(low[2]),
-    MCOR_REAL(high[0]), MCOR_REAL(high[1]), MCOR_REAL(high[2]),
+    MCOR_BUFFER(&grid->order), MCOR_BUFFER(density),
+    MCOR_REAL(ldexp(1, -context->lattice.fix_bits)), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py),
+    MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h), MCOR_REAL(low[0]), MCOR_REAL(low[1]),
+    MCOR_REAL(low[2]), MCOR_REAL(high[0]), MCOR_REAL(high[1]), MCOR_REAL(high[2]),
     MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
   MCOR_TRY(mcor_read(context, without, 0, &first, sizeof first));
   return first == INT32_MAX ? MCOR_OK

@@ -9,22 +9,18 @@
 
 #include <math.h>
 
-static uint64_t mcor_mix(uint64_t x)
+/* A number of an edge that looks as if it were random: of edges that are not run through both ways, the sum
+ * with signs is 0 by chance once in 2^64. Multiples of the golden ratio keep pairs of numbers apart. */
+static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
 {
+  uint64_t x = (uint64_t)low * 0x9E3779B97F4A7C15u + (uint64_t)high;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
   return x ^ (x >> 31);
 }
 
-/* A number of an edge that looks as if it were random: of edges that are not run through both ways, the sum
- * with signs is 0 by chance once in 2^64. */
-static uint64_t mcor_edge_number(int64_t low, int64_t high)
-{
-  return mcor_mix(mcor_mix((uint64_t)low + 0x9E3779B97F4A7C15u) + (uint64_t)high);
-}
-
 /* What a triangle adds; volumes are about the origin. */
-static void mcor_measure_triangle(
+static inline void mcor_measure_triangle(
   const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
 {
   double c[3][3], u[3], v[3];
@@ -51,7 +47,13 @@ static void mcor_measure_triangle(
 static double mcor_exact_unit(double most, int64_t count)
 {
   const double bound = most * (double)count;
-  return bound > 0 && isfinite(bound) ? ldexp(1, ilogb(bound) + 1 - 53) : 1;
+  return bound > 0 && bound < 1e300 ? ldexp(1, ilogb(bound) + 1 - 53) : 1;
+}
+
+/* To a multiple of the unit of which `large` is 1.5 * 2^52. */
+static inline double mcor_round_term(double term, double large)
+{
+  return (term + large) - large;
 }
 
 /* Of each slice of the triangles its own measures, as exact as those of parts. */
@@ -66,14 +68,15 @@ typedef struct mcor_measure_job
 static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measure_job* job = data;
-  mcor_measures* measures = &job->slices[slice];
+  double areas = 0, volumes = 0; /* the largest */
   for (int64_t t = first; t < last; ++t)
   {
     double area, volume;
     mcor_measure_triangle(job->surface, job->all->origin, t, &area, &volume);
-    measures->area_most = fmax(measures->area_most, area);
-    measures->volume_most = fmax(measures->volume_most, fabs(volume));
+    areas = area > areas ? area : areas;
+    volumes = fabs(volume) > volumes ? fabs(volume) : volumes;
   }
+  job->slices[slice] = (mcor_measures){ .area_most = areas, .volume_most = volumes };
 }
 
 /* context: NULL outside of a call. */
@@ -104,8 +107,8 @@ static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
   mcor_measure_job* job = data;
   const mcor_measures* all = job->all;
   const int64_t* numbers = job->numbers;
-  const double area_unit = mcor_exact_unit(all->area_most, all->triangle_count);
-  const double volume_unit = mcor_exact_unit(all->volume_most, all->triangle_count);
+  const double large_area = 0x1.8p52 * mcor_exact_unit(all->area_most, all->triangle_count);
+  const double large_volume = 0x1.8p52 * mcor_exact_unit(all->volume_most, all->triangle_count);
   double areas = 0, volumes = 0;
   uint64_t open = 0;
   for (int64_t t = first; t < last; ++t)
@@ -113,8 +116,8 @@ static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
     const int32_t* triangle = job->surface->triangles + 3 * t;
     double area, volume;
     mcor_measure_triangle(job->surface, all->origin, t, &area, &volume);
-    areas += nearbyint(area / area_unit) * area_unit;
-    volumes += nearbyint(volume / volume_unit) * volume_unit;
+    areas += mcor_round_term(area, large_area);
+    volumes += mcor_round_term(volume, large_volume);
     for (int i = 0; i < 3; ++i)
     {
       const int64_t p = triangle[i], q = triangle[(i + 1) % 3];

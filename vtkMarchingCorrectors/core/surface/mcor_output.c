@@ -255,8 +255,7 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   for (int a = 0; a < 3; ++a)
   {
     /* The origin is a whole number of cells of all levels. */
-    const double node =
-      (double)(context->lattice.origin[a] / ((int64_t)1 << level) + d->node[4 * v + a]);
+    const double node = (double)((context->lattice.origin[a] >> level) + d->node[4 * v + a]);
     s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) *
       mcor_length_of(d, v, context->lattice.edge[a]);
     gradient[a] = mcor_get_real(context, d->gradient, 4 * v + a);

@@ -74,7 +74,6 @@ MCOR_DECLARE_ATOMIC(int)
 MCOR_DECLARE_ATOMIC(uint)
 MCOR_DECLARE_REAL(float)
 MCOR_DECLARE_REAL(float2)
-float MCOR_BUILTIN ldexp(float, int);
 float MCOR_BUILTIN convert_float(int);
 float MCOR_BUILTIN convert_float(long);
 MCOR_DECLARE_VECTOR(4, float4, float, int4, int)
@@ -85,7 +84,6 @@ int8 MCOR_BUILTIN convert_int8(uchar8);
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 MCOR_DECLARE_REAL(double)
 MCOR_DECLARE_REAL(double2)
-double MCOR_BUILTIN ldexp(double, int);
 double MCOR_BUILTIN convert_double(int);
 double MCOR_BUILTIN convert_double(long);
 double4 MCOR_BUILTIN convert_double4(int4);

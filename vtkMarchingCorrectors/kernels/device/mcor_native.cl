@@ -31,10 +31,6 @@
   {                                                                                                \
     return __builtin_fma##S(a, b, c);                                                              \
   }                                                                                                \
-  MCOR_DEFINE T ldexp(T x, int n)                                                                  \
-  {                                                                                                \
-    return __builtin_ldexp##S(x, n);                                                               \
-  }                                                                                                \
   MCOR_DEFINE T sign(T x)                                                                          \
   {                                                                                                \
     return x > 0 ? (T)1 : x < 0 ? (T)-1 : x == 0 ? x : (T)0;                                       \

@@ -8,7 +8,7 @@
 
 /* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset, and
  * whether it is in the box, if there is one; the node of others is -1. */
-__kernel void mcor_derive_place(const int first, const int count, const int fix_bits,
+__kernel void mcor_derive_place(const int first, const int count, const real units,
   const real edge_x, const real edge_y, const real edge_z, __global const fix* px,
   __global const fix* py, __global const fix* pz, const int has_box, const int first_x,
   const int first_y, const int first_z, const int last_x, const int last_y, const int last_z,
@@ -20,8 +20,8 @@ __kernel void mcor_derive_place(const int first, const int count, const int fix_
     return;
   }
   const fix x = px[first + i], y = py[first + i], z = pz[first + i];
-  const fix step_x = (fix)ldexp(edge_x, fix_bits), step_y = (fix)ldexp(edge_y, fix_bits),
-            step_z = (fix)ldexp(edge_z, fix_bits);
+  const fix step_x = (fix)(edge_x * units), step_y = (fix)(edge_y * units),
+            step_z = (fix)(edge_z * units);
   const int4 at = (int4)((int)(x / step_x), (int)(y / step_y), (int)(z / step_z), 0);
   const bool is_in = !has_box ||
     (at.x >= first_x && at.x < last_x && at.y >= first_y && at.y < last_y && at.z >= first_z &&

@@ -60,8 +60,8 @@ void mcor_cluster_place(
   {
     const real low = MCOR_GET(least, a), high = MCOR_GET(most, a);
     origin[a] = first[a] + (fix)floor((real)0.5 * (low + high) / grid->edge[a]) * grid->step[a];
-    query->low[a] = first[a] + (fix)floor(ldexp(low, grid->fix_bits)) - 1;
-    query->high[a] = first[a] + (fix)ceil(ldexp(high, grid->fix_bits)) + 1;
+    query->low[a] = first[a] + (fix)floor(low * grid->units) - 1;
+    query->high[a] = first[a] + (fix)ceil(high * grid->units) + 1;
   }
   mcor_query_place(grid, query, origin);
 }

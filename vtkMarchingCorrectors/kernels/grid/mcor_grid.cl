@@ -414,7 +414,7 @@ bool mcor_grid_reaches(const real* x, real support, MCOR_EVALUATED_PARAMS)
  * V = m / (sum m W), the norm and the unscaled h^3 cancel. Writes the first particle, if any, of
  * which the density is too low to `without`; not where it lacks neighbours, as it reaches nothing. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
-  __global const real* density, const int fix_bits, __global const fix* px, __global const fix* py,
+  __global const real* density, const real unit, __global const fix* px, __global const fix* py,
   __global const fix* pz, __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,
   __global real* trim_weight, __global int* without)
 {
@@ -427,7 +427,6 @@ __kernel void mcor_grid_weight(const int count, const real h_scale, __global con
   real sum = density[i];
   if (!(sum > mass * MCOR_LEAST_DENSITY))
   {
-    const real unit = ldexp((real)1, -fix_bits);
     const real x[3] = { (real)px[i] * unit, (real)py[i] * unit, (real)pz[i] * unit };
     if (mcor_grid_reaches(x, MCOR_SUPPORT / inv_h[i], low_x, low_y, low_z, high_x, high_y, high_z))
     {

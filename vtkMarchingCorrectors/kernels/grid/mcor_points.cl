@@ -170,8 +170,8 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
     const real nodes = floor((real)0.5 * (least + most) / grid->edge[a]);
     const real middle = nodes * grid->edge[a];
     origin[a] = some + (fix)nodes * grid->step[a];
-    query->low[a] = some + (fix)floor(ldexp(least, grid->fix_bits)) - 1;
-    query->high[a] = some + (fix)ceil(ldexp(most, grid->fix_bits)) + 1;
+    query->low[a] = some + (fix)floor(least * grid->units) - 1;
+    query->high[a] = some + (fix)ceil(most * grid->units) + 1;
     for (int part = 0; part < MCOR_PARTS; ++part)
     {
       points->center[a][part] -= middle;
@@ -184,10 +184,10 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
  * among what is evaluated there. */
 real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
 {
-  const real at = offset * grid->edge[axis], units = ldexp(at, grid->fix_bits),
+  const real at = offset * grid->edge[axis], units = at * grid->units,
              whole = floor(units + (real)0.5);
   const bool near = grid->edge[axis] != 1 && fabs(units - whole) < (real)0.07f;
-  return near ? ldexp(whole, -grid->fix_bits) : at;
+  return near ? whole * grid->unit : at;
 }
 
 /* Loads the group of points from begin to before end and their offsets. */

@@ -9,18 +9,18 @@
  * every sum is fixed by the particles alone. */
 
 #define MCOR_GRID_PARAMS                                                                           \
-  const int particle_count, const int level_count, const int bucket_shift, const int fix_bits,     \
-    const real edge_x, const real edge_y, const real edge_z, __global const mcor_level *levels,    \
-    __global const int *buckets, __global const ulong *cell_keys, __global const fix *px,          \
-    __global const fix *py, __global const fix *pz, __global const real *p_inv_h,                  \
-    __global const real *p_weight, __global const real *p_trim_weight,                             \
-    __global const real *p_value
+  const int particle_count, const int level_count, const int bucket_shift, const real unit,        \
+    const real units, const real edge_x, const real edge_y, const real edge_z,                     \
+    __global const mcor_level *levels, __global const int *buckets,                                \
+    __global const ulong *cell_keys, __global const fix *px, __global const fix *py,               \
+    __global const fix *pz, __global const real *p_inv_h, __global const real *p_weight,           \
+    __global const real *p_trim_weight, __global const real *p_value
 
 /* Arrays are padded by MCOR_PADDING elements, so that a vector load may run over the end. */
 typedef struct
 {
-  int particle_count, level_count, bucket_shift, fix_bits;
-  real unit;
+  int particle_count, level_count, bucket_shift;
+  real unit, units; /* of fixed-point numbers, in cubes; of a cube: powers of two */
   real edge[3]; /* of a cell, at most 1 */
   fix step[3];  /* the same in fixed-point units: from node to node */
   __global const mcor_level* levels;
@@ -35,11 +35,9 @@ typedef struct
 
 #define MCOR_GRID                                                                                  \
   {                                                                                                \
-    particle_count, level_count, bucket_shift, fix_bits, ldexp((real)1, -fix_bits),                \
-      { edge_x, edge_y, edge_z },                                                                  \
-      { (fix)ldexp(edge_x, fix_bits), (fix)ldexp(edge_y, fix_bits),                                \
-        (fix)ldexp(edge_z, fix_bits) },                                                            \
-      levels, buckets, cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value            \
+    particle_count, level_count, bucket_shift, unit, units, { edge_x, edge_y, edge_z },            \
+      { (fix)(edge_x * units), (fix)(edge_y * units), (fix)(edge_z * units) }, levels, buckets,    \
+      cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                             \
   }
 
 /* Index of the first particle whose cell key is >= key. */
@@ -92,7 +90,7 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
   const float support = query->radius >= 0 ? query->radius : -query->radius * level->support;
-  const float far = ceil(ldexp(support, grid->fix_bits)) + 1;
+  const float far = ceil(support * (float)grid->units) + 1;
   const fix reach = mcor_query_reach(far);
   query->reach2 = far * far;
   bool some = true;

@@ -61,8 +61,8 @@ class Benchmark:
         device = self.program.helper("benchmark-limits", found["device"], found["platform"], 1)
         facts = {"machine": report.machine(),
                  "device": f"{found['device']}, {device['compute_units']} compute units",
-                 "platform": f"{found['platform']}, {device['platform_version']}",
-                 "driver": device["driver_version"],
+                 "platform": found["platform"],
+                 "limits": f"measured through {device['platform_version']}, {device['driver_version']}",
                  "program": f"{found['name']}, on VTK {found['vtk']}",
                  "python": platform.python_version(), **versions(), "runs": self.runs}
         out.text("# Benchmark")

@@ -4,7 +4,7 @@ include("${FOLDER}/kernels/programs.cmake")
 set(code "/* Made by EmbedFiles.cmake. */\n#include \"mcor_program.h\"\n")
 set(table "")
 foreach (row IN LISTS mcor_program_sources)
-  separate_arguments(row)
+  separate_arguments(row UNIX_COMMAND "${row}") # leaves no empty words, as of columns
   list(POP_FRONT row file)
   get_filename_component(name "${file}" NAME)
   string(MAKE_C_IDENTIFIER "${name}" identifier)

@@ -241,7 +241,7 @@ void vtkMarchingCorrectors::Extract(
     return;
   }
   vtkMarchingCorrectorsOutput builder(input, options, surface);
-  this->Summarize(input.Core, options, surface.statistics);
+  this->Summarize(input, options, surface.statistics);
   this->WarnOf(input, surface, input.Core, options);
   builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
@@ -271,6 +271,7 @@ void vtkMarchingCorrectors::ClearSummary()
 {
   std::fill_n(this->FluidScalarRange, 2, 0.0);
   this->UsedIsoValues.clear();
+  this->IsoValueArrayName.clear();
   this->UsedSmoothingLength.clear();
   this->UsedVolume.clear();
   this->UsedCubeSize = 0.0;
@@ -406,8 +407,8 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
 }
 
 //------------------------------------------------------------------------------
-void vtkMarchingCorrectors::Summarize(
-  const mcor_input& input, const mcor_options& options, const mcor_statistics& statistics)
+void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
+  const mcor_options& options, const mcor_statistics& statistics)
 {
   if (options.field != MCOR_WEIGHT_SUM)
   {
@@ -415,8 +416,9 @@ void vtkMarchingCorrectors::Summarize(
     this->FluidScalarRange[1] = statistics.scalar_max;
   }
   this->UsedIsoValues = vtkMarchingCorrectorsDescribeIsoValues(options);
-  this->UsedSmoothingLength = vtkMarchingCorrectorsDescribeSmoothingLength(input, statistics);
-  this->UsedVolume = vtkMarchingCorrectorsDescribeVolume(input);
+  this->IsoValueArrayName = options.iso_value ? input.IsoValueName : "";
+  this->UsedSmoothingLength = vtkMarchingCorrectorsDescribeSmoothingLength(input.Core, statistics);
+  this->UsedVolume = vtkMarchingCorrectorsDescribeVolume(input.Core);
   this->UsedCubeSize = statistics.cube_size;
   this->SurfaceMeasures = vtkMarchingCorrectorsDescribeMeasures(statistics);
 }

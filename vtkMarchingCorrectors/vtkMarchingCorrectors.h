@@ -535,11 +535,13 @@ public:
    * What the last update used, for a panel; of composite data, for the last block. Empty, or 0, if nothing
    * was drawn. The range is that of the contoured component, magnitude or dot product at the fluid
    * particles, 0 to 0 for the free surface. SurfaceMeasures: the area of the surface and, if it is closed,
-   * its volume, in words. EstimatedCells: about how many cubes of the virtual grid the fluid fills, known
+   * its volume, in words. IsoValueArrayName: the point array that says which iso value each point has, if
+   * ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid the fluid fills, known
    * before an update begins, which warns from a billion on; 0: not known.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkGetCharFromStdStringMacro(UsedIsoValues);
+  vtkGetCharFromStdStringMacro(IsoValueArrayName);
   vtkGetCharFromStdStringMacro(UsedSmoothingLength);
   vtkGetCharFromStdStringMacro(UsedVolume);
   vtkGetMacro(UsedCubeSize, double);
@@ -610,6 +612,7 @@ protected:
 
   double FluidScalarRange[2] = { 0.0, 0.0 };
   std::string UsedIsoValues;
+  std::string IsoValueArrayName;
   std::string UsedSmoothingLength;
   std::string UsedVolume;
   double UsedCubeSize = 0.0;
@@ -643,8 +646,8 @@ private:
   void LookAhead();
   void LookAhead(vtkPointSet* particles, const mcor_options& options);
   void WarnOfHugeRun();
-  void Summarize(
-    const mcor_input& input, const mcor_options& options, const mcor_statistics& statistics);
+  void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
+    const mcor_statistics& statistics);
   std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
 
   vtkTimeStamp LookTime; // of the last look ahead

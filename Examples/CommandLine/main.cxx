@@ -139,6 +139,8 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   }
   if (!job.Picture.File.empty())
   {
+    colors.Suggest(surface, job.Surface->GetIsoValueArrayName());
+    colors.Include(surface);
     Picture picture(job.Picture);
     WriteOutput(
       job.Picture.File, picture.Draw(job.Picture.File, surface, particles, colors, messages));

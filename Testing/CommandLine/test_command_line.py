@@ -880,7 +880,7 @@ class Picture(CommandLineTest):
                 self.assertTrue(drawn[0] < 60 or columns[0] < 60, (drawn[0], columns[0]))
 
     def test_colors(self):
-        """--color-by has many colours and a bar; a plain surface has shades of one blue."""
+        """--color-by has many colours and a bar, and so have several iso values; a plain surface has shades of one blue."""
         def hues(rows, columns):
             return {(r > b, g > b, g > r) for row in rows for r, g, b in row[columns] if max(r, g, b) - min(r, g, b) > 60}
         plain = self.picture("s.vtp", *ISO)[2]
@@ -888,6 +888,10 @@ class Picture(CommandLineTest):
         colored = self.picture("s.vtp", "--free-surface", "--color-by", "Velocity")[2]
         self.assertGreater(len(hues(colored, slice(0, 1100))), 2)
         self.assertGreater(len(hues(colored, slice(1130, 1165))), 2)
+        several = self.picture("s.vtp", "--scalar", "Radius", "--iso", "0.15,0.25", "--node-threshold", "0.9",
+                               "--box", "0,9,-9,9,-9,9")[2]  # halves, so that both are seen
+        self.assertGreater(len(hues(several, slice(0, 1100))), 1)
+        self.assertGreater(len(hues(several, slice(1130, 1165))), 2)
 
     def test_slice(self):
         """Seen straight on: yellow is outside, violet inside, white where there is no fluid."""

@@ -484,6 +484,16 @@ class Formats(CommandLineTest):
                     self.assertEqual(found["fluid_particles"], 1000)
                     self.assertEqual(found["triangles"], expected)
 
+    def test_pieces_of_several_types(self):
+        """An array in one piece as float, in another as double, with numbers that both hold."""
+        path, pieces = self.write_pieces("vtp", files.write_vtp)
+        expected = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
+        text = pieces[1].read_text()
+        self.assertIn('"Float64" Name="Radius"', text)
+        pieces[1].write_text(text.replace('"Float64" Name="Radius"', '"Float32" Name="Radius"'))
+        found = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
+        self.assertEqual(found, expected)
+
     def test_damaged_pieces(self):
         path, pieces = self.write_pieces("vtp", files.write_vtp)
         pieces[1].write_text(pieces[1].read_text()[:2000])

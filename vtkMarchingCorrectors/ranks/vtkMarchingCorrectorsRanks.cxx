@@ -202,7 +202,7 @@ void vtkMarchingCorrectors::FinishDistributed(
     input.count = run.Particles;
     this->WarnOf(run.Input, all, input, run.Options);
   }
-  this->Summarize(run.Input.Core, run.Options, surface.statistics);
+  this->Summarize(run.Input, run.Options, surface.statistics);
   vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
   builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);

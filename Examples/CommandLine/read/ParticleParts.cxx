@@ -4,13 +4,19 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkAppendPolyData.h"
+#include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
 
 namespace
 {
@@ -43,15 +49,45 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
   return own;
 }
 
+bool HaveOneType(const std::vector<vtkSmartPointer<vtkPolyData>>& parts, const char* name)
+{
+  vtkDataArray* first = parts.front()->GetPointData()->GetArray(name);
+  return std::all_of(parts.begin(), parts.end(),
+    [&](vtkPolyData* part)
+    {
+      vtkDataArray* array = part->GetPointData()->GetArray(name);
+      return !first || !array || array->GetDataType() == first->GetDataType();
+    });
+}
+
+/// Arrays of one name and several types become doubles: VTK would leave them out.
+void MakeTypesAlike(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
+{
+  vtkPointData* arrays = parts.front()->GetPointData();
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    const std::string name = arrays->GetArrayName(i);
+    for (std::size_t p = 0; p < parts.size() && !HaveOneType(parts, name.c_str()); ++p)
+    {
+      vtkNew<vtkDoubleArray> values;
+      values->DeepCopy(parts[p]->GetPointData()->GetArray(name.c_str()));
+      parts[p]->GetPointData()->AddArray(values);
+    }
+  }
+}
+
 }
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts)
 {
+  std::vector<vtkSmartPointer<vtkPolyData>> own(parts.size());
+  std::transform(parts.begin(), parts.end(), own.begin(), Own);
+  MakeTypesAlike(own);
   vtkNew<vtkAppendPolyData> append;
-  for (const vtkSmartPointer<vtkPointSet>& part : parts)
+  for (const vtkSmartPointer<vtkPolyData>& part : own)
   {
-    append->AddInputData(Own(part));
+    append->AddInputData(part);
   }
   append->Update();
   vtkPolyData* all = append->GetOutput();

@@ -101,6 +101,7 @@ public:
     , Times(job, messages)
     , Surfaces(ListSurfaces(job.Output, this->Times.Get().size()))
     , Colors(job.Picture)
+    , FrameColors(job.Picture)
     , Pieces(job)
     , Numbers(job)
     , ListFile(job.Output)
@@ -263,8 +264,10 @@ private:
     if (this->Drawn)
     {
       const std::string frame = NameOfStep(this->Options.Picture.File, i);
+      this->FrameColors.Suggest(surface, this->Options.Surface->GetIsoValueArrayName());
+      this->FrameColors.Include(surface);
       files.Write(
-        frame, this->Drawn->Draw(frame, surface, particles, this->Colors, this->Messages));
+        frame, this->Drawn->Draw(frame, surface, particles, this->FrameColors, this->Messages));
     }
     files.Commit();
     const std::string lost = LostArrays(file, surface, this->Colors);
@@ -326,7 +329,7 @@ private:
   std::vector<FilmStep> Made;
   std::string Setting; ///< of the last one that went well
   Sentences Said;
-  ColorScale Colors;
+  ColorScale Colors, FrameColors;
   ComponentTable Pieces;
   FilmNumbers Numbers;
   GrowingFile ListFile, PieceFile, NumberFile;

@@ -4,8 +4,10 @@
 
 #include "Job.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkFieldData.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -55,7 +57,7 @@ ColorScale::ColorScale(const PictureOptions& options)
 //------------------------------------------------------------------------------
 void ColorScale::Include(vtkDataSet* data)
 {
-  vtkDataArray* array = this->ArrayOf(data);
+  vtkDataArray* array = this->ArrayOf(data) ? this->ArrayOf(data) : this->CellArrayOf(data);
   if (this->Name.empty() || data->GetNumberOfPoints() == 0)
   {
     return;
@@ -87,6 +89,22 @@ void ColorScale::Include(vtkDataSet* data)
 vtkDataArray* ColorScale::ArrayOf(vtkDataSet* data) const
 {
   return this->Name.empty() ? nullptr : data->GetPointData()->GetArray(this->Name.c_str());
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* ColorScale::CellArrayOf(vtkDataSet* data) const
+{
+  return this->Name.empty() ? nullptr : data->GetCellData()->GetArray(this->Name.c_str());
+}
+
+//------------------------------------------------------------------------------
+void ColorScale::Suggest(vtkDataSet* surface, const std::string& isoValueArray)
+{
+  vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
+  if (this->Name.empty() && values && values->GetNumberOfTuples() > 1)
+  {
+    this->Name = surface->GetCellData()->HasArray("BandValue") ? "BandValue" : isoValueArray;
+  }
 }
 
 //------------------------------------------------------------------------------

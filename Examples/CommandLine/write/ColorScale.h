@@ -13,7 +13,7 @@ class vtkDataArray;
 class vtkDataSet;
 struct PictureOptions;
 
-/// The colours of --color-by: those of a picture's and of a .ply file's points.
+/// The colours of --color-by: those of a picture, and of a .ply file's points.
 class ColorScale
 {
 public:
@@ -23,8 +23,12 @@ public:
   /// of all steps so far. Throws std::runtime_error where it has points and no such array.
   void Include(vtkDataSet* data);
 
-  /// The array of the data set that colours it; nullptr if there is none.
+  /// The array of the data set that colours its points, or its cells; nullptr if there is none.
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
+  vtkDataArray* CellArrayOf(vtkDataSet* data) const;
+
+  /// Where no array was asked for: what tells several iso values of the surface apart, if there are several.
+  void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for
   void SetName(const std::string& name) { this->Name = name; }

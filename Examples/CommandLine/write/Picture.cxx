@@ -14,7 +14,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetMapper.h"
 #include "vtkLightKit.h"
-#include "vtkLookupTable.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkOutlineSource.h"
@@ -249,45 +248,28 @@ public:
     vtkNew<vtkDataSetMapper> mapper;
     mapper->SetInputDataObject(data);
     mapper->SetScalarModeToUsePointFieldData();
-    vtkDataArray* scalars =
-      data->GetPointData()->GetArray("IsoValue"); // of a surface its iso value
-    double range[2] = { 0.0, 0.0 };
-    vtkDataArray* bands = data->GetCellData()->GetArray("BandValue");
-    if (bands && !colors.ArrayOf(data))
+    if (!colors.ArrayOf(data))
     {
-      bands->GetRange(range);
       mapper->SetScalarModeToUseCellFieldData();
-      mapper->SelectColorArray("BandValue");
-      vtkNew<vtkLookupTable> table;
-      table->SetHueRange(0.6, 0.05); // from blue to red
-      table->SetSaturationRange(0.45, 0.65);
-      table->SetTableRange(range);
-      mapper->SetLookupTable(table);
-      mapper->UseLookupTableScalarRangeOn();
     }
-    else if (colors.ArrayOf(data))
+    const bool isColored = colors.ArrayOf(data) || colors.CellArrayOf(data);
+    mapper->SetScalarVisibility(isColored);
+    if (isColored)
     {
       mapper->SelectColorArray(colors.GetName().c_str());
       mapper->SetLookupTable(colors.GetTable());
       mapper->UseLookupTableScalarRangeOn();
     }
-    else if (scalars && scalars->GetNumberOfTuples() > 0 && scalars->GetName())
-    {
-      scalars->GetRange(range); // colours tell several surfaces apart, and one needs none
-      mapper->SelectColorArray(scalars->GetName());
-      mapper->SetScalarRange(range);
-    }
-    mapper->SetScalarVisibility(colors.ArrayOf(data) || range[0] < range[1]);
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.36, 0.60, 0.85);
     actor->GetProperty()->SetLighting(!isFlat);
-    actor->GetProperty()->SetSpecular(colors.ArrayOf(data) ? 0.0 : 0.25);
+    actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.25);
     actor->GetProperty()->SetSpecularPower(30.0);
     actor->GetProperty()->SetLineWidth(3.0);
     actor->GetProperty()->SetPointSize(3.0);
     this->Renderer->AddActor(actor);
-    if (bands)
+    if (data->GetCellData()->HasArray("BandValue"))
     {
       this->ShowBorders(vtkPolyData::SafeDownCast(data));
     }

@@ -74,6 +74,42 @@ class Walls(CommandLineTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual([path.read_bytes() for path in frame], [wanted] * 3)
 
+    def test_walls_of_each_step(self):
+        """Those of the number in the step's name, or that a list has, beside ones that stand still."""
+        steps, wanted = (0, 12), []
+        still = self.write("Still.vtp", lambda kind, point: kind == 1 and point[1] < 0)
+        for step, fluid in zip(steps, ("Fluid_0000.vtp", "Fluid_0012.vtp")):
+            self.write(fluid, lambda kind, point: kind == 0)
+            self.write(f"Paddle_{step}.vtp", lambda kind, point: kind == 1 and point[1] >= (0 if step == 0 else 0.15))
+            options = [word for path in (still, self.directory / f"Paddle_{step}.vtp") for word in ("--walls", path)]
+            wanted.append(self.surface(*HOW, *options, source=self.fluid))
+        self.assertNotEqual(*wanted)
+        films = {name: self.directory / f"{name}.pvd" for name in ("fluid", "paddle", "late")}
+        for name, path in films.items():
+            files.write_pvd(path, [(0.5 * i + (name == "late"), f"Fluid_{step:04d}.vtp" if name == "fluid" else
+                                           f"Paddle_{step}.vtp") for i, step in enumerate(steps)])
+        fluids = [self.directory / f"Fluid_{step:04d}.vtp" for step in steps]
+        numbered = self.directory / "Paddle_%d.vtp"
+        frames = [self.directory / f"surface_{i:04d}.vtp" for i in range(2)]
+        film = self.directory / "surface_%04d.vtp"
+        for inputs, walls in ((fluids, numbered), (fluids, films["late"]), ([films["fluid"]], numbered),
+                              ([films["fluid"]], films["paddle"])):
+            done = self.run_program(*inputs, film, *HOW, "--walls", still, "--walls", walls)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual([path.read_bytes() for path in frames], wanted)
+        for path in (self.output, *frames):
+            path.unlink()
+        cases = ((1, "late.pvd has no walls at the time of .*Fluid_0000", [films["fluid"], film], films["late"]),
+                 (1, "paddle.pvd lists 2 times, and there are 1 steps", [self.fluid, film], films["paddle"]),
+                 (1, "wants the number of each step, and the name .*none", [self.write("Fluid.vtp", lambda kind, point: True), film],
+                  numbered),
+                 (1, "Paddle_3.vtp cannot be read", [self.fluid, film], numbered),
+                 (2, "0.25 is between two steps, where walls", [films["fluid"], film, "--times", "0,0.25"], numbered),
+                 (2, "Paddle_0.vtp would overwrite the input", [*fluids, self.directory / "Paddle_%d.vtp"], films["paddle"]),
+                 (2, "has walls of each step", [self.fluid, self.output], numbered))
+        for status, sentence, places, walls in cases:
+            self.refuse(self.run_program(*places, *HOW, "--walls", walls), status, sentence)
+
     def test_slice_and_gauge(self):
         for name, options in (("surface.vti", ["--slice", "z=0.01", "--resolution", "40"]),
                               ("surface.csv", ["--gauge", "a=0.31,0,-1:0.31,0,1"])):

@@ -77,8 +77,8 @@ void CheckNumbers(const Job& job)
     throw UsageError("--numbers writes the table of a film, which is a .pvd file or has %04d in "
                      "its name; for one surface use --stats");
   }
-  Exclude(
-    "a film cannot have an image of levels; leave out ", { { job.Grid.Counts[0] > 0, "--gauge-grid" } });
+  Exclude("a film cannot have an image of levels; leave out ",
+    { { job.Grid.Counts[0] > 0, "--gauge-grid" } });
 }
 
 void CheckComponents(const Job& job)
@@ -199,6 +199,14 @@ void Check(const Job& job)
   {
     CheckGauge(job);
     return;
+  }
+  for (const std::string& walls : job.Walls)
+  {
+    if (!job.IsFilm() && (IsCollectionFile(walls) || HasStepNumber(walls)))
+    {
+      throw UsageError(
+        "--walls " + walls + " has walls of each step, of a film or gauges; give one file");
+    }
   }
   CheckPicture(job);
   Exclude("without --slice or --line there is no resolution; leave out ",

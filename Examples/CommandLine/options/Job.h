@@ -63,7 +63,8 @@ struct Job
   bool IsFilm() const;
 
   std::vector<std::string> Inputs;
-  std::vector<std::string> Walls; ///< files whose particles are walls, at all times
+  std::vector<std::string>
+    Walls; ///< files whose particles are walls, at all times; or of each step: .pvd, %04d
   std::string Output;
   std::vector<double> Times; ///< of a film or gauges, ascending; empty: all that are stored
   double TimeStep = 1.0;     ///< between the steps of a film of particle files

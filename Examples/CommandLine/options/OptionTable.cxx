@@ -214,7 +214,9 @@ const Options TheParticles = {
   { "--fluid", "NAME=VALUE",
     "particles with this value of this array are fluid, all others are solid", SetFluid },
   { "--walls", "FILE",
-    "the particles of this file are walls, in addition to INPUT; may be given more than once",
+    "the particles of this file are walls, in addition to INPUT; may be given more than once; a "
+    ".pvd "
+    "file, or %04d in its name, gives each step its own",
     [](Job& j, Text, Text v) { j.Walls.push_back(v); }, true },
   { "--solids", "auto|weight|ignore|wall",
     "solids only add to the weight used for trimming, are ignored, or end the surface; auto "

@@ -13,12 +13,13 @@ namespace
 {
 
 /// A step that is stored as that of a single surface; between two, it is the first process's.
-vtkSmartPointer<vtkPointSet> ReadStep(const Job& job, RankSession& session,
-  MessageCapture* messages, ParticleTimes& times, double time, std::vector<std::string>& warnings)
+vtkSmartPointer<vtkPointSet> ReadStep(RankSession& session, MessageCapture* messages,
+  ParticleTimes& times, double time, std::vector<std::string>& warnings)
 {
   if (times.IsStored(time))
   {
-    return ReadParticlesDistributed(session, times.ListFiles(time), job.Walls, messages);
+    return ReadParticlesDistributed(
+      session, times.ListFiles(time), times.ListWalls(time), messages);
   }
   return ShareParticles(session, [&] { return times.At(time, warnings); });
 }
@@ -35,7 +36,7 @@ StepSharing ShareSteps(Job& job, RankSession& session, MessageCapture* messages)
                    ParticleTimes& times, double time, std::vector<std::string>& warnings)
   {
     const vtkSmartPointer<vtkPointSet> particles =
-      ReadStep(job, session, messages, times, time, warnings);
+      ReadStep(session, messages, times, time, warnings);
     job.Periodic = periodic; // of each step anew
     job.DetectPeriod = detect;
     ResolvePeriod(job, session, particles);

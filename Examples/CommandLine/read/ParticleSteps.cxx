@@ -5,6 +5,7 @@
 #include "CollectionFile.h"
 #include "Job.h"
 #include "ParticleFile.h"
+#include "StepName.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -19,6 +20,71 @@
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 vtkStandardNewMacro(ParticleSteps);
+
+namespace
+{
+
+using Steps = std::vector<ParticleSteps::Step>;
+
+/// Those of a .pvd file.
+Steps ListedSteps(const std::string& file, MessageCapture* messages)
+{
+  Steps steps;
+  for (const CollectionEntry& entry : ReadCollection(file, messages))
+  {
+    if (steps.empty() || steps.back().Time != entry.Time)
+    {
+      steps.push_back({ entry.Time, {}, {} });
+    }
+    steps.back().Files.push_back(entry.File);
+  }
+  return steps;
+}
+
+/// The walls that a .pvd file lists: those of each step's time, or, where steps are in a list without times, in its order.
+void AddListedWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages)
+{
+  const Steps walls = ListedSteps(file, messages);
+  if (!haveTimes && walls.size() != steps.size())
+  {
+    throw std::runtime_error("--walls: " + file + " lists " + std::to_string(walls.size()) +
+      " times, and there are " + std::to_string(steps.size()) + " steps");
+  }
+  auto next = walls.begin();
+  for (ParticleSteps::Step& step : steps)
+  {
+    next = haveTimes ? FindStep(walls, step.Time) : next;
+    if (next == walls.end() || (haveTimes && next->Time != step.Time))
+    {
+      throw std::runtime_error(
+        "--walls: " + file + " has no walls at the time of " + step.Files.front());
+    }
+    step.Walls.insert(step.Walls.end(), next->Files.begin(), next->Files.end());
+    ++next;
+  }
+}
+
+/// One --walls: a file of all steps, of each by its number, or a list.
+void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages)
+{
+  if (IsCollectionFile(file))
+  {
+    AddListedWalls(file, haveTimes, steps, messages);
+    return;
+  }
+  for (ParticleSteps::Step& step : steps)
+  {
+    std::size_t number = 0;
+    if (HasStepNumber(file) && !FindStepNumber(step.Files.front(), number))
+    {
+      throw std::runtime_error("--walls " + file + " wants the number of each step, and the name " +
+        step.Files.front() + " has none");
+    }
+    step.Walls.push_back(HasStepNumber(file) ? NameOfStep(file, number) : file);
+  }
+}
+
+}
 
 //------------------------------------------------------------------------------
 ParticleSteps::ParticleSteps()
@@ -88,22 +154,15 @@ std::vector<ParticleSteps::Step>::const_iterator FindStep(
 //------------------------------------------------------------------------------
 std::vector<ParticleSteps::Step> ListSteps(const Job& job, MessageCapture* messages)
 {
-  std::vector<ParticleSteps::Step> steps;
-  if (!IsCollectionFile(job.Inputs.front()))
+  const bool haveTimes = IsCollectionFile(job.Inputs.front());
+  Steps steps = haveTimes ? ListedSteps(job.Inputs.front(), messages) : Steps();
+  for (std::size_t i = 0; !haveTimes && i < job.Inputs.size(); ++i)
   {
-    for (const std::string& input : job.Inputs)
-    {
-      steps.push_back({ static_cast<double>(steps.size()) * job.TimeStep, { input } });
-    }
-    return steps;
+    steps.push_back({ static_cast<double>(i) * job.TimeStep, { job.Inputs[i] }, {} });
   }
-  for (const CollectionEntry& entry : ReadCollection(job.Inputs.front(), messages))
+  for (const std::string& walls : job.Walls)
   {
-    if (steps.empty() || steps.back().Time != entry.Time)
-    {
-      steps.push_back({ entry.Time, {} });
-    }
-    steps.back().Files.push_back(entry.File);
+    AddStepWalls(walls, haveTimes, steps, messages);
   }
   return steps;
 }

@@ -19,6 +19,7 @@ public:
   {
     double Time;
     std::vector<std::string> Files; ///< parts of one set of particles
+    std::vector<std::string> Walls; ///< likewise, of walls beside these
   };
 
   static ParticleSteps* New();

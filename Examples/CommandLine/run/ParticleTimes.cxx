@@ -62,8 +62,17 @@ ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
   : Messages(messages)
   , Stored(ListSteps(job, messages))
   , Times(ListTimes(job, this->Stored))
-  , WallFiles(job.Walls)
 {
+  const bool wallsMove = std::any_of(this->Stored.begin(), this->Stored.end(),
+    [this](const ParticleSteps::Step& step) { return step.Walls != this->Stored.front().Walls; });
+  for (double time : this->Times)
+  {
+    if (wallsMove && !this->IsStored(time))
+    {
+      throw UsageError("--times: " + TimeText(time) +
+        " is between two steps, where walls of each step (--walls) are not known");
+    }
+  }
   this->Reset();
 }
 
@@ -76,8 +85,15 @@ std::vector<std::string> ParticleTimes::ListFiles() const
   for (const ParticleSteps::Step& step : this->Stored)
   {
     files.insert(files.end(), step.Files.begin(), step.Files.end());
+    files.insert(files.end(), step.Walls.begin(), step.Walls.end());
   }
   return files;
+}
+
+//------------------------------------------------------------------------------
+const std::vector<std::string>& ParticleTimes::ListWalls(double time) const
+{
+  return FindStep(this->Stored, time)->Walls;
 }
 
 //------------------------------------------------------------------------------
@@ -124,6 +140,10 @@ vtkSmartPointer<vtkPointSet> ParticleTimes::At(double time, std::vector<std::str
   warnings = this->Messages->GetWarnings();
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->ShallowCopy(this->Interpolator->GetOutput());
-  this->Walls = this->Walls ? this->Walls : ReadWalls(this->WallFiles, this->Messages);
+  if (this->WallFiles != this->ListWalls(time))
+  {
+    this->Walls = ReadWalls(this->ListWalls(time), this->Messages);
+    this->WallFiles = this->ListWalls(time);
+  }
   return AddWalls(particles, this->Walls);
 }

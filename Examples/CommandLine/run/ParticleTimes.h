@@ -39,8 +39,11 @@ public:
   /// All that are read.
   std::vector<std::string> ListFiles() const;
 
-  /// Those that a time is made of.
+  /// Those that a time is made of, without walls.
   std::vector<std::string> ListFiles(double time) const;
+
+  /// The walls of a time that is stored, or of all times.
+  const std::vector<std::string>& ListWalls(double time) const;
 
   /// Throws std::runtime_error; Reset() then, so that nothing is left of what failed halfway.
   vtkSmartPointer<vtkPointSet> At(double time, std::vector<std::string>& warnings);
@@ -50,8 +53,9 @@ private:
   MessageCapture* const Messages;
   const Steps Stored;
   const std::vector<double> Times;
-  const std::vector<std::string> WallFiles;
-  vtkSmartPointer<vtkPointSet> Walls; ///< read once
+  vtkSmartPointer<vtkPointSet> Walls;
+  std::vector<std::string>
+    WallFiles; ///< that Walls were read from: once where all steps have the same
   vtkSmartPointer<ParticleSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };

@@ -10,7 +10,7 @@
  * All leaves where there may be surface have their nodes evaluated, as for complete seeds; others have no
  * cell that could be used. */
 
-#include "mcor_adaptive_pair.h"
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
 #include "mcor_plane.h"

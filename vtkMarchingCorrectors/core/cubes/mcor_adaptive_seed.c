@@ -6,8 +6,7 @@
  * their values do. A leaf is left out where it and the leaves up from it agree. Particles are gathered for
  * all parts of a brick at once. */
 
-#include "mcor_adaptive_seed.h"
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
@@ -94,7 +93,7 @@ static mcor_status mcor_find_finer(mcor_context* context)
 {
   mcor_tree* tree = &context->tree;
   tree->finer = malloc(((size_t)tree->leaf_count + 1) * sizeof *tree->finer);
-  MCOR_RETURN_IF(!tree->finer, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, tree->finer));
   for (mcor_finer_job job = { tree, 0 }; job.begin < tree->region_count;
        job.begin += MCOR_FINER_STEP)
   {
@@ -240,7 +239,7 @@ static mcor_status mcor_list_examined(mcor_context* context)
   mcor_adaptive* adaptive = &context->adaptive;
   const size_t n = (size_t)tree->leaf_count;
   uint8_t* chosen = malloc(n + 1);
-  MCOR_RETURN_IF(!chosen, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, chosen));
   mcor_status status = mcor_read(context, &adaptive->chosen, 0, chosen, n);
   size_t count = 0, evaluated = 0;
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
@@ -253,7 +252,8 @@ static mcor_status mcor_list_examined(mcor_context* context)
   cl_uint* finer = malloc((count + 1) * sizeof *finer);
   adaptive->count = (int)count;
   adaptive->evaluated = MCOR_BRICK_NODES * (int)evaluated;
-  if (status == MCOR_OK && examined && cells && finer)
+  status = status == MCOR_OK ? mcor_allocated(context, examined && cells && finer) : status;
+  if (status == MCOR_OK)
   {
     size_t to = 0;
     memset(adaptive->first_leaf, 0, sizeof adaptive->first_leaf);
@@ -273,10 +273,6 @@ static mcor_status mcor_list_examined(mcor_context* context)
         adaptive->first_leaf[l + 1] > first ? adaptive->first_leaf[l + 1] : first;
     }
     status = mcor_write_examined(context, examined, cells, finer);
-  }
-  else if (status == MCOR_OK)
-  {
-    status = mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
   }
   free(chosen);
   free(examined);

@@ -3,7 +3,7 @@
 
 /* Extraction [III-D.1]. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
 #include "mcor_plane.h"

@@ -9,7 +9,6 @@
 #include "mcor_pool.h"
 #include "mcor_system.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

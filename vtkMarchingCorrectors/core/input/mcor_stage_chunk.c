@@ -5,7 +5,7 @@
 
 #include "mcor_stage_chunk.h"
 #include "mcor_plane.h"
-#include "mcor_tree_brick.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>

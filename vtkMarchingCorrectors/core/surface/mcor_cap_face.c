@@ -265,9 +265,7 @@ static mcor_status mcor_fill_cap_nodes(
   const size_t room = MCOR_CAP_BATCH + MCOR_CAP_TILE * MCOR_CAP_TILE;
   cl_int* nodes = malloc(room * 4 * sizeof *nodes);
   int64_t* to = malloc(room * sizeof *to);
-  mcor_status status = nodes && to
-    ? MCOR_OK
-    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
+  mcor_status status = mcor_allocated(context, nodes && to);
   int count = 0;
   for (int t = 1; t <= face->tile_count && status == MCOR_OK; ++t)
   {

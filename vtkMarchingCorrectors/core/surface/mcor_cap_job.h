@@ -7,7 +7,7 @@
  * (mcor_cap_mesh.c). */
 
 #include "mcor_cap.h"
-#include "mcor_cap_map.h"
+#include "mcor_table.h"
 
 #include <math.h>
 
@@ -44,8 +44,8 @@ typedef struct mcor_cap_job
   mcor_context* context;
   int old_count; /* vertices of the mesh */
   /* The surface's vertices, by lower node and axis of their edge; of a pinched one the first. */
-  mcor_cap_map edges[3];
-  mcor_cap_map nodes, cuts;
+  mcor_table edges[3];
+  mcor_table nodes, cuts;
   mcor_cap_vertex* vertices;
   int64_t vertex_count, vertex_room;
   cl_int* triangles;
@@ -86,10 +86,7 @@ static inline void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[
 /* mcor_cap_place.c. Moves the cuts of caps at walls to where solids have their share. */
 mcor_status mcor_place_wall_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points);
 
-/* mcor_cap_mesh.c */
-mcor_status mcor_no_cap_memory(mcor_context* context);
-
-/* Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
+/* mcor_cap_mesh.c. Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
 mcor_status mcor_append_caps(mcor_cap_job* job, double iso);
 
 #endif

@@ -20,7 +20,7 @@ typedef struct mcor_wall_brick
 
 typedef struct mcor_wall
 {
-  mcor_cap_map index; /* numbers of bricks */
+  mcor_table index; /* numbers of bricks */
   mcor_wall_brick* bricks;
   int64_t count, room;
   int first[3], end[3]; /* nodes: of the box, the ring around it, and what is beside */

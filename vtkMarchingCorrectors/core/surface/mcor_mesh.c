@@ -3,7 +3,7 @@
 
 /* The mesh of one iso value: its vertices on lattice edges, of cubes of one size or several. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 
 mcor_status mcor_emit_vertices(mcor_context* context, double iso)
 {

@@ -19,8 +19,6 @@
 #include "vtkSPHRanks.h"
 #endif
 
-#include <algorithm>
-#include <limits>
 #include <vector>
 
 //------------------------------------------------------------------------------

@@ -272,7 +272,6 @@ vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
 
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken)
 {
@@ -311,7 +310,6 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   return particles;
 }
 
-//------------------------------------------------------------------------------
 // In the order in which they are, and what was made of some of them last: so they are found again.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHParticles& used)
 {
@@ -346,7 +344,6 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHPartic
   return kept;
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
   const std::vector<std::vector<vtkIdType>>& to, std::vector<vtkIdType>* from)
 {
@@ -363,7 +360,6 @@ vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData
   return near;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType count,
   const std::vector<std::vector<vtkIdType>>& back, const std::vector<std::vector<vtkIdType>>& home,
   vtkIdType homeCount, vtkPointData* to)
@@ -397,7 +393,6 @@ void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType cou
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
 {
   const Layout common = AgreeOnLayout(ranks, Describe(result));

@@ -156,7 +156,6 @@ void WaitForSignal()
 
 }
 
-//------------------------------------------------------------------------------
 void PrepareForEnding()
 {
   ClearsLine = isatty(STDERR_FILENO);
@@ -176,7 +175,6 @@ void PrepareForEnding()
   std::thread(WaitForSignal).detach();
 }
 
-//------------------------------------------------------------------------------
 int Finish(int status)
 {
   FinalStatus = status;
@@ -184,7 +182,6 @@ int Finish(int status)
   return status;
 }
 
-//------------------------------------------------------------------------------
 std::string FaultsOfDrivers(const std::string& device)
 {
   const auto variable = [](const char* name) -> std::string
@@ -205,7 +202,6 @@ std::string FaultsOfDrivers(const std::string& device)
     ", or memory ran out";
 }
 
-//------------------------------------------------------------------------------
 Activity::Activity(const std::string& failure, const std::string& hint)
   : OuterFailure(Failure)
   , OuterHint(Hint)
@@ -214,14 +210,12 @@ Activity::Activity(const std::string& failure, const std::string& hint)
   Set(Hint, hint);
 }
 
-//------------------------------------------------------------------------------
 Activity::~Activity()
 {
   Set(Failure, this->OuterFailure);
   Set(Hint, this->OuterHint);
 }
 
-//------------------------------------------------------------------------------
 Silence::Silence()
 {
   std::fflush(stderr);
@@ -235,7 +229,6 @@ Silence::Silence()
   close(nowhere);
 }
 
-//------------------------------------------------------------------------------
 Silence::~Silence()
 {
   std::fflush(stderr);
@@ -248,7 +241,6 @@ Silence::~Silence()
   }
 }
 
-//------------------------------------------------------------------------------
 TemporaryFile::TemporaryFile(const std::string& begin)
   : Name(begin + "XXXXXX")
 {
@@ -264,7 +256,6 @@ TemporaryFile::TemporaryFile(const std::string& begin)
   }
 }
 
-//------------------------------------------------------------------------------
 TemporaryFile::~TemporaryFile()
 {
   this->Close();
@@ -276,7 +267,6 @@ TemporaryFile::~TemporaryFile()
   }
 }
 
-//------------------------------------------------------------------------------
 bool TemporaryFile::Close()
 {
   const int descriptor = this->Descriptor;
@@ -284,7 +274,6 @@ bool TemporaryFile::Close()
   return descriptor < 0 || close(descriptor) == 0;
 }
 
-//------------------------------------------------------------------------------
 bool TemporaryFile::TakePlaceOf(const std::string& file)
 {
   if (std::rename(this->Name.c_str(), file.c_str()) != 0) // not under the lock: it may hang

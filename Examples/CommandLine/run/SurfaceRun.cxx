@@ -187,7 +187,6 @@ void PrintProgress(vtkObject* caller, unsigned long, void* data, void*)
 
 }
 
-//------------------------------------------------------------------------------
 std::string WithOptions(const Job& job, const std::string& sentence)
 {
   const bool hasTimes = !job.Inputs.empty() && IsCollectionFile(job.Inputs.front());
@@ -209,13 +208,11 @@ std::string WithOptions(const Job& job, const std::string& sentence)
   return result;
 }
 
-//------------------------------------------------------------------------------
 bool ShowsProgress(const Job& job)
 {
   return !job.Quiet && isatty(STDERR_FILENO);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
@@ -225,7 +222,6 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   return particles;
 }
 
-//------------------------------------------------------------------------------
 void SetUpSurface(const Job& job, vtkPointSet* input)
 {
   vtkSmartPointer<vtkPointSet> particles = SetUpParticles(job.Surface, job, input);
@@ -235,7 +231,6 @@ void SetUpSurface(const Job& job, vtkPointSet* input)
   job.Surface->SetInputData(bare);
 }
 
-//------------------------------------------------------------------------------
 double Update(
   vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages, const std::string& before)
 {
@@ -267,7 +262,6 @@ double Update(
   return elapsed.count();
 }
 
-//------------------------------------------------------------------------------
 Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
 {
   vtkMarchingCorrectors* filter = job.Surface;
@@ -281,7 +275,6 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
   return run;
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
 {
   std::vector<std::string> all = messages->GetWarnings();
@@ -298,7 +291,6 @@ std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
   return all;
 }
 
-//------------------------------------------------------------------------------
 void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings)
 {
   const std::string hint = job.Periodic.empty() && !job.DetectPeriod ? HintOfPeriod(particles) : "";

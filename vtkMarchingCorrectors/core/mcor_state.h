@@ -154,7 +154,7 @@ typedef struct mcor_adaptive
   mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
 } mcor_adaptive;
 
-/* Of adaptive cubes, which cells pairs reach; see mcor_adaptive_pair.c. Masks are of the leaves where there
+/* Of adaptive cubes, which cells pairs reach; see mcor_pair.c. Masks are of the leaves where there
  * may be surface. */
 typedef struct mcor_adaptive_pairs
 {

@@ -79,7 +79,7 @@ mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* f
 /* mcor_topology.c. Decides, and counts the triangles of each leaf anew. */
 mcor_status mcor_resolve_leaves(mcor_context* context, double iso);
 
-/* mcor_adaptive_pair.c. Leaves the cells that pairs reach [III-C], of those in mesh.used;
+/* mcor_pair.c. Leaves the cells that pairs reach [III-C], of those in mesh.used;
  * adaptive_pairs.seeds: those that pairs mark. */
 mcor_status mcor_keep_reached(mcor_context* context, double iso);
 void mcor_release_adaptive_pairs(mcor_context* context);

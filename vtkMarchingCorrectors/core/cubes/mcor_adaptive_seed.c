@@ -135,35 +135,26 @@ mcor_status mcor_write_tree(mcor_context* context)
 
 /* ---- States ---- */
 
-static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
+/* Leaf by leaf, or in the plane by region. */
+static mcor_status mcor_find_states(mcor_context* context, double iso)
 {
   const mcor_tree* tree = &context->tree;
   mcor_adaptive* adaptive = &context->adaptive;
+  const bool plane = mcor_is_plane(context);
+  const int* begin = plane ? tree->first_region : tree->first_leaf;
   for (int l = 0; l <= tree->top; ++l)
   {
-    const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
+    const int first = begin[l], count = begin[l + 1] - first;
     MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_states", MCOR_HEAVY, count,
-      MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&adaptive->leaves),
-      MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso),
-      MCOR_BUFFER(&adaptive->states)));
-  }
-  return mcor_view_level(context, 0);
-}
-
-/* The same in the plane. */
-static mcor_status mcor_find_plane_states(mcor_context* context, double iso)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_adaptive* adaptive = &context->adaptive;
-  for (int l = 0; l <= tree->top; ++l)
-  {
-    const int first = tree->first_region[l], count = tree->first_region[l + 1] - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_plane_regions", MCOR_HEAVY, count,
-      MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&adaptive->regions),
-      MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->leaf_finer),
-      MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&adaptive->states)));
+    MCOR_TRY(plane ? MCOR_LAUNCH(context, "mcor_adaptive_plane_regions", MCOR_HEAVY, count,
+                       MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
+                       MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
+                       MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso),
+                       MCOR_BUFFER(&adaptive->states))
+                   : MCOR_LAUNCH(context, "mcor_adaptive_states", MCOR_HEAVY, count,
+                       MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
+                       MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->leaf_finer),
+                       MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&adaptive->states)));
   }
   return mcor_view_level(context, 0);
 }
@@ -293,9 +284,9 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
     MCOR_TRY(mcor_reserve(context, &found->value, values));
     MCOR_TRY(mcor_reserve(context, &found->weight, values));
   }
-  MCOR_TRY(mcor_is_plane(context) ? mcor_find_plane_states(context, iso)
-      : context->cl.lanes > 1     ? mcor_find_region_states(context, iso, found)
-                                  : mcor_find_leaf_states(context, iso));
+  MCOR_TRY(context->cl.lanes == 1 || mcor_is_plane(context)
+      ? mcor_find_states(context, iso)
+      : mcor_find_region_states(context, iso, found));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_choose", MCOR_MEDIUM, tree->region_count,
     MCOR_REGION_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->leaf_finer),
     MCOR_BUFFER(&adaptive->states), MCOR_BUFFER(&adaptive->chosen)));

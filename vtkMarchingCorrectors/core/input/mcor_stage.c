@@ -4,9 +4,9 @@
 /* Particles from the caller's arrays to the device, in input order: those that are needed, and in a periodic
  * box their images. */
 
+#include "mcor_stage.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
-#include "mcor_stage_chunk.h"
 
 #include <math.h>
 #include <stdlib.h>

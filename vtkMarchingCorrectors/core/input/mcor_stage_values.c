@@ -4,7 +4,7 @@
 /* Values of particles, from the caller's arrays to the device: by the order of the search grid. */
 
 #include "mcor_parallel.h"
-#include "mcor_stage_chunk.h"
+#include "mcor_stage.h"
 
 #include <math.h>
 

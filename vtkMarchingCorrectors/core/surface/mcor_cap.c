@@ -13,7 +13,7 @@
  * that they have in the whole. */
 
 #include "mcor_box.h"
-#include "mcor_cap_wall.h"
+#include "mcor_cap_job.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
  * share of the weight is too great. Where marching has evaluated them its answer is taken. */
 
 #include "mcor_box.h"
-#include "mcor_cap_wall.h"
+#include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -159,15 +159,16 @@ static mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall)
 
 /* ---- what marching knows ------------------------------------------------------------------------ */
 
-/* views: bricks, known, above, used, decisions. */
 static void mcor_take_wall_masks(
-  const mcor_context* context, void* const views[5], const mcor_wall* wall)
+  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
 {
-  const cl_ulong *known = views[1], *above = views[2], *used = views[3], *decisions = views[4];
+  const mcor_wall* wall = data;
+  const cl_int* bricks = views[MCOR_VIEW_BRICKS];
+  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
+                 *used = views[MCOR_VIEW_USED], *decisions = views[MCOR_VIEW_DECISIONS];
   for (int slot = 0; slot < context->bricks.now.count; ++slot)
   {
-    const int32_t number =
-      mcor_find_number(&wall->index, mcor_wall_key((const cl_int*)views[0] + 4 * (size_t)slot));
+    const int32_t number = mcor_find_number(&wall->index, mcor_wall_key(bricks + 4 * (size_t)slot));
     if (number >= 0)
     {
       mcor_wall_brick* brick = &wall->bricks[number];
@@ -180,24 +181,6 @@ static void mcor_take_wall_masks(
       }
     }
   }
-}
-
-static mcor_status mcor_take_wall_bricks(mcor_context* context, const mcor_wall* wall)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
-  const int count = n == 0 ? 0 : context->run.options->topology == MCOR_TOPOLOGY_FIELD ? 5 : 4;
-  void* views[5] = { NULL };
-  const mcor_mapping mappings[5] = { { &now->bricks, 4 * n * sizeof(cl_int), &views[0] },
-    { &now->known, mask, &views[1] }, { &now->above, mask, &views[2] },
-    { &context->mesh.used, mask, &views[3] },
-    { &context->topology.decisions, MCOR_DECISION_MASKS * mask, &views[4] } };
-  const mcor_status status = mcor_map_all(context, mappings, count);
-  if (status == MCOR_OK && count > 0)
-  {
-    mcor_take_wall_masks(context, views, wall);
-  }
-  return mcor_unmap_all(context, mappings, count, status);
 }
 
 /* ---- what it does not know ---------------------------------------------------------------------- */
@@ -241,7 +224,7 @@ mcor_status mcor_load_wall(
 {
   mcor_set_wall_extent(context, wall);
   MCOR_TRY(mcor_find_wall(context, wall));
-  MCOR_TRY(mcor_take_wall_bricks(context, wall));
+  MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
   const size_t room = (size_t)MCOR_WALL_BATCH * MCOR_BRICK_NODES;
   cl_int* nodes = malloc(4 * room * sizeof *nodes);
   int64_t* to = malloc(room * sizeof *to);

@@ -9,8 +9,8 @@
  *
  * Squares of caps are numbered as cells are, after all squares of sides. */
 
-#include "mcor_cap_wall.h"
 #include "mcor_box.h"
+#include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>

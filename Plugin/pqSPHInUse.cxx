@@ -105,7 +105,6 @@ vtkSmartPointer<vtkSMProxy> makeTwin(vtkSMProxy* filter)
 }
 }
 
-//------------------------------------------------------------------------------
 pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent)
   : pqPropertyWidget(proxy, parent)
 {
@@ -173,7 +172,6 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
   QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel is there
 }
 
-//------------------------------------------------------------------------------
 void pqSPHInUse::beginNew()
 {
   if (isNew(this->proxy()))
@@ -183,7 +181,6 @@ void pqSPHInUse::beginNew()
   }
 }
 
-//------------------------------------------------------------------------------
 void pqSPHInUse::showValues()
 {
   this->Pause.stop();
@@ -191,7 +188,6 @@ void pqSPHInUse::showValues()
   this->showRows();
 }
 
-//------------------------------------------------------------------------------
 // The range is the domain of the list of iso values, which shows it and follows it.
 void pqSPHInUse::lookAhead()
 {
@@ -210,7 +206,6 @@ void pqSPHInUse::lookAhead()
   this->showRows();
 }
 
-//------------------------------------------------------------------------------
 // A new filter's panel begins with an array and an iso value, which then follows the array until the user has
 // another one. What is loaded, or made by a script, stays as it is.
 void pqSPHInUse::begin()
@@ -235,7 +230,6 @@ void pqSPHInUse::begin()
   }
 }
 
-//------------------------------------------------------------------------------
 // The panel's other widgets come before.
 void pqSPHInUse::apply()
 {
@@ -243,7 +237,6 @@ void pqSPHInUse::apply()
   this->Superclass::apply();
 }
 
-//------------------------------------------------------------------------------
 // An empty row of the list of iso values would count as 0.
 void pqSPHInUse::dropEmptyRows()
 {
@@ -271,7 +264,6 @@ void pqSPHInUse::dropEmptyRows()
   }
 }
 
-//------------------------------------------------------------------------------
 void pqSPHInUse::showRows()
 {
   for (const auto& row : this->Rows)

@@ -291,49 +291,7 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
 }
 
 //------------------------------------------------------------------------------
-double* vtkMarchingCorrectors::GetNextScalarRange()
-{
-  this->LookAhead();
-  return this->NextScalarRange;
-}
-
-//------------------------------------------------------------------------------
-double vtkMarchingCorrectors::GetNextIsoValue()
-{
-  this->LookAhead();
-  return this->NextIsoValue;
-}
-
-//------------------------------------------------------------------------------
-int vtkMarchingCorrectors::GetNextComponents()
-{
-  this->LookAhead();
-  return this->NextComponents;
-}
-
-//------------------------------------------------------------------------------
-const char* vtkMarchingCorrectors::GetNextFluid()
-{
-  this->LookAhead();
-  return this->NextFluid.c_str();
-}
-
-//------------------------------------------------------------------------------
-const char* vtkMarchingCorrectors::GetNextArray()
-{
-  this->LookAhead();
-  return this->NextArray.c_str();
-}
-
-//------------------------------------------------------------------------------
-double vtkMarchingCorrectors::GetNextCells()
-{
-  this->LookAhead();
-  return this->NextCells;
-}
-
-//------------------------------------------------------------------------------
-void vtkMarchingCorrectors::LookAhead()
+vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
 {
   if (this->IsShared())
   {
@@ -343,13 +301,13 @@ void vtkMarchingCorrectors::LookAhead()
     this->NextComponents = 0;
     this->NextArray.clear();
     this->NextCells = this->EstimatedCells;
-    return;
+    return *this;
   }
   vtkDataObject* data =
     this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
   if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
   {
-    return;
+    return *this;
   }
   const double none = std::numeric_limits<double>::infinity();
   mcor_options options;
@@ -373,6 +331,7 @@ void vtkMarchingCorrectors::LookAhead()
     std::fill_n(this->NextScalarRange, 2, 0.0);
   }
   this->LookTime.Modified();
+  return *this;
 }
 
 //------------------------------------------------------------------------------

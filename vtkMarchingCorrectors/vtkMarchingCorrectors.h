@@ -557,12 +557,12 @@ public:
    * 0, 0, or empty: not known, without particles or a scalar. If processes share a run, these are those of
    * the last update, because one process cannot ask the others without waiting for them.
    */
-  double* GetNextScalarRange() VTK_SIZEHINT(2);
-  double GetNextIsoValue();
-  int GetNextComponents();
-  double GetNextCells();
-  const char* GetNextFluid();
-  const char* GetNextArray();
+  double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().NextScalarRange; }
+  double GetNextIsoValue() { return this->LookAhead().NextIsoValue; }
+  int GetNextComponents() { return this->LookAhead().NextComponents; }
+  double GetNextCells() { return this->LookAhead().NextCells; }
+  const char* GetNextFluid() { return this->LookAhead().NextFluid.c_str(); }
+  const char* GetNextArray() { return this->LookAhead().NextArray.c_str(); }
   ///@}
 
 protected:
@@ -643,7 +643,7 @@ private:
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);
   void ClearSummary();
-  void LookAhead();
+  vtkMarchingCorrectors& LookAhead();
   void LookAhead(vtkPointSet* particles, const mcor_options& options);
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,

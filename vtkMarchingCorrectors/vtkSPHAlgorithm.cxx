@@ -34,7 +34,6 @@ static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLI
     static_cast<int>(vtkSPHAlgorithm::SINC_6) + 1 == MCOR_SPH_KERNEL_COUNT,
   "the filter's numbers are the core's");
 
-//------------------------------------------------------------------------------
 // The context is created by the first run: constructing the filter must not touch OpenCL.
 vtkSPHAlgorithm::vtkSPHAlgorithm()
   : RunStatistics(vtkSmartPointer<vtkFieldData>::New())
@@ -48,10 +47,8 @@ vtkSPHAlgorithm::~vtkSPHAlgorithm()
   this->SetController(nullptr);
 }
 
-//------------------------------------------------------------------------------
 vtkCxxSetObjectMacro(vtkSPHAlgorithm, Controller, vtkMultiProcessController);
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::SetKernelByName(const char* name)
 {
   const int kernel = name ? mcor_find_sph_kernel(name) : -1;
@@ -62,33 +59,28 @@ bool vtkSPHAlgorithm::SetKernelByName(const char* name)
   return kernel >= 0;
 }
 
-//------------------------------------------------------------------------------
 const char* vtkSPHAlgorithm::GetKernelName(int kernel)
 {
   return mcor_sph_kernel_name(static_cast<mcor_sph_kernel>(kernel));
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::AddExcludedArray(const std::string& name)
 {
   this->ExcludedArrays.push_back(name);
   this->Modified();
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::ClearExcludedArrays()
 {
   this->ExcludedArrays.clear();
   this->Modified();
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHAlgorithm::GetNumberOfExcludedArrays() const
 {
   return static_cast<int>(this->ExcludedArrays.size());
 }
 
-//------------------------------------------------------------------------------
 const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
 {
   return i >= 0 && i < this->GetNumberOfExcludedArrays()
@@ -96,7 +88,6 @@ const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
     : nullptr;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHAlgorithm::ListDevices()
 {
   char* text = nullptr;
@@ -106,26 +97,22 @@ std::string vtkSPHAlgorithm::ListDevices()
   return result;
 }
 
-//------------------------------------------------------------------------------
 vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
 {
   return this->RunStatistics;
 }
 
-//------------------------------------------------------------------------------
 const char* vtkSPHAlgorithm::GetStatistics()
 {
   this->Statistics = vtkSPHDescribe(this->RunStatistics);
   return this->Statistics.c_str();
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::ReleaseDeviceMemory()
 {
   this->Internals->Release();
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHAlgorithm::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
@@ -133,14 +120,12 @@ int vtkSPHAlgorithm::FillInputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
   return 1;
 }
 
-//------------------------------------------------------------------------------
 vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -151,7 +136,6 @@ vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
 
-//------------------------------------------------------------------------------
 // Of the class that suits the input, or blocks of those as the input has.
 int vtkSPHAlgorithm::RequestDataObject(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
@@ -176,7 +160,6 @@ int vtkSPHAlgorithm::RequestDataObject(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::IsAborted()
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230101)
@@ -186,7 +169,6 @@ bool vtkSPHAlgorithm::IsAborted()
 #endif
 }
 
-//------------------------------------------------------------------------------
 // Superclasses would report an error for a second array that was never asked for.
 vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
 {
@@ -208,7 +190,6 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   return request;
 }
 
-//------------------------------------------------------------------------------
 // Nobody has chosen the active scalars of a file.
 vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(vtkPointSet* particles)
 {
@@ -226,7 +207,6 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(vtkPointSet* particles)
   return request;
 }
 
-//------------------------------------------------------------------------------
 // The sentences of all blocks are kept, one a line.
 void vtkSPHAlgorithm::Fail(const std::string& message)
 {
@@ -235,13 +215,11 @@ void vtkSPHAlgorithm::Fail(const std::string& message)
   vtkErrorMacro(<< sentence);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::Warn(const std::string& message)
 {
   vtkWarningMacro(<< this->BlockName << message);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::WarnOfNoFluid(
   const vtkSPHParticlesChoice& choice, const std::string& consequence)
 {
@@ -249,7 +227,6 @@ void vtkSPHAlgorithm::WarnOfNoFluid(
                   << choice.FluidValue << ", so there is no fluid and " << consequence << ".");
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
 {
   if (!message.empty() && this->Warned.insert(kind).second)
@@ -258,7 +235,6 @@ void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
 {
   mcor_set_default_options(&options);
@@ -270,7 +246,6 @@ void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::FillChoice(vtkSPHParticlesChoice& choice) const
 {
   choice.SmoothingLengthArrayName = this->SmoothingLengthArrayName;
@@ -290,7 +265,6 @@ void vtkSPHAlgorithm::FillChoice(vtkSPHParticlesChoice& choice) const
   choice.ExcludedArrays = this->ExcludedArrays;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHAlgorithm::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -323,7 +297,6 @@ int vtkSPHAlgorithm::RequestData(
   return apart || this->ErrorMessage.empty() ? 1 : 0;
 }
 
-//------------------------------------------------------------------------------
 // A mcor_status; `message` says why it is not MCOR_OK, unless that is because the user cancelled. What
 // an observer of the progress may change is read before the run. Of `count` processes on this machine
 // this is number `place`.
@@ -362,7 +335,6 @@ int vtkSPHAlgorithm::RunCore(vtkSPHParticles& particles, mcor_options& options,
   return status;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::CallCore(
   vtkSPHParticles& particles, mcor_options& options, const std::function<int(mcor_context*)>& call)
 {
@@ -375,7 +347,6 @@ bool vtkSPHAlgorithm::CallCore(
   return status == MCOR_OK;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::IsShared() const
 {
 #if MCOR_HAS_RANKS
@@ -386,7 +357,6 @@ bool vtkSPHAlgorithm::IsShared() const
 #endif
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
 {
   const auto nameOf = [](vtkDataArray* array)
@@ -398,7 +368,6 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
   this->UsedFluid = particles ? particles->DescribeFluid() : "";
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

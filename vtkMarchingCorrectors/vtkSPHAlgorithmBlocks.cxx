@@ -19,11 +19,8 @@
 #include "vtkSPHRanks.h"
 #endif
 
-#include <algorithm>
-#include <limits>
 #include <vector>
 
-//------------------------------------------------------------------------------
 // Each block is a run that all processes take part in.
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
@@ -45,7 +42,6 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
   return good;
 }
 
-//------------------------------------------------------------------------------
 // A block that fails leaves its place empty, and the others as they are.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
@@ -74,7 +70,6 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   }
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
 {
   vtkInternals& kept = *this->Internals;
@@ -94,7 +89,6 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
   return kept.Joined;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output)
 {
   const vtkSmartPointer<vtkPointSet> particles = this->TakeParticles(input);
@@ -113,7 +107,6 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
 {
   if (this->DetectFluid)

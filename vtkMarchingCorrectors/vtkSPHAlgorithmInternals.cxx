@@ -5,13 +5,11 @@
 #include "mcor_parts.h"
 #include "vtkSPHParticles.h"
 
-//------------------------------------------------------------------------------
 vtkSPHAlgorithm::vtkInternals::~vtkInternals()
 {
   mcor_free_context(this->Context);
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device, int place, int count)
 {
   if (this->Context && this->Device == device && this->Place == place && this->Count == count)
@@ -31,7 +29,6 @@ std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device, in
   return why;
 }
 
-//------------------------------------------------------------------------------
 // The scalar is kept in the order of the particles: new particles make a new scalar.
 void vtkSPHAlgorithm::vtkInternals::SetVersions(vtkSPHParticles& input)
 {
@@ -56,7 +53,6 @@ void vtkSPHAlgorithm::vtkInternals::SetVersions(vtkSPHParticles& input)
   input.Core.attributes_version = this->AttributesVersion;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
 {
   this->Particles.clear();
@@ -69,7 +65,6 @@ void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::vtkInternals::Release()
 {
   if (this->InRun)
@@ -82,14 +77,12 @@ void vtkSPHAlgorithm::vtkInternals::Release()
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::vtkInternals::BeginRun()
 {
   this->InRun = true;
   this->ReleaseAfterRun = false;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAlgorithm::vtkInternals::EndRun()
 {
   this->InRun = false;

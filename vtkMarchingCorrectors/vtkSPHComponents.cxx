@@ -108,10 +108,8 @@ struct vtkSPHComponents::Content
   }
 };
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHComponents);
 
-//------------------------------------------------------------------------------
 vtkSPHComponents::vtkSPHComponents()
 {
   this->SetNumberOfInputPorts(2);
@@ -126,13 +124,11 @@ vtkSPHComponents::~vtkSPHComponents()
 
 vtkCxxSetObjectMacro(vtkSPHComponents, Controller, vtkMultiProcessController);
 
-//------------------------------------------------------------------------------
 vtkTable* vtkSPHComponents::GetTable()
 {
   return vtkTable::SafeDownCast(this->GetOutputDataObject(1));
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHComponents::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkPointSet");
@@ -144,14 +140,12 @@ int vtkSPHComponents::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHComponents::FillOutputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
   return 1;
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkIdType> vtkSPHComponents::ListFluid(vtkPointSet* particles) const
 {
   vtkSPHParticlesChoice choice;
@@ -176,7 +170,6 @@ std::vector<vtkIdType> vtkSPHComponents::ListFluid(vtkPointSet* particles) const
   return fluid;
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   const vtkSPHPieces& pieces, vtkPointSet* particles) const
 {
@@ -219,7 +212,6 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   return contents;
 }
 
-//------------------------------------------------------------------------------
 // New numbers of the pieces; -1: left out. Cavities go with what is around them.
 std::vector<vtkIdType> vtkSPHComponents::Choose(
   const vtkSPHPieces& pieces, const std::vector<Content>& contents) const
@@ -246,7 +238,6 @@ std::vector<vtkIdType> vtkSPHComponents::Choose(
   return number;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<Content>& contents,
   const std::vector<vtkIdType>& number, vtkTable* table)
 {
@@ -286,7 +277,6 @@ void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<C
   }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHComponents::Numbers vtkSPHComponents::Split(
   vtkPolyData* mesh, vtkPointSet* particles, vtkTable* table) const
 {
@@ -306,7 +296,6 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
   return numbers;
 }
 
-//------------------------------------------------------------------------------
 // Points and triangles of the pieces that stay, with all their arrays, in their order.
 void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output)
 {
@@ -350,7 +339,6 @@ void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyDa
   AddIds(output->GetCellData(), numbers.OfTriangle);
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
 {
   if (mesh->GetNumberOfLines() > 0 && mesh->GetNumberOfPolys() == 0)
@@ -366,7 +354,6 @@ std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
                    : "";
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHComponents::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -401,7 +388,6 @@ int vtkSPHComponents::RequestData(
   return problem.empty() ? 1 : 0;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

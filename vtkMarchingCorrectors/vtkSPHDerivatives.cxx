@@ -14,7 +14,6 @@
 
 #include <cstdlib>
 
-//------------------------------------------------------------------------------
 bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
   vtkPointData* data, const mcor_derivatives& derivatives, bool asFloat) const
 {
@@ -34,7 +33,6 @@ bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
   return true;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHDerivatives::vtkWanted::AddTo(
   vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
 {
@@ -59,17 +57,14 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   return true;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHDerivatives::vtkWanted::DescribeNoMemory(vtkIdType particles)
 {
   return "Host memory for the derivatives of " + std::to_string(particles) +
     " particles could not be allocated.";
 }
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHDerivatives);
 
-//------------------------------------------------------------------------------
 vtkSPHDerivatives::vtkSPHDerivatives()
 {
   this->SetInputArrayToProcess(
@@ -79,13 +74,11 @@ vtkSPHDerivatives::vtkSPHDerivatives()
 
 vtkSPHDerivatives::~vtkSPHDerivatives() = default;
 
-//------------------------------------------------------------------------------
 const char* vtkSPHDerivatives::GetOutputClassName(const char* inputClassName)
 {
   return inputClassName;
 }
 
-//------------------------------------------------------------------------------
 // An array of a file may be another one of that name: made of another kernel, or by the solver.
 std::string vtkSPHDerivatives::NameResult(const std::string& name, vtkPointSet* particles) const
 {
@@ -97,7 +90,6 @@ std::string vtkSPHDerivatives::NameResult(const std::string& name, vtkPointSet* 
   return free;
 }
 
-//------------------------------------------------------------------------------
 vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particles) const
 {
   const auto name = [&](const char* usual) { return this->NameResult(usual, particles); };
@@ -109,7 +101,6 @@ vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particle
     this->ComputeGradient != 0, name(this->ResultArrayName.c_str()) };
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* particles = vtkPointSet::SafeDownCast(data);
@@ -159,7 +150,6 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   }
 }
 
-//------------------------------------------------------------------------------
 // What an observer of the progress may change is read before the run.
 void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output)
 {
@@ -197,7 +187,6 @@ void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, v
   mcor_free_derivatives(&derivatives);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHDerivatives::FailNotFinite(const std::string& array, vtkIdType particle)
 {
   this->Fail("The point array '" + array + "' is NaN or infinite at particle " +
@@ -205,7 +194,6 @@ void vtkSPHDerivatives::FailNotFinite(const std::string& array, vtkIdType partic
     ", so its gradients are undefined there. Correct its values, or choose another array.");
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHDerivatives::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -39,10 +39,8 @@ ArrayT* AddColumn(vtkTable* table, const char* name, vtkIdType rows)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHGauge);
 
-//------------------------------------------------------------------------------
 vtkSPHGauge::vtkSPHGauge()
 {
   this->SetNumberOfInputPorts(2);
@@ -51,13 +49,11 @@ vtkSPHGauge::vtkSPHGauge()
 
 vtkSPHGauge::~vtkSPHGauge() = default;
 
-//------------------------------------------------------------------------------
 vtkTable* vtkSPHGauge::GetOutput()
 {
   return vtkTable::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::AddGauge(
   const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
 {
@@ -65,20 +61,17 @@ void vtkSPHGauge::AddGauge(
   this->Modified();
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::ClearGauges()
 {
   this->Gauges.clear();
   this->Modified();
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHGauge::GetNumberOfGauges() const
 {
   return static_cast<int>(this->Gauges.size());
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHGauge::FillInputPortInformation(int port, vtkInformation* info)
 {
   if (port == 0)
@@ -90,20 +83,17 @@ int vtkSPHGauge::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHGauge::FillOutputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
   return 1;
 }
 
-//------------------------------------------------------------------------------
 const char* vtkSPHGauge::GetOutputClassName(const char*)
 {
   return "vtkTable";
 }
 
-//------------------------------------------------------------------------------
 // All of both, whatever piece of the table is wanted; of processes that share a run, all of the lines.
 int vtkSPHGauge::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
@@ -121,7 +111,6 @@ int vtkSPHGauge::RequestUpdateExtent(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHGauge::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -138,7 +127,6 @@ int vtkSPHGauge::RequestData(
   return done;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const
 {
   vtkAbstractArray* names = lines->GetCellData()->GetAbstractArray("Name");
@@ -159,7 +147,6 @@ void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const
   }
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::ListGauges() const
 {
   std::vector<Gauge> gauges = this->Gauges;
@@ -175,7 +162,6 @@ std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::ListGauges() const
   return gauges;
 }
 
-//------------------------------------------------------------------------------
 // False, and reported, where two have one name.
 bool vtkSPHGauge::CheckNames(const std::vector<Gauge>& gauges)
 {
@@ -191,7 +177,6 @@ bool vtkSPHGauge::CheckNames(const std::vector<Gauge>& gauges)
   return true;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* particles = vtkPointSet::SafeDownCast(data);
@@ -228,7 +213,6 @@ void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
   this->Measure(input, particles, gauges, table);
 }
 
-//------------------------------------------------------------------------------
 std::vector<mcor_gauge_line> vtkSPHGauge::ListLines(const std::vector<Gauge>& gauges)
 {
   std::vector<mcor_gauge_line> lines;
@@ -243,7 +227,6 @@ std::vector<mcor_gauge_line> vtkSPHGauge::ListLines(const std::vector<Gauge>& ga
   return lines;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
   const std::vector<Gauge>& gauges, vtkTable* output)
 {
@@ -269,7 +252,6 @@ void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
   mcor_free_gauges(&found);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::Fill(
   vtkTable* output, const std::vector<Gauge>& gauges, const mcor_gauges& found, bool hasFluid)
 {
@@ -307,7 +289,6 @@ void vtkSPHGauge::Fill(
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -133,10 +133,8 @@ struct ChunkProgress
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 }
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHProbe);
 
-//------------------------------------------------------------------------------
 int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
   mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics)
 {
@@ -169,7 +167,6 @@ int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mco
   return MCOR_OK;
 }
 
-//------------------------------------------------------------------------------
 vtkSPHProbe::vtkSPHProbe()
 {
   this->SetNumberOfInputPorts(2);
@@ -178,13 +175,11 @@ vtkSPHProbe::vtkSPHProbe()
 
 vtkSPHProbe::~vtkSPHProbe() = default;
 
-//------------------------------------------------------------------------------
 vtkDataObject* vtkSPHProbe::GetSource()
 {
   return this->GetNumberOfInputConnections(1) > 0 ? this->GetInputDataObject(1, 0) : nullptr;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
 {
   if (port == 1)
@@ -196,13 +191,11 @@ int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-//------------------------------------------------------------------------------
 const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
 {
   return inputClassName;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHProbe::AskForAll(vtkInformation* particles)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -220,7 +213,6 @@ void vtkSPHProbe::AskForAll(vtkInformation* particles)
   }
 }
 
-//------------------------------------------------------------------------------
 // Each piece of the points needs all particles; ranks find them by themselves.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
@@ -229,7 +221,6 @@ int vtkSPHProbe::RequestUpdateExtent(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHProbe::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -239,7 +230,6 @@ int vtkSPHProbe::RequestData(
   return done;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* points = vtkDataSet::SafeDownCast(data);
@@ -283,7 +273,6 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   this->Probe(input, points, vtkDataSet::SafeDownCast(output));
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHProbe::FillProbeOptions(mcor_options& options) const
 {
   this->FillOptions(options);
@@ -292,7 +281,6 @@ void vtkSPHProbe::FillProbeOptions(mcor_options& options) const
   options.gradients = this->ComputeGradients;
 }
 
-//------------------------------------------------------------------------------
 // What an observer of the progress may change is read before the run.
 void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output)
 {
@@ -321,13 +309,11 @@ void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* 
   this->FinishOutput(output);
 }
 
-//------------------------------------------------------------------------------
 double vtkSPHProbe::GetNull() const
 {
   return this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue;
 }
 
-//------------------------------------------------------------------------------
 // What varies among the particles, as points that are not valid have a value of their own.
 void vtkSPHProbe::FinishOutput(vtkDataSet* output) const
 {
@@ -347,7 +333,6 @@ void vtkSPHProbe::FinishOutput(vtkDataSet* output) const
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHProbe::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -51,10 +51,8 @@ void FindEnds(const vtkSPHParticlesChoice& choice, vtkPointSet* particles, doubl
 }
 }
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHResample);
 
-//------------------------------------------------------------------------------
 vtkSPHResample::vtkSPHResample()
 {
   this->SetNumberOfInputPorts(1);
@@ -63,20 +61,17 @@ vtkSPHResample::vtkSPHResample()
 
 vtkSPHResample::~vtkSPHResample() = default;
 
-//------------------------------------------------------------------------------
 // The particles, which the superclass has at another port.
 int vtkSPHResample::FillInputPortInformation(int, vtkInformation* info)
 {
   return this->Superclass::FillInputPortInformation(1, info);
 }
 
-//------------------------------------------------------------------------------
 const char* vtkSPHResample::GetOutputClassName(const char*)
 {
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-//------------------------------------------------------------------------------
 // Origin and spacing depend on the particles, and come with the data.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
@@ -95,7 +90,6 @@ int vtkSPHResample::RequestInformation(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 // Each part needs all particles; ranks find them by themselves.
 int vtkSPHResample::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
@@ -104,7 +98,6 @@ int vtkSPHResample::RequestUpdateExtent(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHResample::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -124,7 +117,6 @@ int vtkSPHResample::RequestData(
   return done;
 }
 
-//------------------------------------------------------------------------------
 // False where no particle is fluid.
 bool vtkSPHResample::FindBounds(double bounds[6])
 {
@@ -159,7 +151,6 @@ bool vtkSPHResample::FindBounds(double bounds[6])
   return std::isfinite(ends[0]);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
 {
   const double middle[3] = { 0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]), 0.5 * (b[4] + b[5]) };
@@ -201,7 +192,6 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
   return made;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
 {
   this->Particles = vtkPointSet::SafeDownCast(data);
@@ -223,7 +213,6 @@ void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHResample::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -93,10 +93,8 @@ std::vector<double> StepsAround(const std::vector<double>& times, double time)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkSPHTemporalInterpolator);
 
-//------------------------------------------------------------------------------
 vtkSPHTemporalInterpolator::vtkSPHTemporalInterpolator()
   : Internals(new vtkInternals)
 {
@@ -106,7 +104,6 @@ vtkSPHTemporalInterpolator::vtkSPHTemporalInterpolator()
 
 vtkSPHTemporalInterpolator::~vtkSPHTemporalInterpolator() = default;
 
-//------------------------------------------------------------------------------
 int vtkSPHTemporalInterpolator::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
@@ -114,26 +111,22 @@ int vtkSPHTemporalInterpolator::FillInputPortInformation(int, vtkInformation* in
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHTemporalInterpolator::FillOutputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
   return 1;
 }
 
-//------------------------------------------------------------------------------
 vtkPolyData* vtkSPHTemporalInterpolator::GetOutput()
 {
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHTemporalInterpolator::SetInputData(vtkDataObject* particles)
 {
   this->SetInputDataInternal(0, particles);
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHTemporalInterpolator::Fail(const std::string& message)
 {
   const std::string sentence = this->BlockName + message;
@@ -142,7 +135,6 @@ int vtkSPHTemporalInterpolator::Fail(const std::string& message)
   return 0;
 }
 
-//------------------------------------------------------------------------------
 vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -168,7 +160,6 @@ vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
 
-//------------------------------------------------------------------------------
 // A poly data, or blocks of them as the input has.
 int vtkSPHTemporalInterpolator::RequestDataObject(vtkInformation* input, vtkInformation* output)
 {
@@ -183,7 +174,6 @@ int vtkSPHTemporalInterpolator::RequestDataObject(vtkInformation* input, vtkInfo
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHTemporalInterpolator::RequestInformation(vtkInformation* input, vtkInformation* output)
 {
   const std::vector<double> stored = TimesOf(input);
@@ -206,7 +196,6 @@ int vtkSPHTemporalInterpolator::RequestInformation(vtkInformation* input, vtkInf
   return 1;
 }
 
-//------------------------------------------------------------------------------
 // Upstream is asked for the first step that is not kept, or, where all are, for nothing new.
 int vtkSPHTemporalInterpolator::RequestUpdateExtent(vtkInformation* input, vtkInformation* output)
 {
@@ -232,7 +221,6 @@ int vtkSPHTemporalInterpolator::RequestUpdateExtent(vtkInformation* input, vtkIn
   return 1;
 }
 
-//------------------------------------------------------------------------------
 // Not by CONTINUE_EXECUTING: with that VTK's pipeline goes round for ever where the second step
 // cannot be read.
 bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
@@ -264,7 +252,6 @@ bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
   return true;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformation* output)
 {
   this->ErrorMessage.clear();
@@ -295,7 +282,6 @@ int vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformatio
   return good ? 1 : 0;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalInterpolator::FillBlocks(
   vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output)
 {
@@ -322,7 +308,6 @@ bool vtkSPHTemporalInterpolator::FillBlocks(
   return good;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalInterpolator::Fill(
   size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output)
 {
@@ -359,7 +344,6 @@ bool vtkSPHTemporalInterpolator::Fill(
   return true;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The XML of SPH Derivatives, SPH Gauge, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
+import os
 import pathlib
 import unittest
 import xml.etree.ElementTree
@@ -8,7 +9,7 @@ import xml.etree.ElementTree
 from marchingcorrectors import (vtkSPHAlgorithm, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe,
                                 vtkSPHResample)
 
-PLUGIN = pathlib.Path(__file__).resolve().parents[2] / "Plugin"
+PLUGIN = pathlib.Path(os.environ["MCOR_PLUGIN_XML"])
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
 NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds", "ReleaseDeviceMemory",

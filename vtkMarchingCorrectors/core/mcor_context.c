@@ -4,7 +4,6 @@
 /* The life of a context: what it begins with, what is given back when; and how any call on it runs. */
 
 #include "mcor_adaptive.h"
-#include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_fill.h"

@@ -5,7 +5,6 @@
  * are those of the paper named in mcor.h. */
 
 #include "mcor_adaptive.h"
-#include "mcor_adaptive_level.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_fill.h"

@@ -38,7 +38,12 @@ double mcor_seconds(void);
 /* Of a kernel with W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);
 
-/* mcor_pages.c. Before an array of the host, or of a device that shares its memory, is touched. */
+/* mcor_memory.c. Whether memory of the host could be allocated. */
+mcor_status mcor_allocated(mcor_context* context, bool complete);
+/* Room for an element behind the first `count` of an array that has `room` for so many, `width` bytes each. */
+mcor_status mcor_make_room(
+  mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
+/* Before an array of the host, or of a device that shares its memory, is touched. */
 #define MCOR_LARGE_ARRAY ((size_t)4 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 
@@ -190,7 +195,8 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row);
+  const mcor_array* array, int component, double shift, double scale, bool fixed, mcor_buffer* to,
+  int to_row);
 void mcor_release_stage(mcor_context* context);
 void mcor_release_grid(mcor_context* context);
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);

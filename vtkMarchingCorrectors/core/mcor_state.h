@@ -6,6 +6,7 @@
 /* The state of a context: a struct for each phase, the call under way, and what is kept. */
 
 #include "mcor_cl.h"
+#include "mcor_table.h"
 #include "mcor_parts.h"
 #include "mcor_shared.h"
 
@@ -105,19 +106,12 @@ typedef struct mcor_mesh
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
 } mcor_mesh;
 
-/* Some of 4^3 bricks of adaptive cubes, aligned to multiples of 4: bit x + 4 y + 16 z. */
-typedef struct mcor_cluster
-{
-  uint64_t key; /* its number in its level, see mcor_cluster_key */
-  uint64_t bricks;
-} mcor_cluster;
-
-/* A set of bricks of one level. */
+/* A set of bricks of one level of adaptive cubes. Clusters are 4^3 of them, aligned to multiples of 4: by their
+ * numbers, see mcor_cluster_key, masks x + 4 y + 16 z. */
 typedef struct mcor_brick_set
 {
-  mcor_cluster* slots;    /* [capacity]; one without bricks is free */
-  size_t capacity;        /* a power of 2, or 0 */
-  size_t clusters, count; /* of bricks */
+  mcor_table clusters;
+  size_t count; /* of bricks */
 } mcor_brick_set;
 
 /* Leaves of adaptive cubes; see mcor_tree.h. */
@@ -160,7 +154,7 @@ typedef struct mcor_adaptive
   mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
 } mcor_adaptive;
 
-/* Of adaptive cubes, which cells pairs reach; see mcor_adaptive_pair.c. Masks are of the leaves where there
+/* Of adaptive cubes, which cells pairs reach; see mcor_pair.c. Masks are of the leaves where there
  * may be surface. */
 typedef struct mcor_adaptive_pairs
 {

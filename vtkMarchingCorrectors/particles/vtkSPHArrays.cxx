@@ -56,7 +56,6 @@ void AddSeconds(vtkFieldData* run)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat)
 {
@@ -67,7 +66,6 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   return vtkSPHAdopt<vtkDoubleArray>(values, components, tuples);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddArray(
   vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array)
 {
@@ -75,7 +73,6 @@ void vtkSPHAddArray(
   data->AddArray(array);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
@@ -85,7 +82,6 @@ void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<d
   vtkSPHAddArray(data, name, array);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddCount(
   vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values)
 {
@@ -96,7 +92,6 @@ void vtkSPHAddCount(
   vtkSPHAddArray(data, name, array);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text)
 {
   auto array = vtkSmartPointer<vtkStringArray>::New();
@@ -104,7 +99,6 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
   vtkSPHAddArray(data, name, array);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
 {
   if (!run->GetArray("Seconds"))
@@ -137,7 +131,6 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
   vtkSPHAddReal(run, "MedianSpacing", { s.spacing_median });
 }
 
-//------------------------------------------------------------------------------
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components)
 {
   vtkPointData* data = points->GetPointData();
@@ -157,7 +150,6 @@ vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int comp
   return found;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHDescribe(vtkFieldData* data)
 {
   std::ostringstream text;
@@ -174,7 +166,6 @@ std::string vtkSPHDescribe(vtkFieldData* data)
   return text.str();
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool isReal, bool varies)
 {
   const int rank = mcor_view_priority(name.c_str(), components, isReal, varies);
@@ -202,7 +193,6 @@ void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
 }
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHChooseArray(vtkFieldData* data)
 {
   vtkSPHArrayChoice choice;
@@ -216,7 +206,6 @@ std::string vtkSPHChooseArray(vtkFieldData* data)
   return choice.Best;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHIsFit(vtkDataArray* array)
 {
   vtkSPHArrayChoice choice;

@@ -166,7 +166,6 @@ std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
 
 const char* const vtkSPHWallBlockName = MCOR_WALL_BLOCK;
 
-//------------------------------------------------------------------------------
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
 {
   std::vector<std::string> names;
@@ -196,7 +195,6 @@ std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
   return names;
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data)
 {
   Blocks found;
@@ -221,7 +219,6 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data)
   return found;
 }
 
-//------------------------------------------------------------------------------
 vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree)
 {
   vtkMTimeType time = 0;
@@ -232,7 +229,6 @@ vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree)
   return time;
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
 {
   const Blocks blocks = vtkSPHListPointSets(tree);
@@ -269,7 +265,6 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
   return joined;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHSplitBlocks(
   vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output)
 {
@@ -307,7 +302,6 @@ void vtkSPHSplitBlocks(
   }
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHFindWalls(const std::vector<std::string>& names)
 {
   const auto walls = std::count_if(names.begin(), names.end(), TellsOfWalls);

@@ -134,7 +134,6 @@ bool Invert(const Partners& partners, Partners& inverse, Entry& twins)
 }
 }
 
-//------------------------------------------------------------------------------
 // The second set's numbers, sorted, are searched for each of the first's.
 std::string vtkSPHMatchNumbers(const std::array<vtkDataArray*, 2>& arrays,
   const std::array<std::string, 2>& sets, const std::array<std::vector<vtkIdType>*, 2>& partners)

@@ -36,38 +36,32 @@ std::uint64_t BitsOf(double value)
 }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHParticles::SignObject(std::vector<std::uint64_t>& signature, vtkObject* object)
 {
   signature.push_back(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(object)));
   signature.push_back(object ? object->GetMTime() : 0);
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::Quote(const std::string& name)
 {
   return "'" + name + "'";
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::RealName(const std::string& name)
 {
   return name == "(automatic)" || name == "(none)" ? std::string() : name;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::NameOf(vtkAbstractArray* array)
 {
   return array->GetName() ? array->GetName() : "";
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::Contains(const std::vector<std::string>& names, const std::string& name)
 {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-//------------------------------------------------------------------------------
 vtkSPHParticles::vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
   : Description(choice)
   , Points(points)
@@ -75,7 +69,6 @@ vtkSPHParticles::vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSe
   this->Core.count = this->Points->GetNumberOfPoints();
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::CollectParticles()
 {
   this->Core.positions = this->View(this->Points->GetPoints()->GetData());
@@ -88,7 +81,6 @@ bool vtkSPHParticles::CollectParticles()
   return true;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::CollectSmoothingLength()
 {
   this->Core.smoothing_length_is_support_radius =
@@ -117,7 +109,6 @@ bool vtkSPHParticles::CollectSmoothingLength()
   return this->Error.empty();
 }
 
-//------------------------------------------------------------------------------
 // An array or constant that was set goes before detection: with a mass set, a volume array that
 // happens to be there is not used.
 bool vtkSPHParticles::CollectVolume()
@@ -150,7 +141,6 @@ bool vtkSPHParticles::CollectVolume()
   return true;
 }
 
-//------------------------------------------------------------------------------
 // A constant goes before a name, a name before the usual names.
 // `core` stays empty if there is nothing.
 bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string& setName,
@@ -185,7 +175,6 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
   return true;
 }
 
-//------------------------------------------------------------------------------
 // Ghost marks would hide triangles.
 bool vtkSPHParticles::IsCarried(
   vtkAbstractArray* array, const std::vector<std::string>& taken) const
@@ -197,7 +186,6 @@ bool vtkSPHParticles::IsCarried(
     array->GetNumberOfTuples() == this->Core.count;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
 {
   vtkPointData* pointData = this->Points->GetPointData();
@@ -235,7 +223,6 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
 {
   if (RealName(request.Name).empty() && !request.Array)
@@ -261,7 +248,6 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
   return true;
 }
 
-//------------------------------------------------------------------------------
 // The data set's own time is part of it: users change arrays in place and tell the data set.
 void vtkSPHParticles::Sign()
 {
@@ -284,7 +270,6 @@ void vtkSPHParticles::Sign()
   }
 }
 
-//------------------------------------------------------------------------------
 // float and double arrays are used where they lie, all others as a copy in double.
 mcor_array vtkSPHParticles::View(vtkDataArray* array)
 {
@@ -310,13 +295,11 @@ mcor_array vtkSPHParticles::View(vtkDataArray* array)
   return view;
 }
 
-//------------------------------------------------------------------------------
 vtkDataArray* vtkSPHParticles::Find(const std::string& role, const std::string& name)
 {
   return this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
 }
 
-//------------------------------------------------------------------------------
 vtkDataArray* vtkSPHParticles::Check(
   const std::string& role, const std::string& name, vtkAbstractArray* array)
 {
@@ -346,7 +329,6 @@ vtkDataArray* vtkSPHParticles::Check(
   return numbers;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::HasOneComponent(const std::string& role, vtkDataArray* array)
 {
   const int components = array->GetNumberOfComponents();
@@ -358,7 +340,6 @@ bool vtkSPHParticles::HasOneComponent(const std::string& role, vtkDataArray* arr
   return components == 1;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::FindLayout() const
 {
   std::string names;
@@ -370,7 +351,6 @@ std::string vtkSPHParticles::FindLayout() const
   return mcor_find_layout(names.c_str());
 }
 
-//------------------------------------------------------------------------------
 // As float only where all are.
 vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
 {
@@ -403,7 +383,6 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
   return joined;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::ListPointArrays() const
 {
   vtkPointData* pointData = this->Points->GetPointData();
@@ -415,7 +394,6 @@ std::string vtkSPHParticles::ListPointArrays() const
   return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> vtkSPHParticles::ListLeftOut(
   const std::int64_t* notFinite, const std::string& place) const
 {

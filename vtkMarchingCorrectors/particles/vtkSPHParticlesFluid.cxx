@@ -14,7 +14,6 @@
 #include <memory>
 #include <sstream>
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::CollectSolids()
 {
   this->FluidCount = static_cast<vtkIdType>(this->Core.count);
@@ -36,7 +35,6 @@ bool vtkSPHParticles::CollectSolids()
   return true;
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> vtkSPHParticles::ListTypes(
   const vtkSPHParticlesChoice& choice, vtkPointSet* points)
 {
@@ -60,7 +58,6 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
   return list;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points)
 {
   double range[2];
@@ -75,7 +72,6 @@ void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* poin
   }
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
 {
   const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
@@ -91,7 +87,6 @@ bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& nam
   return whole && !counts.empty();
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::DescribeFluid() const
 {
   std::ostringstream text;
@@ -102,7 +97,6 @@ std::string vtkSPHParticles::DescribeFluid() const
   return text.str();
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHParticles::DescribeUnusedType()
 {
   for (const std::string& name : ListTypes(this->Description, this->Points))

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <deque>
 
-//------------------------------------------------------------------------------
 vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
 {
   std::deque<std::vector<double>> values;
@@ -43,13 +42,11 @@ vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
   return found;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTellsOfPeriod(const char* name)
 {
   return mcor_tells_of_period(name) != 0;
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> vtkSPHBoundsOfPeriod(const std::vector<double>& period, const double extent[6])
 {
   std::vector<double> bounds = period;
@@ -61,7 +58,6 @@ std::vector<double> vtkSPHBoundsOfPeriod(const std::vector<double>& period, cons
   return bounds;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::CheckPeriod(const vtkSPHPeriod& found, const std::string& problem)
 {
   const std::string sentence = !problem.empty() ? problem
@@ -76,7 +72,6 @@ bool vtkSPHAlgorithm::CheckPeriod(const vtkSPHPeriod& found, const std::string& 
   return sentence.empty();
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::SetPeriod(vtkPointSet* particles, mcor_options& options)
 {
   if (!this->DetectPeriod)

@@ -39,7 +39,6 @@ void Copy(const double* from, vtkIdType first, vtkIdType tuples, vtkDataArray* t
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHSamples::vtkSPHSamples(const vtkSPHParticles& particles, const mcor_options& options,
   const std::string& maskName, vtkIdType count, double null)
   : NotFinite(particles.Interpolated.size(), -1)
@@ -67,7 +66,6 @@ vtkSPHSamples::vtkSPHSamples(const vtkSPHParticles& particles, const mcor_option
   this->Mask->FillValue(0);
 }
 
-//------------------------------------------------------------------------------
 vtkSPHSamples::Pair vtkSPHSamples::Make(
   const std::string& name, int components, bool asFloat, bool gradient) const
 {
@@ -90,7 +88,6 @@ vtkSPHSamples::Pair vtkSPHSamples::Make(
   return pair;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHSamples::Put(vtkIdType first, const mcor_samples& samples)
 {
   for (size_t a = 0; a < this->Arrays.size(); ++a)
@@ -107,7 +104,6 @@ void vtkSPHSamples::Put(vtkIdType first, const mcor_samples& samples)
   std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHSamples::PutNull(vtkIdType first, const mcor_samples& samples, vtkDataArray* array) const
 {
   for (vtkIdType i = 0; array && this->Null != 0.0 && i < samples.count; ++i)
@@ -119,7 +115,6 @@ void vtkSPHSamples::PutNull(vtkIdType first, const mcor_samples& samples, vtkDat
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHSamples::AddTo(vtkFieldData* data) const
 {
   const auto add = [data](const Pair& pair)

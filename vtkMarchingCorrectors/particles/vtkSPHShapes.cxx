@@ -102,7 +102,6 @@ private:
 };
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHMakeSlice(const double box[6], const double origin[3], const double normal[3],
   int resolution, vtkPolyData* slice)
 {
@@ -141,7 +140,6 @@ void vtkSPHMakeSlice(const double box[6], const double origin[3], const double n
   slice->SetPolys(quads);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHMakeLine(const double from[3], const double to[3], int resolution, vtkPolyData* line)
 {
   const vtkIdType count = std::max(resolution, 2);
@@ -166,7 +164,6 @@ void vtkSPHMakeLine(const double from[3], const double to[3], int resolution, vt
   line->GetPointData()->AddArray(along);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHCropSlice(vtkPolyData* slice, const char* mask)
 {
   vtkDataArray* isValid = slice->GetPointData()->GetArray(mask);

@@ -22,7 +22,6 @@ using Triple = std::array<double, 3>;
 constexpr double SideTolerance = 1e-5;
 }
 
-//------------------------------------------------------------------------------
 vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
 {
   std::copy_n(period, 6, this->Period);
@@ -35,7 +34,6 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
   this->FindParents();
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHPieces::ReadTriangles(vtkPolyData* mesh)
 {
   this->Points.resize(static_cast<size_t>(mesh->GetNumberOfPoints()));
@@ -53,7 +51,6 @@ void vtkSPHPieces::ReadTriangles(vtkPolyData* mesh)
   }
 }
 
-//------------------------------------------------------------------------------
 vtkIdType vtkSPHPieces::RootOf(vtkIdType point)
 {
   vtkIdType root = point;
@@ -68,7 +65,6 @@ vtkIdType vtkSPHPieces::RootOf(vtkIdType point)
   return root;
 }
 
-//------------------------------------------------------------------------------
 // The lowest point of each part is its root, whatever the order.
 void vtkSPHPieces::JoinPoints()
 {
@@ -88,7 +84,6 @@ void vtkSPHPieces::JoinPoints()
   }
 }
 
-//------------------------------------------------------------------------------
 // Points on opposite sides are found by their other coordinates. Parts that meet there are one group,
 // of which each part has a shift; where two ways to a part have unlike ones, the group goes around.
 void vtkSPHPieces::JoinSides()
@@ -134,7 +129,6 @@ void vtkSPHPieces::JoinSides()
   }
 }
 
-//------------------------------------------------------------------------------
 // The group of one part goes into that of the other, where it is a period of this axis higher.
 void vtkSPHPieces::JoinParts(
   vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members)
@@ -168,13 +162,11 @@ void vtkSPHPieces::JoinParts(
   this->GroupEndless[kept] |= this->GroupEndless[old];
 }
 
-//------------------------------------------------------------------------------
 vtkSPHPieces::Shift vtkSPHPieces::ShiftOf(vtkIdType point) const
 {
   return this->GroupShift[static_cast<size_t>(this->Root[static_cast<size_t>(point)])];
 }
 
-//------------------------------------------------------------------------------
 // Where its piece is in one.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
@@ -190,7 +182,6 @@ void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
   }
 }
 
-//------------------------------------------------------------------------------
 // By area; of equal ones that first whose first triangle comes first.
 void vtkSPHPieces::NumberPieces()
 {
@@ -239,7 +230,6 @@ void vtkSPHPieces::NumberPieces()
   }
 }
 
-//------------------------------------------------------------------------------
 // Each edge is run through as often one way as the other.
 void vtkSPHPieces::FindClosed()
 {
@@ -280,7 +270,6 @@ void vtkSPHPieces::FindClosed()
   }
 }
 
-//------------------------------------------------------------------------------
 // About the middle of the bounds, as coordinates may be large; the centre is that of the volume, or else
 // of the area.
 void vtkSPHPieces::Measure()
@@ -343,7 +332,6 @@ void vtkSPHPieces::Measure()
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHPieces::FindParents()
 {
   std::vector<Triple> places;

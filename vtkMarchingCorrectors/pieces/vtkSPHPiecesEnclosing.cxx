@@ -191,7 +191,6 @@ Triple WithinPeriod(const double period[6], const Triple& point)
 }
 }
 
-//------------------------------------------------------------------------------
 // A point may be whole periods away; within the period, in a piece that sticks out of it at the other side.
 std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   const std::vector<Triple>& points, const std::vector<vtkIdType>& without) const

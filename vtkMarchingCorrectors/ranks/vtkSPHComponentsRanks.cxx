@@ -182,7 +182,6 @@ void Renumber(vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
 }
 }
 
-//------------------------------------------------------------------------------
 // On the first rank all of them, with what the table tells of them.
 vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkSPHRanks& ranks, vtkPointSet* particles) const
@@ -205,7 +204,6 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   return vtkSPHSendParticles(ranks, fluid, ToFirst(ranks, own->GetNumberOfPoints())).Get();
 }
 
-//------------------------------------------------------------------------------
 // Returns what is wrong, on all ranks alike; nothing here may return on one of them and go on on another.
 std::string vtkSPHComponents::SplitDistributed(
   vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const

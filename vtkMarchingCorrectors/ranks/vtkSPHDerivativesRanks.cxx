@@ -62,7 +62,6 @@ Lists ListOwners(vtkPolyData* own, vtkIdList* numbers, const vtkSPHRanksRoute& r
 }
 }
 
-//------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* output)
 {
@@ -104,7 +103,6 @@ void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* 
   }
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
   vtkSPHParticles& mine, vtkIdList* numbers, vtkIdType count, vtkPointData* results)
 {

@@ -146,7 +146,6 @@ std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor
 }
 }
 
-//------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
 {
@@ -193,7 +192,6 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
   }
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
   vtkDataSet* points, vtkDataSet* output)
 {

@@ -47,7 +47,6 @@ public:
   diy::mpi::communicator Communicator;
 };
 
-//------------------------------------------------------------------------------
 vtkSPHRanks::vtkSPHRanks(vtkMultiProcessController* controller)
   : Internals(new vtkInternals(controller))
   , Controller(vtkMPIController::SafeDownCast(controller))
@@ -58,7 +57,6 @@ vtkSPHRanks::vtkSPHRanks(vtkMultiProcessController* controller)
 
 vtkSPHRanks::~vtkSPHRanks() = default;
 
-//------------------------------------------------------------------------------
 bool vtkSPHRanks::Agree(std::string& sentence)
 {
   std::int64_t failed = sentence.empty() ? 0 : 1;
@@ -77,7 +75,6 @@ bool vtkSPHRanks::Agree(std::string& sentence)
   return false;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanks::FindNeighbors(int& place, int& count)
 {
   const std::string name = vtkMPIController::GetProcessorName();
@@ -87,14 +84,12 @@ void vtkSPHRanks::FindNeighbors(int& place, int& count)
   count = static_cast<int>(std::count(all.begin(), all.end(), mine));
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanks::Reduce(Operation operation, double* values, int count)
 {
   vtkSPHAwaitRanks(this->Controller);
   this->Internals->Reduce(operation, values, count);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanks::Reduce(Operation operation, std::int64_t* values, int count)
 {
   vtkSPHAwaitRanks(this->Controller);
@@ -103,7 +98,6 @@ void vtkSPHRanks::Reduce(Operation operation, std::int64_t* values, int count)
   std::copy(same.begin(), same.end(), values);
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Gather(const Bytes& mine)
 {
   std::vector<Bytes> all;
@@ -112,7 +106,6 @@ std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Gather(const Bytes& mine)
   return all;
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Exchange(std::vector<Bytes> messages)
 {
   struct Block

@@ -14,7 +14,6 @@ vtkSPHRanks::Operation OperationOf(mcor_reduction reduction)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near)
   : Ranks(ranks)
   , Near(std::move(near))
@@ -26,7 +25,6 @@ vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near)
   this->Core.pass = this->Near ? Pass : nullptr;
 }
 
-//------------------------------------------------------------------------------
 // Every callback, and the end, begin with this one: so all ranks meet here the same number of times
 // until one has failed, and not any more after that.
 bool vtkSPHRanksCalls::AllGoOn(bool self)
@@ -37,7 +35,6 @@ bool vtkSPHRanksCalls::AllGoOn(bool self)
   return goesOn != 0;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanksCalls::End(bool failed)
 {
   if (!this->Stopped)
@@ -46,7 +43,6 @@ void vtkSPHRanksCalls::End(bool failed)
   }
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksCalls::ReduceDoubles(void* user, mcor_reduction reduction, double* values, int count)
 {
   auto* self = static_cast<vtkSPHRanksCalls*>(user);
@@ -58,7 +54,6 @@ int vtkSPHRanksCalls::ReduceDoubles(void* user, mcor_reduction reduction, double
   return 0;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksCalls::ReduceCounts(
   void* user, mcor_reduction reduction, std::int64_t* values, int count)
 {
@@ -71,7 +66,6 @@ int vtkSPHRanksCalls::ReduceCounts(
   return 0;
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksCalls::Gather(void* user, const void* records, std::int64_t count, std::size_t width,
   const void** all, std::int64_t* allCount)
 {
@@ -86,7 +80,6 @@ int vtkSPHRanksCalls::Gather(void* user, const void* records, std::int64_t count
     width, all, allCount);
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, std::size_t width,
   const double* places, double reach, const void** all, std::int64_t* allCount)
 {
@@ -114,7 +107,6 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
   return self->Deliver(self->Ranks.Exchange(std::move(messages)), width, all, allCount);
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksCalls::Deliver(const std::vector<vtkSPHRanks::Bytes>& received, std::size_t width,
   const void** all, std::int64_t* allCount)
 {

@@ -13,15 +13,195 @@
 #include "vtkPolyData.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
-#include "vtkSPHRanksLayout.h"
+#include "vtkSPHRanksBytes.h"
 #include "vtkSPHRanksTuples.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <string>
 
 namespace
 {
+// ---- Which point arrays particles have on all ranks ----
+
+/** What a point array is, but for its values. */
+struct Form
+{
+  std::string Name;
+  int Type;
+  int Attribute; // of vtkDataSetAttributes, or -1
+  std::vector<std::string> Components;
+  bool HasLabels;
+
+  bool IsLike(const Form& other) const
+  {
+    return this->Name == other.Name && this->Type == other.Type &&
+      this->Components.size() == other.Components.size();
+  }
+
+  bool operator==(const Form& other) const
+  {
+    return this->IsLike(other) && this->Attribute == other.Attribute &&
+      this->HasLabels == other.HasLabels && this->Components == other.Components;
+  }
+};
+
+struct Layout
+{
+  std::int64_t Points = 0;
+  std::int64_t IsDouble = 0;
+  std::vector<Form> Forms;
+};
+
+using Bytes = vtkSPHRanks::Bytes;
+
+Bytes Pack(const Layout& layout)
+{
+  Bytes bytes;
+  vtkSPHPutNumber(bytes, layout.Points);
+  vtkSPHPutNumber(bytes, layout.IsDouble);
+  vtkSPHPutNumber(bytes, static_cast<std::int64_t>(layout.Forms.size()));
+  for (const Form& form : layout.Forms)
+  {
+    vtkSPHPutText(bytes, form.Name);
+    vtkSPHPutNumber(bytes, form.Type);
+    vtkSPHPutNumber(bytes, form.Attribute);
+    vtkSPHPutNumber(bytes, form.HasLabels);
+    vtkSPHPutNumber(bytes, static_cast<std::int64_t>(form.Components.size()));
+    for (const std::string& label : form.Components)
+    {
+      vtkSPHPutText(bytes, label);
+    }
+  }
+  return bytes;
+}
+
+Layout Unpack(const Bytes& bytes)
+{
+  vtkSPHRanksReader reader(bytes);
+  Layout layout;
+  layout.Points = reader.GetNumber();
+  layout.IsDouble = reader.GetNumber();
+  layout.Forms.resize(static_cast<std::size_t>(reader.GetNumber()));
+  for (Form& form : layout.Forms)
+  {
+    form.Name = reader.GetText();
+    form.Type = static_cast<int>(reader.GetNumber());
+    form.Attribute = static_cast<int>(reader.GetNumber());
+    form.HasLabels = reader.GetNumber() != 0;
+    form.Components.resize(static_cast<std::size_t>(reader.GetNumber()));
+    for (std::string& label : form.Components)
+    {
+      label = reader.GetText();
+    }
+  }
+  return layout;
+}
+
+/** Of the arrays with so many tuples that have a name, but for vtkGhostType. */
+Layout DescribeArrays(vtkPointData* arrays, vtkIdType count)
+{
+  Layout layout;
+  layout.Points = count;
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    const std::string name = array->GetName() ? array->GetName() : "";
+    const bool isKnown =
+      vtkArrayDownCast<vtkDataArray>(array) || array->GetDataType() == VTK_STRING;
+    if (isKnown && !name.empty() && name != vtkDataSetAttributes::GhostArrayName() &&
+      array->GetNumberOfTuples() == layout.Points)
+    {
+      Form form = { name, array->GetDataType(), arrays->IsArrayAnAttribute(i), {},
+        array->HasAComponentName() };
+      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+      {
+        const char* label = array->GetComponentName(c);
+        form.Components.emplace_back(label ? label : "");
+      }
+      layout.Forms.push_back(form);
+    }
+  }
+  return layout;
+}
+
+Layout Describe(vtkPolyData* particles)
+{
+  Layout layout = DescribeArrays(particles->GetPointData(), particles->GetNumberOfPoints());
+  layout.IsDouble = particles->GetPoints() && particles->GetPoints()->GetDataType() != VTK_FLOAT;
+  return layout;
+}
+
+/** What all ranks that have particles have. Collective. */
+Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
+{
+  Layout common;
+  for (const vtkSPHRanks::Bytes& bytes : ranks.Gather(Pack(mine)))
+  {
+    const Layout other = Unpack(bytes);
+    if (other.Points == 0)
+    {
+      continue;
+    }
+    if (common.Points == 0)
+    {
+      common.Forms = other.Forms;
+    }
+    common.Points += other.Points;
+    common.IsDouble = common.IsDouble || other.IsDouble;
+    const auto isMissing = [&other](const Form& form)
+    {
+      return std::none_of(other.Forms.begin(), other.Forms.end(),
+        [&form](const Form& theirs) { return form.IsLike(theirs); });
+    };
+    common.Forms.erase(
+      std::remove_if(common.Forms.begin(), common.Forms.end(), isMissing), common.Forms.end());
+  }
+  return common;
+}
+
+vtkSmartPointer<vtkAbstractArray> MakeArray(const Form& form, vtkIdType count)
+{
+  auto array = vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(form.Type));
+  const int components = static_cast<int>(form.Components.size());
+  array->SetName(form.Name.c_str());
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(count);
+  for (int c = 0; form.HasLabels && c < components; ++c)
+  {
+    array->SetComponentName(c, form.Components[static_cast<std::size_t>(c)].c_str());
+  }
+  return array;
+}
+
+/** Arrays of so many tuples, without values yet. */
+void AddArrays(vtkPointData* data, const Layout& layout, vtkIdType count)
+{
+  for (const Form& form : layout.Forms)
+  {
+    const int at = data->AddArray(MakeArray(form, count));
+    if (form.Attribute >= 0)
+    {
+      data->SetActiveAttribute(at, form.Attribute);
+    }
+  }
+}
+
+vtkSmartPointer<vtkPolyData> MakeParticles(const Layout& layout, vtkIdType count)
+{
+  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(layout.IsDouble ? VTK_DOUBLE : VTK_FLOAT);
+  points->SetNumberOfPoints(count);
+  particles->SetPoints(points);
+  AddArrays(particles->GetPointData(), layout, count);
+  return particles;
+}
+
+// ---- Particles that travel ----
+
 /** Whether it can travel as it is. */
 bool LiesPlain(vtkAbstractArray* array)
 {
@@ -30,9 +210,9 @@ bool LiesPlain(vtkAbstractArray* array)
 }
 
 /** The particles themselves, where they have these arrays and lie as the others will; else null. */
-vtkSmartPointer<vtkPolyData> ShareParticles(const vtkSPHRanksLayout& layout, vtkPolyData* particles)
+vtkSmartPointer<vtkPolyData> ShareParticles(const Layout& layout, vtkPolyData* particles)
 {
-  const vtkSPHRanksLayout own = vtkSPHDescribe(particles);
+  const Layout own = Describe(particles);
   if (own.Points == 0 || own.Forms != layout.Forms)
   {
     return nullptr;
@@ -40,7 +220,7 @@ vtkSmartPointer<vtkPolyData> ShareParticles(const vtkSPHRanksLayout& layout, vtk
   vtkDataArray* positions = particles->GetPoints()->GetData();
   bool isPlain =
     positions->GetDataType() == (layout.IsDouble ? VTK_DOUBLE : VTK_FLOAT) && LiesPlain(positions);
-  for (const vtkSPHRanksForm& form : layout.Forms)
+  for (const Form& form : layout.Forms)
   {
     isPlain = isPlain && LiesPlain(particles->GetPointData()->GetAbstractArray(form.Name.c_str()));
   }
@@ -50,7 +230,7 @@ vtkSmartPointer<vtkPolyData> ShareParticles(const vtkSPHRanksLayout& layout, vtk
   }
   auto shared = vtkSmartPointer<vtkPolyData>::New();
   shared->SetPoints(particles->GetPoints());
-  for (const vtkSPHRanksForm& form : layout.Forms)
+  for (const Form& form : layout.Forms)
   {
     const int at = shared->GetPointData()->AddArray(
       particles->GetPointData()->GetAbstractArray(form.Name.c_str()));
@@ -92,7 +272,6 @@ vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
 
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken)
 {
@@ -102,7 +281,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
     view->SetPoints(data->GetPoints());
     view->GetPointData()->ShallowCopy(data->GetPointData());
   }
-  const vtkSPHRanksLayout common = vtkSPHAgreeOnLayout(ranks, vtkSPHDescribe(view));
+  const Layout common = AgreeOnLayout(ranks, Describe(view));
   if (const vtkSmartPointer<vtkPolyData> shared =
         taken || HasDuplicates(data) ? nullptr : ShareParticles(common, view))
   {
@@ -113,7 +292,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   {
     taken->DeepCopy(own);
   }
-  auto particles = vtkSPHMakeParticles(common, own->GetNumberOfIds());
+  auto particles = MakeParticles(common, own->GetNumberOfIds());
   if (data)
   {
     particles->GetFieldData()->ShallowCopy(data->GetFieldData());
@@ -121,7 +300,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   if (own->GetNumberOfIds() > 0)
   {
     view->GetPoints()->GetData()->GetTuples(own, particles->GetPoints()->GetData());
-    for (const vtkSPHRanksForm& form : common.Forms)
+    for (const Form& form : common.Forms)
     {
       view->GetPointData()
         ->GetAbstractArray(form.Name.c_str())
@@ -131,7 +310,6 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   return particles;
 }
 
-//------------------------------------------------------------------------------
 // In the order in which they are, and what was made of some of them last: so they are found again.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHParticles& used)
 {
@@ -166,15 +344,14 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHPartic
   return kept;
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
   const std::vector<std::vector<vtkIdType>>& to, std::vector<vtkIdType>* from)
 {
   const std::vector<vtkSPHRanks::Bytes> received =
     vtkSPHSendTuples(ranks, vtkSPHListArrays(particles), to);
   const std::vector<vtkIdType> counts = vtkSPHCountTuples(received);
-  auto near = vtkSPHMakeParticles(
-    vtkSPHDescribe(particles), std::accumulate(counts.begin(), counts.end(), vtkIdType(0)));
+  auto near =
+    MakeParticles(Describe(particles), std::accumulate(counts.begin(), counts.end(), vtkIdType(0)));
   vtkSPHReceiveTuples(received, vtkSPHListArrays(near));
   if (from)
   {
@@ -183,12 +360,11 @@ vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData
   return near;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType count,
   const std::vector<std::vector<vtkIdType>>& back, const std::vector<std::vector<vtkIdType>>& home,
   vtkIdType homeCount, vtkPointData* to)
 {
-  const vtkSPHRanksLayout layout = vtkSPHDescribeArrays(results, count);
+  const Layout layout = DescribeArrays(results, count);
   const std::vector<vtkSPHRanks::Bytes> received =
     vtkSPHSendTuples(ranks, vtkSPHListArrays(results), back);
   vtkNew<vtkIdList> places;
@@ -200,14 +376,14 @@ void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType cou
     }
   }
   vtkNew<vtkPointData> came;
-  vtkSPHAddArrays(came, layout, places->GetNumberOfIds());
+  AddArrays(came, layout, places->GetNumberOfIds());
   vtkSPHReceiveTuples(received, vtkSPHListArrays(came));
   vtkNew<vtkIdList> order;
   order->SetNumberOfIds(places->GetNumberOfIds());
   std::iota(order->begin(), order->end(), vtkIdType(0));
-  for (const vtkSPHRanksForm& form : layout.Forms)
+  for (const Form& form : layout.Forms)
   {
-    vtkSmartPointer<vtkAbstractArray> array = vtkSPHMakeArray(form, homeCount);
+    vtkSmartPointer<vtkAbstractArray> array = MakeArray(form, homeCount);
     if (auto* numbers = vtkArrayDownCast<vtkDataArray>(array))
     {
       numbers->Fill(0.0);
@@ -217,13 +393,12 @@ void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType cou
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
 {
-  const vtkSPHRanksLayout common = vtkSPHAgreeOnLayout(ranks, vtkSPHDescribe(result));
+  const Layout common = AgreeOnLayout(ranks, Describe(result));
   if (result->GetNumberOfPoints() == 0)
   {
-    const vtkSmartPointer<vtkPolyData> empty = vtkSPHMakeParticles(common, 0);
+    const vtkSmartPointer<vtkPolyData> empty = MakeParticles(common, 0);
     result->SetPoints(empty->GetPoints());
     result->GetPointData()->ShallowCopy(empty->GetPointData());
   }

@@ -21,7 +21,6 @@ std::size_t Index(int i)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
   std::vector<vtkSPHRanksPlace> places, double brick)
   : Places(std::move(places))
@@ -45,7 +44,6 @@ vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanks
   this->NodeOf = std::vector<int>();
 }
 
-//------------------------------------------------------------------------------
 // All nodes of a depth at once: one message for them.
 void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
 {
@@ -70,7 +68,6 @@ void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
   }
 }
 
-//------------------------------------------------------------------------------
 // Across the longest side of the particles' bounds.
 std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
   vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick)
@@ -119,7 +116,6 @@ std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
   return cuts;
 }
 
-//------------------------------------------------------------------------------
 // One histogram of each node between the numbers that are left; false when no more than one is.
 bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick)
 {
@@ -176,7 +172,6 @@ bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, do
   return true;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanksPartition::Apply(const std::vector<Cut>& cuts, double brick)
 {
   for (const Cut& cut : cuts)
@@ -208,7 +203,6 @@ void vtkSPHRanksPartition::Apply(const std::vector<Cut>& cuts, double brick)
   }
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksPartition::FindOwner(const double point[3]) const
 {
   int at = 0;
@@ -220,7 +214,6 @@ int vtkSPHRanksPartition::FindOwner(const double point[3]) const
   return this->Nodes[Index(at)].FirstRank;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanksPartition::FindOverlaps(const vtkSPHRanksBox& box, std::vector<int>& found) const
 {
   int stack[64] = { 0 }; // the tree is as deep as the number of ranks has bits

@@ -97,7 +97,6 @@ std::vector<double> BoundsOfPeriod(
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
 {
@@ -105,7 +104,6 @@ vtkSPHPeriod vtkSPHFindPeriodDistributed(
   return FindPeriod(ranks, data, problem);
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles)
 {
@@ -113,7 +111,6 @@ std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   return BoundsOfPeriod(ranks, period, particles);
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::SetPeriodDistributed(
   vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options)
 {

@@ -200,7 +200,6 @@ vtkSmartPointer<vtkIdTypeArray> MakeNumbers(const char* name, vtkIdType count)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
   vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
 {
@@ -213,7 +212,6 @@ vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
   return numbers;
 }
 
-//------------------------------------------------------------------------------
 // A cell's triangles are on one rank, beside each other: one key tells of all.
 vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
   vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
@@ -242,7 +240,6 @@ vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
   return numbers;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
   mcor_statistics& statistics)
 {

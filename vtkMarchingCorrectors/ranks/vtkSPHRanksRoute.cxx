@@ -234,7 +234,6 @@ public:
 };
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals)
 {
   for (int a = 0; a < 3; ++a)
@@ -246,7 +245,6 @@ vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_glo
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanksPeriod::Take(double at[3]) const
 {
   for (int a = 0; a < 3; ++a)
@@ -258,7 +256,6 @@ void vtkSPHRanksPeriod::Take(double at[3]) const
   }
 }
 
-//------------------------------------------------------------------------------
 int vtkSPHRanksRoute::FindOwner(const double at[3]) const
 {
   double place[3] = { at[0], at[1], at[2] };
@@ -266,13 +263,11 @@ int vtkSPHRanksRoute::FindOwner(const double at[3]) const
   return this->Partition->FindOwner(place);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanksRoute::FindReached(const double at[3], double reach, std::vector<int>& found) const
 {
   FindBoxes(*this->Partition, this->Period.Length, at, reach, found);
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {

@@ -142,7 +142,6 @@ void AddSeconds(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
 }
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSPHRanksShare& mine)
 {
   const auto* first = reinterpret_cast<const char*>(&mine);
@@ -155,7 +154,6 @@ std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSP
   return shares;
 }
 
-//------------------------------------------------------------------------------
 mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
 {
   // Of the first rank that had something to do: what is global is the same on all of these.
@@ -175,7 +173,6 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
   return all;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
 {
   using Share = vtkSPHRanksShare;
@@ -187,7 +184,6 @@ void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& sha
   AddSeconds(run, shares);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHAddSampleShares(
   vtkSPHRanks& ranks, vtkFieldData* run, const vtkSPHRanksRoute& route, std::int64_t points)
 {

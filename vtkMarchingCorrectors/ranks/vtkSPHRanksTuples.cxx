@@ -105,7 +105,6 @@ std::size_t CountBytes(const vtkSPHRanksArrays& arrays, std::size_t count)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
 {
   vtkSPHRanksArrays arrays;
@@ -116,7 +115,6 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
   return arrays;
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* particles)
 {
   vtkSPHRanksArrays arrays = vtkSPHListArrays(particles->GetPointData());
@@ -124,7 +122,6 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* particles)
   return arrays;
 }
 
-//------------------------------------------------------------------------------
 std::vector<Bytes> vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const std::vector<std::vector<vtkIdType>>& to)
 {
@@ -144,7 +141,6 @@ std::vector<Bytes> vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays&
   return ranks.Exchange(std::move(messages));
 }
 
-//------------------------------------------------------------------------------
 std::vector<vtkIdType> vtkSPHCountTuples(const std::vector<Bytes>& received)
 {
   std::vector<vtkIdType> counts;
@@ -156,7 +152,6 @@ std::vector<vtkIdType> vtkSPHCountTuples(const std::vector<Bytes>& received)
   return counts;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHReceiveTuples(const std::vector<Bytes>& received, const vtkSPHRanksArrays& arrays)
 {
   vtkIdType first = 0;

@@ -167,7 +167,6 @@ private:
 };
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options)
 {
   std::vector<std::int64_t> work(static_cast<std::size_t>(input.count), 1);
@@ -180,7 +179,6 @@ std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_op
   return work;
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals)
 {

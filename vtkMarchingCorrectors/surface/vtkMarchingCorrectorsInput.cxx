@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsInput.h"
 
-//------------------------------------------------------------------------------
 vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
   const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points)
   : vtkSPHParticles(choice, points)
@@ -10,13 +9,11 @@ vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
 {
 }
 
-//------------------------------------------------------------------------------
 bool vtkMarchingCorrectorsInput::CollectContoured()
 {
   return this->CollectScalar() && this->CollectSolids();
 }
 
-//------------------------------------------------------------------------------
 bool vtkMarchingCorrectorsInput::Collect()
 {
   if ((!this->Choice.FreeSurface && !this->CollectScalar()) || !this->CollectParticles())
@@ -37,7 +34,6 @@ bool vtkMarchingCorrectorsInput::Collect()
   return true;
 }
 
-//------------------------------------------------------------------------------
 bool vtkMarchingCorrectorsInput::CollectScalar()
 {
   const vtkSPHRequest &scalar = this->Choice.Scalar, &dot = this->Choice.ScalarDot;
@@ -95,7 +91,6 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
   return true;
 }
 
-//------------------------------------------------------------------------------
 // The iso value leaves their names to computed arrays, which users look for by name.
 void vtkMarchingCorrectorsInput::NameScalar()
 {
@@ -125,7 +120,6 @@ void vtkMarchingCorrectorsInput::NameScalar()
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsInput::SignScalar()
 {
   SignObject(this->ScalarSignature, this->Scalar);

@@ -45,7 +45,6 @@ std::string Name(const mcor_array& array)
 }
 }
 
-//------------------------------------------------------------------------------
 double vtkMarchingCorrectorsLeastLength(const mcor_input& input)
 {
   double least = std::numeric_limits<double>::infinity();
@@ -60,7 +59,6 @@ double vtkMarchingCorrectorsLeastLength(const mcor_input& input)
   return least;
 }
 
-//------------------------------------------------------------------------------
 double vtkMarchingCorrectorsEstimateCells(
   const mcor_input& input, const mcor_options& options, double least)
 {
@@ -95,7 +93,6 @@ double vtkMarchingCorrectorsEstimateCells(
   return size <= 0.0 ? 0.0 : isPlane ? area / perArea : area * spacing / (perArea * size);
 }
 
-//------------------------------------------------------------------------------
 std::string vtkMarchingCorrectorsDescribeSmoothingLength(
   const mcor_input& input, const mcor_statistics& statistics)
 {
@@ -113,7 +110,6 @@ std::string vtkMarchingCorrectorsDescribeSmoothingLength(
     (isRadius ? ", support radius)" : ")");
 }
 
-//------------------------------------------------------------------------------
 std::string vtkMarchingCorrectorsDescribeVolume(const mcor_input& input)
 {
   if (mcor_is_given(&input.volume))
@@ -128,7 +124,6 @@ std::string vtkMarchingCorrectorsDescribeVolume(const mcor_input& input)
   return "computed from the positions";
 }
 
-//------------------------------------------------------------------------------
 std::string vtkMarchingCorrectorsDescribeIsoValues(const mcor_options& options)
 {
   std::string text;
@@ -139,7 +134,6 @@ std::string vtkMarchingCorrectorsDescribeIsoValues(const mcor_options& options)
   return text;
 }
 
-//------------------------------------------------------------------------------
 std::string vtkMarchingCorrectorsDescribeMeasures(const mcor_statistics& statistics)
 {
   return statistics.area <= 0.0 ? ""

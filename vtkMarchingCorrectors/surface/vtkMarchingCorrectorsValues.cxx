@@ -37,7 +37,6 @@ double ValueOf(const mcor_array& array, vtkIdType i)
 }
 }
 
-//------------------------------------------------------------------------------
 double vtkMarchingCorrectorsScalarOf(const mcor_input& core, vtkIdType particle)
 {
   const int components = core.scalar.components;
@@ -55,13 +54,11 @@ double vtkMarchingCorrectorsScalarOf(const mcor_input& core, vtkIdType particle)
   return core.scalar_dot.data ? sum : std::sqrt(sum);
 }
 
-//------------------------------------------------------------------------------
 double vtkMarchingCorrectorsPositionOf(const mcor_input& core, vtkIdType particle, int axis)
 {
   return ValueOf(core.positions, 3 * particle + axis);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* array)
 {
   auto copy = vtkSmartPointer<vtkDoubleArray>::New();
@@ -77,7 +74,6 @@ vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* ar
   return copy;
 }
 
-//------------------------------------------------------------------------------
 vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid)
 {
   std::atomic<vtkIdType> fluidCount{ 0 };
@@ -97,7 +93,6 @@ vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std
   return fluidCount;
 }
 
-//------------------------------------------------------------------------------
 // In an array that is not of kinds, the first values tell.
 std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most)
 {

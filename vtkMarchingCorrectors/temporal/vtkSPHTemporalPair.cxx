@@ -61,7 +61,6 @@ void Sign(std::vector<std::uint64_t>& signature, vtkObject* object)
 
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output)
 {
   output->Initialize();
@@ -86,7 +85,6 @@ void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output)
   }
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalPair::Match(
   vtkPointSet* first, vtkPointSet* second, const vtkSPHTemporalChoice& choice)
 {
@@ -137,7 +135,6 @@ bool vtkSPHTemporalPair::Match(
   return true;
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHTemporalPair::MatchNothing()
 {
   this->IdName.clear();
@@ -152,13 +149,11 @@ void vtkSPHTemporalPair::MatchNothing()
   }
 }
 
-//------------------------------------------------------------------------------
 std::string vtkSPHTemporalPair::NameOfStep(int step) const
 {
   return "the step at time " + Text(this->Steps[step].Time);
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalPair::FindIds(const std::string& name)
 {
   this->IdName = RealName(name);
@@ -185,7 +180,6 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
   return this->Error.empty();
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalPair::FindVelocities(const vtkSPHTemporalChoice& choice)
 {
   this->VelocityName = choice.UseVelocities ? RealName(choice.VelocityArrayName) : "";
@@ -215,7 +209,6 @@ bool vtkSPHTemporalPair::FindVelocities(const vtkSPHTemporalChoice& choice)
   return this->Error.empty();
 }
 
-//------------------------------------------------------------------------------
 vtkDataArray* vtkSPHTemporalPair::Find(
   const std::string& role, const std::string& name, int components, int step)
 {
@@ -238,7 +231,6 @@ vtkDataArray* vtkSPHTemporalPair::Find(
   return this->Error.empty() ? array : nullptr;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalPair::AreVelocitiesFinite()
 {
   for (int k = 0; k < 2; ++k)
@@ -260,7 +252,6 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
   return true;
 }
 
-//------------------------------------------------------------------------------
 // How far the particles moved along their mean velocities, over how far these would have moved
 // them. Summed slice by slice and then in order: the same whatever the number of threads.
 void vtkSPHTemporalPair::CheckVelocities()
@@ -314,7 +305,6 @@ void vtkSPHTemporalPair::CheckVelocities()
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHTemporalPair::WarnOfLostArrays()
 {
   std::string lost;
@@ -337,7 +327,6 @@ void vtkSPHTemporalPair::WarnOfLostArrays()
   }
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHTemporalPair::IsInBoth(vtkAbstractArray* array) const
 {
   if (NameOf(array).empty())

@@ -74,7 +74,6 @@ struct HermiteWeights
 };
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
 {
   const double s = (time - this->Steps[0].Time) / (this->Steps[1].Time - this->Steps[0].Time);
@@ -89,7 +88,6 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   this->InterpolateArrays(s, output);
 }
 
-//------------------------------------------------------------------------------
 // In double, from the step that is nearer, so that a particle at rest stays where it is.
 void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData* output) const
 {
@@ -123,7 +121,6 @@ void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData
   output->SetPoints(points);
 }
 
-//------------------------------------------------------------------------------
 // What the output has is that of the nearer step already.
 void vtkSPHTemporalPair::InterpolateArrays(double s, vtkPolyData* output) const
 {

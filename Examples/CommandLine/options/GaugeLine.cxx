@@ -31,7 +31,6 @@ bool Numbers(const std::string& option, const std::string& text, std::size_t cou
 
 }
 
-//------------------------------------------------------------------------------
 GaugeLine ToGauge(const std::string& option, const std::string& text)
 {
   const std::size_t equals = text.rfind('='), colon = text.rfind(':');
@@ -51,7 +50,6 @@ GaugeLine ToGauge(const std::string& option, const std::string& text)
   return gauge;
 }
 
-//------------------------------------------------------------------------------
 std::vector<GaugeLine> ReadGauges(const std::string& file)
 {
   std::ifstream stream(file);
@@ -77,7 +75,6 @@ std::vector<GaugeLine> ReadGauges(const std::string& file)
   return gauges;
 }
 
-//------------------------------------------------------------------------------
 GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
 {
   const std::size_t colon = text.find(':');
@@ -106,7 +103,6 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
   return grid;
 }
 
-//------------------------------------------------------------------------------
 std::vector<GaugeLine> LinesOf(const GaugeGrid& grid)
 {
   std::vector<GaugeLine> lines;
@@ -128,7 +124,6 @@ std::vector<GaugeLine> LinesOf(const GaugeGrid& grid)
   return lines;
 }
 
-//------------------------------------------------------------------------------
 void CheckNames(const std::vector<GaugeLine>& gauges)
 {
   std::set<std::string> names;

@@ -362,7 +362,6 @@ private:
 
 } // namespace
 
-//------------------------------------------------------------------------------
 std::vector<std::string> Job::ParticleFiles() const
 {
   std::vector<std::string> files = this->Inputs;
@@ -370,7 +369,6 @@ std::vector<std::string> Job::ParticleFiles() const
   return files;
 }
 
-//------------------------------------------------------------------------------
 bool Job::IsFilm() const
 {
   return !this->IsProbe() && !this->IsGauge() &&
@@ -378,7 +376,6 @@ bool Job::IsFilm() const
       (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
 }
 
-//------------------------------------------------------------------------------
 std::string CommandLineHelp()
 {
   std::ostringstream help;
@@ -414,7 +411,6 @@ std::string CommandLineHelp()
   return help.str();
 }
 
-//------------------------------------------------------------------------------
 void ParseCommandLine(int argc, char* argv[], Job& job)
 {
   for (vtkSPHAlgorithm* filter : job.All())

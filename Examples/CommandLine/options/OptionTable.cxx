@@ -417,7 +417,6 @@ const Options DeviceAndHelp = {
 
 }
 
-//------------------------------------------------------------------------------
 const std::vector<Option>& AllOptions()
 {
   static const Options all = []

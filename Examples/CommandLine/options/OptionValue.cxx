@@ -10,7 +10,6 @@
 #include <limits>
 #include <sstream>
 
-//------------------------------------------------------------------------------
 bool ParseNumber(const std::string& text, double& value)
 {
   // from_chars reads 1.5 as 1.5 in every locale, but knows no leading plus.
@@ -20,7 +19,6 @@ bool ParseNumber(const std::string& text, double& value)
   return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
-//------------------------------------------------------------------------------
 double ToNumber(const std::string& option, const std::string& text)
 {
   double value = 0.0;
@@ -31,7 +29,6 @@ double ToNumber(const std::string& option, const std::string& text)
   return value;
 }
 
-//------------------------------------------------------------------------------
 double ToPositive(const std::string& option, const std::string& text)
 {
   const double value = ToNumber(option, text);
@@ -42,7 +39,6 @@ double ToPositive(const std::string& option, const std::string& text)
   return value;
 }
 
-//------------------------------------------------------------------------------
 double ToThreshold(const std::string& option, const std::string& text)
 {
   const double value = ToNumber(option, text);
@@ -53,7 +49,6 @@ double ToThreshold(const std::string& option, const std::string& text)
   return value;
 }
 
-//------------------------------------------------------------------------------
 int ToCount(const std::string& option, const std::string& text, int smallest, int largest)
 {
   int value = 0;
@@ -70,7 +65,6 @@ int ToCount(const std::string& option, const std::string& text, int smallest, in
   return value;
 }
 
-//------------------------------------------------------------------------------
 int ToChoice(const std::string& option, const std::string& text,
   const std::vector<std::pair<const char*, int>>& choices)
 {
@@ -86,7 +80,6 @@ int ToChoice(const std::string& option, const std::string& text,
   throw UsageError(option + " must be one of " + list + ", not '" + text + "'");
 }
 
-//------------------------------------------------------------------------------
 std::string ToQuantity(const std::string& option, const std::string& text)
 {
   double value = 0.0;
@@ -97,7 +90,6 @@ std::string ToQuantity(const std::string& option, const std::string& text)
   return Printable(text);
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> ToNumbers(const std::string& option, const std::string& text)
 {
   std::vector<double> values;
@@ -109,7 +101,6 @@ std::vector<double> ToNumbers(const std::string& option, const std::string& text
   return values;
 }
 
-//------------------------------------------------------------------------------
 double ToShare(const std::string& option, const std::string& text)
 {
   if (text == "measured")
@@ -125,7 +116,6 @@ double ToShare(const std::string& option, const std::string& text)
   return number;
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> ToBox(const std::string& option, const std::string& text)
 {
   std::vector<double> box;
@@ -151,7 +141,6 @@ std::vector<double> ToBox(const std::string& option, const std::string& text)
   return box;
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> ToPeriod(const std::string& option, const std::string& text)
 {
   const std::vector<double> period = ToNumbers(option, text);
@@ -172,7 +161,6 @@ std::vector<double> ToPeriod(const std::string& option, const std::string& text)
   return period;
 }
 
-//------------------------------------------------------------------------------
 void ToSlice(const std::string& option, const std::string& text, int& axis, double& place)
 {
   const std::size_t found = std::string("xyz").find(text.substr(0, 1));
@@ -184,7 +172,6 @@ void ToSlice(const std::string& option, const std::string& text, int& axis, doub
   place = ToNumber(option, text.substr(2));
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> ToLine(const std::string& option, const std::string& text)
 {
   const std::vector<double> line = ToNumbers(option, text);
@@ -195,7 +182,6 @@ std::vector<double> ToLine(const std::string& option, const std::string& text)
   return line;
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> ToRange(const std::string& option, const std::string& text)
 {
   const std::vector<double> range = ToNumbers(option, text);
@@ -206,7 +192,6 @@ std::vector<double> ToRange(const std::string& option, const std::string& text)
   return range;
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> ToDirection(const std::string& option, const std::string& text)
 {
   const std::vector<double> direction = ToNumbers(option, text);
@@ -217,7 +202,6 @@ std::vector<double> ToDirection(const std::string& option, const std::string& te
   return direction;
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> ToNames(const std::string& option, const std::string& text)
 {
   std::vector<std::string> names;

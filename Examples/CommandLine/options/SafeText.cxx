@@ -60,7 +60,6 @@ std::string Escape(const char* format, unsigned code)
 
 }
 
-//------------------------------------------------------------------------------
 std::string Printable(const std::string& text)
 {
   std::string result;
@@ -84,7 +83,6 @@ std::string Printable(const std::string& text)
   return result;
 }
 
-//------------------------------------------------------------------------------
 std::string QuotedForJson(const std::string& text)
 {
   std::string quoted = "\"";
@@ -109,13 +107,11 @@ std::string QuotedForJson(const std::string& text)
   return quoted + "\"";
 }
 
-//------------------------------------------------------------------------------
 void Say(const std::string& sentence)
 {
   std::cerr << "marching-correctors: " << Printable(sentence) << "\n";
 }
 
-//------------------------------------------------------------------------------
 std::string EscapedForXml(const std::string& text)
 {
   std::string escaped;

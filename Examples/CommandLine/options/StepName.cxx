@@ -19,14 +19,12 @@ std::size_t EndOfPlace(const std::string& name, std::size_t percent)
 
 }
 
-//------------------------------------------------------------------------------
 bool HasStepNumber(const std::string& name)
 {
   return std::count(name.begin(), name.end(), '%') == 1 &&
     EndOfPlace(name, name.find('%')) != std::string::npos;
 }
 
-//------------------------------------------------------------------------------
 bool FindStepNumber(const std::string& file, std::size_t& number)
 {
   const char* const digits = "0123456789";
@@ -42,7 +40,6 @@ bool FindStepNumber(const std::string& file, std::size_t& number)
   return true;
 }
 
-//------------------------------------------------------------------------------
 std::string NameOfStep(const std::string& name, std::size_t step)
 {
   const std::size_t percent = name.find('%');

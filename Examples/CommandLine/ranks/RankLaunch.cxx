@@ -23,7 +23,6 @@ int Number(std::initializer_list<const char*> names, int otherwise)
 
 }
 
-//------------------------------------------------------------------------------
 int LaunchedCount()
 {
 #if MCOR_HAS_RANKS
@@ -33,7 +32,6 @@ int LaunchedCount()
 #endif
 }
 
-//------------------------------------------------------------------------------
 int LaunchedRank()
 {
   return LaunchedCount() > 1 ? Number({ "OMPI_COMM_WORLD_RANK", "PMI_RANK" }, 0) : 0;

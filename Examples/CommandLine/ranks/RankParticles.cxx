@@ -56,7 +56,6 @@ vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet*
 
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(RankSession& session,
   const std::vector<std::string>& files, const std::vector<std::string>& walls,
   MessageCapture* messages)
@@ -74,7 +73,6 @@ vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(RankSession& session,
   return GiveArrays(session, particles);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ShareParticles(
   RankSession& session, const std::function<vtkSmartPointer<vtkPointSet>()>& make)
 {
@@ -90,7 +88,6 @@ vtkSmartPointer<vtkPointSet> ShareParticles(
   return GiveArrays(session, particles);
 }
 
-//------------------------------------------------------------------------------
 void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles)
 {
   if (job.DetectPeriod)

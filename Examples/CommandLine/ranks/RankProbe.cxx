@@ -36,7 +36,6 @@ void FindBounds(const RankSession& session, vtkPointSet* particles, double bound
 
 }
 
-//------------------------------------------------------------------------------
 void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
 {
   vtkSmartPointer<vtkDataSet> points;

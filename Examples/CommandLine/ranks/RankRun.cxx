@@ -175,7 +175,6 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
 }
 }
 
-//------------------------------------------------------------------------------
 bool RunDistributed(Job& job, MessageCapture* messages)
 {
   RankSession session;

@@ -9,7 +9,6 @@
 #include <new>
 #include <stdexcept>
 
-//------------------------------------------------------------------------------
 RankSession::RankSession()
 {
   int count = 0;
@@ -18,26 +17,22 @@ RankSession::RankSession()
   vtkMultiProcessController::SetGlobalController(this->Controller);
 }
 
-//------------------------------------------------------------------------------
 RankSession::~RankSession()
 {
   vtkMultiProcessController::SetGlobalController(nullptr);
   this->Controller->Finalize();
 }
 
-//------------------------------------------------------------------------------
 int RankSession::GetRank() const
 {
   return this->Controller->GetLocalProcessId();
 }
 
-//------------------------------------------------------------------------------
 int RankSession::GetCount() const
 {
   return this->Controller->GetNumberOfProcesses();
 }
 
-//------------------------------------------------------------------------------
 void RankSession::RunOnAll(const std::function<void()>& work)
 {
   std::string sentence;

@@ -26,7 +26,6 @@ vtkSmartPointer<vtkPointSet> ReadStep(RankSession& session, MessageCapture* mess
 
 }
 
-//------------------------------------------------------------------------------
 StepSharing ShareSteps(Job& job, RankSession& session, MessageCapture* messages)
 {
   StepSharing sharing;

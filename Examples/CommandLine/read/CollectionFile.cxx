@@ -74,13 +74,11 @@ std::string Resolved(const std::string& list, const std::string& file)
 
 }
 
-//------------------------------------------------------------------------------
 bool IsCollectionFile(const std::string& file)
 {
   return EndsWith(file, ".pvd");
 }
 
-//------------------------------------------------------------------------------
 std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapture* messages)
 {
   const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection", messages);
@@ -111,7 +109,6 @@ std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapt
   return entries;
 }
 
-//------------------------------------------------------------------------------
 std::string CollectionText(const std::vector<CollectionEntry>& entries)
 {
   std::string text = "<?xml version=\"1.0\"?>\n"
@@ -127,7 +124,6 @@ std::string CollectionText(const std::vector<CollectionEntry>& entries)
   return text + "  </Collection>\n</VTKFile>\n";
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* messages)
 {
   const bool isPolyData = file.back() == 'p';

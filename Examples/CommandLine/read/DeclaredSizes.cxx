@@ -267,7 +267,6 @@ void CheckLegacy(const std::string& file, View text)
 
 }
 
-//------------------------------------------------------------------------------
 void CheckDeclaredSizes(const std::string& file)
 {
   const MappedFile mapped(file);

@@ -346,19 +346,16 @@ void ReadPart(const std::string& file, std::vector<vtkSmartPointer<vtkPointSet>>
 
 }
 
-//------------------------------------------------------------------------------
 std::string ParticleFileEndings()
 {
   return ListEndings(Formats);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages)
 {
   return ReadParticles(std::vector<std::string>{ file }, messages);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages)
 {
@@ -378,14 +375,12 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   return isWhole ? parts.front() : JoinParts(parts);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadWalls(
   const std::vector<std::string>& files, MessageCapture* messages)
 {
   return files.empty() ? nullptr : ReadParticles(files, messages);
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages)
 {
   std::vector<std::string> all = files;
@@ -405,7 +400,6 @@ std::vector<std::string> ListFiles(const std::vector<std::string>& files, Messag
   return all;
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ReadParticlesPart(
   const std::string& file, int rank, int count, MessageCapture* messages)
 {
@@ -423,7 +417,6 @@ vtkSmartPointer<vtkPointSet> ReadParticlesPart(
   return IsList(file) ? JoinParts(parts) : parts.front();
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)
 {
   CheckReadable(file, DataFormats);

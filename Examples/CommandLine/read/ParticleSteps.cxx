@@ -86,7 +86,6 @@ void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, Message
 
 }
 
-//------------------------------------------------------------------------------
 ParticleSteps::ParticleSteps()
 {
   this->SetNumberOfInputPorts(0);
@@ -94,7 +93,6 @@ ParticleSteps::ParticleSteps()
 
 ParticleSteps::~ParticleSteps() = default;
 
-//------------------------------------------------------------------------------
 void ParticleSteps::SetSteps(const std::vector<Step>* steps, MessageCapture* messages)
 {
   this->Steps = steps;
@@ -102,7 +100,6 @@ void ParticleSteps::SetSteps(const std::vector<Step>* steps, MessageCapture* mes
   this->Modified();
 }
 
-//------------------------------------------------------------------------------
 int ParticleSteps::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -118,7 +115,6 @@ int ParticleSteps::RequestInformation(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 int ParticleSteps::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -143,7 +139,6 @@ int ParticleSteps::RequestData(
   return 1;
 }
 
-//------------------------------------------------------------------------------
 std::vector<ParticleSteps::Step>::const_iterator FindStep(
   const std::vector<ParticleSteps::Step>& steps, double time)
 {
@@ -151,7 +146,6 @@ std::vector<ParticleSteps::Step>::const_iterator FindStep(
     [](const ParticleSteps::Step& step, double t) { return step.Time < t; });
 }
 
-//------------------------------------------------------------------------------
 std::vector<ParticleSteps::Step> ListSteps(const Job& job, MessageCapture* messages)
 {
   const bool haveTimes = IsCollectionFile(job.Inputs.front());

@@ -12,7 +12,6 @@
 #include <sstream>
 #include <stdexcept>
 
-//------------------------------------------------------------------------------
 void PassPeriod(vtkDataObject* from, vtkDataObject* to)
 {
   vtkFieldData* data = from->GetFieldData();
@@ -26,7 +25,6 @@ void PassPeriod(vtkDataObject* from, vtkDataObject* to)
   }
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem)
 {
   if (!problem.empty() || found.Period.empty())
@@ -38,13 +36,11 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
   return found.Period;
 }
 
-//------------------------------------------------------------------------------
 std::vector<double> DetectPeriod(vtkDataObject* particles)
 {
   return CheckedPeriod(vtkSPHFindPeriod(particles->GetFieldData()), "");
 }
 
-//------------------------------------------------------------------------------
 std::string HintOfPeriod(vtkDataObject* particles)
 {
   const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());

@@ -70,7 +70,6 @@ vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, v
 
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
 {
   if (!walls)

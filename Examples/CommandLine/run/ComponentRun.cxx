@@ -53,7 +53,6 @@ void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
 
 }
 
-//------------------------------------------------------------------------------
 // Of the particles as the surface was told of them.
 void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time)
 {

@@ -156,7 +156,6 @@ void WaitForSignal()
 
 }
 
-//------------------------------------------------------------------------------
 void PrepareForEnding()
 {
   ClearsLine = isatty(STDERR_FILENO);
@@ -176,13 +175,11 @@ void PrepareForEnding()
   std::thread(WaitForSignal).detach();
 }
 
-//------------------------------------------------------------------------------
 void KeepWatchOfCrashes()
 {
   SetHandlersOfCrashes();
 }
 
-//------------------------------------------------------------------------------
 int Finish(int status)
 {
   FinalStatus = status;
@@ -190,7 +187,6 @@ int Finish(int status)
   return status;
 }
 
-//------------------------------------------------------------------------------
 std::string FaultsOfDrivers(const std::string& device)
 {
   const auto variable = [](const char* name) -> std::string
@@ -211,7 +207,6 @@ std::string FaultsOfDrivers(const std::string& device)
     ", or memory ran out";
 }
 
-//------------------------------------------------------------------------------
 Activity::Activity(const std::string& failure, const std::string& hint)
   : OuterFailure(Failure)
   , OuterHint(Hint)
@@ -220,14 +215,12 @@ Activity::Activity(const std::string& failure, const std::string& hint)
   Set(Hint, hint);
 }
 
-//------------------------------------------------------------------------------
 Activity::~Activity()
 {
   Set(Failure, this->OuterFailure);
   Set(Hint, this->OuterHint);
 }
 
-//------------------------------------------------------------------------------
 Silence::Silence()
 {
   std::fflush(stderr);
@@ -241,7 +234,6 @@ Silence::Silence()
   close(nowhere);
 }
 
-//------------------------------------------------------------------------------
 Silence::~Silence()
 {
   std::fflush(stderr);
@@ -254,7 +246,6 @@ Silence::~Silence()
   }
 }
 
-//------------------------------------------------------------------------------
 TemporaryFile::TemporaryFile(const std::string& begin)
   : Name(begin + "XXXXXX")
 {
@@ -270,7 +261,6 @@ TemporaryFile::TemporaryFile(const std::string& begin)
   }
 }
 
-//------------------------------------------------------------------------------
 TemporaryFile::~TemporaryFile()
 {
   this->Close();
@@ -282,7 +272,6 @@ TemporaryFile::~TemporaryFile()
   }
 }
 
-//------------------------------------------------------------------------------
 bool TemporaryFile::Close()
 {
   const int descriptor = this->Descriptor;
@@ -290,7 +279,6 @@ bool TemporaryFile::Close()
   return descriptor < 0 || close(descriptor) == 0;
 }
 
-//------------------------------------------------------------------------------
 bool TemporaryFile::TakePlaceOf(const std::string& file)
 {
   if (std::rename(this->Name.c_str(), file.c_str()) != 0) // not under the lock: it may hang

@@ -36,7 +36,6 @@ double NumberOf(vtkFieldData* statistics, const char* name)
 
 }
 
-//------------------------------------------------------------------------------
 FilmNumbers::FilmNumbers(const Job& job)
   : Options(job)
 {
@@ -46,7 +45,6 @@ FilmNumbers::FilmNumbers(const Job& job)
   }
 }
 
-//------------------------------------------------------------------------------
 void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* messages, double time,
   std::vector<std::string>& warnings)
 {

@@ -199,7 +199,6 @@ private:
 
 }
 
-//------------------------------------------------------------------------------
 std::vector<GaugeLine> ListGauges(const Job& job)
 {
   std::vector<GaugeLine> gauges = job.Gauges;
@@ -216,7 +215,6 @@ std::vector<GaugeLine> ListGauges(const Job& job)
   return gauges;
 }
 
-//------------------------------------------------------------------------------
 void AddGauges(const Job& job, const std::vector<GaugeLine>& gauges)
 {
   for (const GaugeLine& gauge : gauges)
@@ -226,7 +224,6 @@ void AddGauges(const Job& job, const std::vector<GaugeLine>& gauges)
   }
 }
 
-//------------------------------------------------------------------------------
 vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
   MessageCapture* messages, const std::string& progress)
 {
@@ -236,7 +233,6 @@ vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
   return job.Gauge->GetOutput();
 }
 
-//------------------------------------------------------------------------------
 bool MakeGaugeTable(const Job& job, MessageCapture* messages, const StepSharing& sharing)
 {
   const std::vector<GaugeLine> gauges = ListGauges(job);

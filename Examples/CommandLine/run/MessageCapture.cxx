@@ -39,45 +39,37 @@ std::string Sentence(const char* text)
 
 }
 
-//------------------------------------------------------------------------------
 MessageCapture::MessageCapture() = default;
 MessageCapture::~MessageCapture() = default;
 
-//------------------------------------------------------------------------------
 void MessageCapture::DisplayText(const char* text)
 {
   this->AddWarning(Sentence(text));
 }
 
-//------------------------------------------------------------------------------
 void MessageCapture::DisplayErrorText(const char* text)
 {
   this->Errors.push_back(Sentence(text));
 }
 
-//------------------------------------------------------------------------------
 void MessageCapture::DisplayWarningText(const char* text)
 {
   this->AddWarning(Sentence(text));
 }
 
-//------------------------------------------------------------------------------
 void MessageCapture::DisplayGenericWarningText(const char* text)
 {
   this->AddWarning(Sentence(text));
 }
 
-//------------------------------------------------------------------------------
 // The legacy readers only warn ("Error reading ascii data") where a file ends in mid-array.
 void MessageCapture::AddWarning(const std::string& sentence)
 {
   (sentence.compare(0, 5, "Error") == 0 ? this->Errors : this->Warnings).push_back(sentence);
 }
 
-//------------------------------------------------------------------------------
 void MessageCapture::DisplayDebugText(const char*) {}
 
-//------------------------------------------------------------------------------
 void MessageCapture::Clear()
 {
   this->Errors.clear();

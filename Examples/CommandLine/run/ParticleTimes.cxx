@@ -49,7 +49,6 @@ std::vector<double> ListTimes(const Job& job, const ParticleTimes::Steps& steps)
 
 }
 
-//------------------------------------------------------------------------------
 std::string TimeText(double time)
 {
   std::ostringstream stream;
@@ -57,7 +56,6 @@ std::string TimeText(double time)
   return stream.str();
 }
 
-//------------------------------------------------------------------------------
 ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
   : Messages(messages)
   , Stored(ListSteps(job, messages))
@@ -78,7 +76,6 @@ ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
 
 ParticleTimes::~ParticleTimes() = default;
 
-//------------------------------------------------------------------------------
 std::vector<std::string> ParticleTimes::ListFiles() const
 {
   std::vector<std::string> files;
@@ -90,19 +87,16 @@ std::vector<std::string> ParticleTimes::ListFiles() const
   return files;
 }
 
-//------------------------------------------------------------------------------
 const std::vector<std::string>& ParticleTimes::ListWalls(double time) const
 {
   return FindStep(this->Stored, time)->Walls;
 }
 
-//------------------------------------------------------------------------------
 bool ParticleTimes::IsStored(double time) const
 {
   return FindStep(this->Stored, time)->Time == time;
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> ParticleTimes::ListFiles(double time) const
 {
   std::vector<std::string> files;
@@ -114,7 +108,6 @@ std::vector<std::string> ParticleTimes::ListFiles(double time) const
   return files;
 }
 
-//------------------------------------------------------------------------------
 void ParticleTimes::Reset()
 {
   vtkNew<ParticleSteps> source;
@@ -125,7 +118,6 @@ void ParticleTimes::Reset()
   this->Interpolator = interpolator;
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> ParticleTimes::At(double time, std::vector<std::string>& warnings)
 {
   this->Messages->Clear();

@@ -148,7 +148,6 @@ void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
 
 }
 
-//------------------------------------------------------------------------------
 void CheckProbeFiles(const Job& job, MessageCapture* messages)
 {
   std::vector<std::string> inputs = ListFiles(job.ParticleFiles(), messages),
@@ -164,7 +163,6 @@ void CheckProbeFiles(const Job& job, MessageCapture* messages)
   CheckOutputs(inputs, outputs);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)
 {
   vtkSmartPointer<vtkDataSet> points;
@@ -176,26 +174,22 @@ vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)
   return points;
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, const double bounds[6])
 {
   return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
 }
 
-//------------------------------------------------------------------------------
 void SetUpProbe(const Job& job, vtkDataSet* points, vtkPointSet* particles)
 {
   job.Probe->SetInputData(points);
   job.Probe->SetSourceData(SetUpParticles(job.Probe, job, particles));
 }
 
-//------------------------------------------------------------------------------
 double RunProbe(const Job& job, MessageCapture* messages)
 {
   return Update(job.Probe, job, messages);
 }
 
-//------------------------------------------------------------------------------
 void ReportProbe(const Job& job, double seconds, MessageCapture* messages)
 {
   for (const std::string& warning : messages->GetWarnings())
@@ -210,7 +204,6 @@ void ReportProbe(const Job& job, double seconds, MessageCapture* messages)
   }
 }
 
-//------------------------------------------------------------------------------
 void ProbePoints(const Job& job, MessageCapture* messages)
 {
   CheckProbeFiles(job, messages);

@@ -267,7 +267,6 @@ void WriteWalls(JsonText& json, const Job& job)
 }
 }
 
-//------------------------------------------------------------------------------
 std::string DescribeSeconds(vtkFieldData* run)
 {
   vtkDataArray* seconds = run->GetArray("Seconds");
@@ -284,7 +283,6 @@ std::string DescribeSeconds(vtkFieldData* run)
   return line.str() + "\n";
 }
 
-//------------------------------------------------------------------------------
 std::string DescribeRun(vtkFieldData* run)
 {
   if (!run->GetArray("Seconds"))
@@ -306,7 +304,6 @@ std::string DescribeRun(vtkFieldData* run)
   return text.str();
 }
 
-//------------------------------------------------------------------------------
 std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
   const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
   double peakResidentBytes)
@@ -344,7 +341,6 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   return json.Get() + "\n";
 }
 
-//------------------------------------------------------------------------------
 std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds)
 {
   JsonText json(2);
@@ -367,7 +363,6 @@ std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSecon
   return json.Get();
 }
 
-//------------------------------------------------------------------------------
 std::string SettingAsJson(const Job& job, vtkFieldData* run)
 {
   JsonText json(1);
@@ -375,7 +370,6 @@ std::string SettingAsJson(const Job& job, vtkFieldData* run)
   return json.Get();
 }
 
-//------------------------------------------------------------------------------
 std::string FilmAsJson(
   const Job& job, const std::vector<FilmStep>& steps, const std::string& setting)
 {
@@ -401,7 +395,6 @@ std::string FilmAsJson(
   return json.Get() + "\n";
 }
 
-//------------------------------------------------------------------------------
 double PeakResidentBytes()
 {
   rusage usage = {};

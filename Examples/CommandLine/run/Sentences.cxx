@@ -4,7 +4,6 @@
 
 #include "SafeText.h"
 
-//------------------------------------------------------------------------------
 void Sentences::Tell(const std::string& kind, const std::string& step, const std::string& sentence)
 {
   if (++this->Counts[kind + sentence] == 1)
@@ -13,7 +12,6 @@ void Sentences::Tell(const std::string& kind, const std::string& step, const std
   }
 }
 
-//------------------------------------------------------------------------------
 void Sentences::TellCounts() const
 {
   for (const auto& [sentence, count] : this->Counts)

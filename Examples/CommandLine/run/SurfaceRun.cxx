@@ -200,7 +200,6 @@ void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
 
 }
 
-//------------------------------------------------------------------------------
 std::string WithOptions(const Job& job, const std::string& sentence)
 {
   const bool hasTimes = !job.Inputs.empty() && IsCollectionFile(job.Inputs.front());
@@ -222,13 +221,11 @@ std::string WithOptions(const Job& job, const std::string& sentence)
   return result;
 }
 
-//------------------------------------------------------------------------------
 bool ShowsProgress(const Job& job)
 {
   return !job.Quiet && isatty(STDERR_FILENO);
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
@@ -238,7 +235,6 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   return particles;
 }
 
-//------------------------------------------------------------------------------
 void SetUpSurface(const Job& job, vtkPointSet* input)
 {
   vtkSmartPointer<vtkPointSet> particles = SetUpParticles(job.Surface, job, input);
@@ -248,7 +244,6 @@ void SetUpSurface(const Job& job, vtkPointSet* input)
   job.Surface->SetInputData(bare);
 }
 
-//------------------------------------------------------------------------------
 double Update(
   vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages, const std::string& before)
 {
@@ -276,7 +271,6 @@ double Update(
   return elapsed.count();
 }
 
-//------------------------------------------------------------------------------
 Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
 {
   vtkMarchingCorrectors* filter = job.Surface;
@@ -290,7 +284,6 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
   return run;
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
 {
   std::vector<std::string> all = messages->GetWarnings();
@@ -307,7 +300,6 @@ std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
   return all;
 }
 
-//------------------------------------------------------------------------------
 void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings)
 {
   const std::string hint = job.Periodic.empty() && !job.DetectPeriod ? HintOfPeriod(particles) : "";

@@ -81,7 +81,6 @@ const std::vector<FileFormat<Writer>> Formats = {
 
 }
 
-//------------------------------------------------------------------------------
 void CheckDataSetFile(const std::string& file, vtkDataSet* data)
 {
   const FileFormat<Writer>* format = FindFormat(Formats, file);
@@ -101,7 +100,6 @@ void CheckDataSetFile(const std::string& file, vtkDataSet* data)
     std::string(data->GetClassName()) + ", for a " + endings + " file, not '" + file + "'");
 }
 
-//------------------------------------------------------------------------------
 void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages)
 {
   const Activity writing(file + " could not be written", "memory may have run out");

@@ -19,14 +19,12 @@ bool IsRegularFile(const std::string& name)
 
 }
 
-//------------------------------------------------------------------------------
 GrowingFile::GrowingFile(const std::string& name)
   : Name(name)
   , IsRegular(IsRegularFile(name))
 {
 }
 
-//------------------------------------------------------------------------------
 void GrowingFile::Write(const std::function<std::string()>& text, bool isLast)
 {
   const auto begin = Clock::now();

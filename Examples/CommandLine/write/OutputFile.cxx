@@ -281,7 +281,6 @@ private:
   std::unique_ptr<TemporaryFile> File;
 };
 
-//------------------------------------------------------------------------------
 void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
 {
   std::set<Identity> sources, streams, found;
@@ -323,17 +322,14 @@ void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std:
   }
 }
 
-//------------------------------------------------------------------------------
 OutputFiles::OutputFiles() = default;
 OutputFiles::~OutputFiles() = default;
 
-//------------------------------------------------------------------------------
 void OutputFiles::Write(const std::string& file, const std::string& bytes)
 {
   this->Files.emplace_back(new Replacement(Find(file), bytes));
 }
 
-//------------------------------------------------------------------------------
 void OutputFiles::Commit()
 {
   for (const std::unique_ptr<Replacement>& file : this->Files)
@@ -343,7 +339,6 @@ void OutputFiles::Commit()
   this->Files.clear();
 }
 
-//------------------------------------------------------------------------------
 void WriteOutput(const std::string& file, const std::string& bytes)
 {
   OutputFiles one;

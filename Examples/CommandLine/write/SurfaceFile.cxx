@@ -229,19 +229,16 @@ const char* const FilmMark = "<!-- a step of a film by marching-correctors -->";
 
 }
 
-//------------------------------------------------------------------------------
 bool IsSurfaceFile(const std::string& file)
 {
   return FindFormat(Formats, file) != nullptr;
 }
 
-//------------------------------------------------------------------------------
 std::string SurfaceFileEndings()
 {
   return ListEndings(Formats);
 }
 
-//------------------------------------------------------------------------------
 std::string SurfaceBytes(
   const std::string& file, vtkPolyData* surface, const ColorScale& colors, MessageCapture* messages)
 {
@@ -263,7 +260,6 @@ std::string SurfaceBytes(
   return bytes;
 }
 
-//------------------------------------------------------------------------------
 std::string FilmSurfaceBytes(
   const std::string& file, vtkPolyData* surface, MessageCapture* messages)
 {
@@ -272,7 +268,6 @@ std::string FilmSurfaceBytes(
   return bytes;
 }
 
-//------------------------------------------------------------------------------
 bool IsFilmSurface(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
@@ -281,7 +276,6 @@ bool IsFilmSurface(const std::string& file)
   return head.find(FilmMark) != std::string::npos;
 }
 
-//------------------------------------------------------------------------------
 std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors)
 {
   const bool isPly = EndsWith(file, ".ply");

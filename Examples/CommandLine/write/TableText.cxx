@@ -48,7 +48,6 @@ std::string Field(vtkAbstractArray* column, vtkIdType row)
 
 }
 
-//------------------------------------------------------------------------------
 std::string TableHeader(vtkTable* table)
 {
   std::string line;
@@ -59,7 +58,6 @@ std::string TableHeader(vtkTable* table)
   return line + "\n";
 }
 
-//------------------------------------------------------------------------------
 std::string TableRows(vtkTable* table)
 {
   std::string text;

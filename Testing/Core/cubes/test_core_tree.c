@@ -299,7 +299,7 @@ static void more_leaves_than_the_limit(void** state)
   size_t room = 0;
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
-    room += context->tree.split[l].capacity * sizeof(mcor_cluster);
+    room += context->tree.split[l].clusters.capacity * sizeof(mcor_entry);
   }
   CORE_CHECK(room < 50000000, "%lld bytes", (long long)room);
   mcor_release_tree(&context->tree);

@@ -10,10 +10,6 @@
  * and sees the search grid in cells of that level (mcor_view_level). */
 
 #include "mcor_adaptive.h"
-#include "mcor_adaptive_level.h"
-#include "mcor_adaptive_pair.h"
-#include "mcor_adaptive_seed.h"
-#include "mcor_adaptive_topology.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
 #include "mcor_plane.h"
@@ -186,10 +182,7 @@ static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_node
   mcor_brick_data last = context->bricks.now;
   context->bricks.now = (mcor_brick_data){ 0 };
   mcor_status status = mcor_fill_slots(context, slots);
-  if (status == MCOR_OK && slots > 0)
-  {
-    status = mcor_take_leaf_nodes(context, found);
-  }
+  status = status == MCOR_OK && slots > 0 ? mcor_take_leaf_nodes(context, found) : status;
   if (status == MCOR_OK && found)
   {
     int taken;
@@ -197,10 +190,7 @@ static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_node
     status = mcor_count_bits(context, known, known, slots, &taken);
     adaptive->dropped = adaptive->evaluated - taken;
   }
-  if (status == MCOR_OK && slots > 0)
-  {
-    status = mcor_move_nodes(context, &last);
-  }
+  status = status == MCOR_OK && slots > 0 ? mcor_move_nodes(context, &last) : status;
   mcor_release_brick_data(context, &last);
   return status;
 }

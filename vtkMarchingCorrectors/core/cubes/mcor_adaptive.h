@@ -3,14 +3,85 @@
 #ifndef mcor_adaptive_h
 #define mcor_adaptive_h
 
-/* Adaptive cubes: what takes the place of seeds and march. */
+/* Adaptive cubes: what takes the place of seeds and march, and what other phases see of it. Vertices are on
+ * edges of their level's lattice: node, offset, gradient and correction are in its cells, 2^level cubes. */
 
 #include "mcor_internal.h"
 
+/* Whether this call's cubes are of several levels. */
+static inline bool mcor_is_adaptive(const mcor_context* context)
+{
+  return context->lattice.top > 0;
+}
+
+/* Bricks that are marched, or leaves where there may be surface. */
+static inline int mcor_marched_count(const mcor_context* context)
+{
+  return mcor_is_adaptive(context) ? context->adaptive.count : context->bricks.now.count;
+}
+
+/* Slots by keys. */
+#define MCOR_SLOT_ARGS(c)                                                                          \
+  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->adaptive.bucket_shift),                           \
+    MCOR_BUFFER(&(c)->adaptive.keys), MCOR_BUFFER(&(c)->adaptive.buckets)
+
+/* What evaluates the field at vertices does so level by level:
+ *
+ *   for (int l = 0; l <= context->lattice.top; ++l)
+ *     mcor_level_vertices(context, boundary, l, &first, &count);
+ *     mcor_view_level(context, l);
+ *     ...
+ *   mcor_view_level(context, 0); */
+
+/* Vertices of a level, on lattice edges or of the trim boundary. */
+void mcor_level_vertices(
+  const mcor_context* context, bool boundary, int level, int* first, int* count);
+
+/* From now on MCOR_GRID_ARGS are in cells of a level. */
+mcor_status mcor_view_level(mcor_context* context, int level);
+
+/* Work-items [first, first + count) of a heavy loop. On a CPU, where they are launched at once, so many that
+ * they take some 0.1 s, as far as one does not take longer:
+ *
+ *   mcor_span span = { .end = count };
+ *   MCOR_TRY(mcor_next_span(context, &span));
+ *   while (span.count > 0)
+ *     ... MCOR_INT(span.first), MCOR_INT(span.count) ...
+ *     MCOR_TRY(mcor_next_span(context, &span)); */
+typedef struct mcor_span
+{
+  int first, count, end;
+  double begin; /* when it began */
+} mcor_span;
+
+mcor_status mcor_next_span(mcor_context* context, mcor_span* span);
+
 /* The leaves where there may be surface, with their nodes' values; then their vertices and
- * triangles. iso: relative to A0. */
+ * triangles. iso: relative to A0, here and below. */
 mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);
 mcor_status mcor_march_leaves(mcor_context* context, double iso);
 void mcor_release_adaptive(mcor_context* context);
+
+/* mcor_adaptive_seed.c. What is known of the nodes of all leaves, while slots are made. */
+typedef struct mcor_leaf_nodes
+{
+  mcor_buffer value, weight; /* of those to examine; empty if they are not evaluated */
+} mcor_leaf_nodes;
+
+/* Takes the tree to the device. */
+mcor_status mcor_write_tree(mcor_context* context);
+/* Finds the leaves that may have surface: adaptive.count, cells, finer. found: their nodes' values are kept
+ * there; NULL: they are not evaluated. */
+mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_nodes* found);
+/* Takes over to the slots what was found. */
+mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found);
+
+/* mcor_topology.c. Decides, and counts the triangles of each leaf anew. */
+mcor_status mcor_resolve_leaves(mcor_context* context, double iso);
+
+/* mcor_pair.c. Leaves the cells that pairs reach [III-C], of those in mesh.used;
+ * adaptive_pairs.seeds: those that pairs mark. */
+mcor_status mcor_keep_reached(mcor_context* context, double iso);
+void mcor_release_adaptive_pairs(mcor_context* context);
 
 #endif

@@ -4,7 +4,7 @@
 /* Adaptive cubes: level by level. What evaluates the field at vertices of a level sees the search grid in
  * cells of that level; work that may take long goes span by span. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 
 #include <math.h>
 #include <string.h>

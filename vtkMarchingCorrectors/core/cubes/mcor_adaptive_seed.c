@@ -6,8 +6,7 @@
  * their values do. A leaf is left out where it and the leaves up from it agree. Particles are gathered for
  * all parts of a brick at once. */
 
-#include "mcor_adaptive_seed.h"
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
@@ -94,7 +93,7 @@ static mcor_status mcor_find_finer(mcor_context* context)
 {
   mcor_tree* tree = &context->tree;
   tree->finer = malloc(((size_t)tree->leaf_count + 1) * sizeof *tree->finer);
-  MCOR_RETURN_IF(!tree->finer, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, tree->finer));
   for (mcor_finer_job job = { tree, 0 }; job.begin < tree->region_count;
        job.begin += MCOR_FINER_STEP)
   {
@@ -136,35 +135,26 @@ mcor_status mcor_write_tree(mcor_context* context)
 
 /* ---- States ---- */
 
-static mcor_status mcor_find_leaf_states(mcor_context* context, double iso)
+/* Leaf by leaf, or in the plane by region. */
+static mcor_status mcor_find_states(mcor_context* context, double iso)
 {
   const mcor_tree* tree = &context->tree;
   mcor_adaptive* adaptive = &context->adaptive;
+  const bool plane = mcor_is_plane(context);
+  const int* begin = plane ? tree->first_region : tree->first_leaf;
   for (int l = 0; l <= tree->top; ++l)
   {
-    const int first = tree->first_leaf[l], count = tree->first_leaf[l + 1] - first;
+    const int first = begin[l], count = begin[l + 1] - first;
     MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_states", MCOR_HEAVY, count,
-      MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&adaptive->leaves),
-      MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso),
-      MCOR_BUFFER(&adaptive->states)));
-  }
-  return mcor_view_level(context, 0);
-}
-
-/* The same in the plane. */
-static mcor_status mcor_find_plane_states(mcor_context* context, double iso)
-{
-  const mcor_tree* tree = &context->tree;
-  mcor_adaptive* adaptive = &context->adaptive;
-  for (int l = 0; l <= tree->top; ++l)
-  {
-    const int first = tree->first_region[l], count = tree->first_region[l + 1] - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_plane_regions", MCOR_HEAVY, count,
-      MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&adaptive->regions),
-      MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->leaf_finer),
-      MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&adaptive->states)));
+    MCOR_TRY(plane ? MCOR_LAUNCH(context, "mcor_adaptive_plane_regions", MCOR_HEAVY, count,
+                       MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
+                       MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
+                       MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso),
+                       MCOR_BUFFER(&adaptive->states))
+                   : MCOR_LAUNCH(context, "mcor_adaptive_states", MCOR_HEAVY, count,
+                       MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
+                       MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->leaf_finer),
+                       MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&adaptive->states)));
   }
   return mcor_view_level(context, 0);
 }
@@ -240,7 +230,7 @@ static mcor_status mcor_list_examined(mcor_context* context)
   mcor_adaptive* adaptive = &context->adaptive;
   const size_t n = (size_t)tree->leaf_count;
   uint8_t* chosen = malloc(n + 1);
-  MCOR_RETURN_IF(!chosen, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, chosen));
   mcor_status status = mcor_read(context, &adaptive->chosen, 0, chosen, n);
   size_t count = 0, evaluated = 0;
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
@@ -253,7 +243,8 @@ static mcor_status mcor_list_examined(mcor_context* context)
   cl_uint* finer = malloc((count + 1) * sizeof *finer);
   adaptive->count = (int)count;
   adaptive->evaluated = MCOR_BRICK_NODES * (int)evaluated;
-  if (status == MCOR_OK && examined && cells && finer)
+  status = status == MCOR_OK ? mcor_allocated(context, examined && cells && finer) : status;
+  if (status == MCOR_OK)
   {
     size_t to = 0;
     memset(adaptive->first_leaf, 0, sizeof adaptive->first_leaf);
@@ -274,10 +265,6 @@ static mcor_status mcor_list_examined(mcor_context* context)
     }
     status = mcor_write_examined(context, examined, cells, finer);
   }
-  else if (status == MCOR_OK)
-  {
-    status = mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  }
   free(chosen);
   free(examined);
   free(cells);
@@ -297,9 +284,9 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
     MCOR_TRY(mcor_reserve(context, &found->value, values));
     MCOR_TRY(mcor_reserve(context, &found->weight, values));
   }
-  MCOR_TRY(mcor_is_plane(context) ? mcor_find_plane_states(context, iso)
-      : context->cl.lanes > 1     ? mcor_find_region_states(context, iso, found)
-                                  : mcor_find_leaf_states(context, iso));
+  MCOR_TRY(context->cl.lanes == 1 || mcor_is_plane(context)
+      ? mcor_find_states(context, iso)
+      : mcor_find_region_states(context, iso, found));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_choose", MCOR_MEDIUM, tree->region_count,
     MCOR_REGION_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->leaf_finer),
     MCOR_BUFFER(&adaptive->states), MCOR_BUFFER(&adaptive->chosen)));

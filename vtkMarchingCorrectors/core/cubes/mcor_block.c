@@ -41,14 +41,11 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
   cl_int* index = malloc((keys + 1) * sizeof *index);
   uint8_t* states = malloc(count + 1);
   bool* divided = calloc(count + 1, sizeof *divided);
-  const bool complete = index && states && divided;
-  mcor_status status = complete
+  mcor_status status = mcor_allocated(context, index && states && divided);
+  status = status == MCOR_OK
     ? mcor_read(context, &bricks->child_index, 0, index, keys * sizeof *index)
-    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
-  if (status == MCOR_OK)
-  {
-    status = mcor_read(context, &bricks->block_states, 0, states, count);
-  }
+    : status;
+  status = status == MCOR_OK ? mcor_read(context, &bricks->block_states, 0, states, count) : status;
   for (size_t i = 0; status == MCOR_OK && i < keys; ++i)
   {
     divided[index[i]] = true;
@@ -57,10 +54,8 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
   {
     states[i] = divided[i] ? states[i] : MCOR_VOID;
   }
-  if (status == MCOR_OK)
-  {
-    status = mcor_write(context, &context->bricks.block_states, states, count);
-  }
+  status =
+    status == MCOR_OK ? mcor_write(context, &context->bricks.block_states, states, count) : status;
   free(index);
   free(states);
   free(divided);
@@ -168,19 +163,16 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
   bricks->block_count = (int)mcor_cube_total(&cubes);
   mcor_status status =
     mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
-  if (status == MCOR_OK)
-  {
-    status = MCOR_LAUNCH(context, "mcor_block_all", MCOR_MEDIUM, bricks->block_count,
-      MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->block_keys));
-  }
+  status = status == MCOR_OK
+    ? MCOR_LAUNCH(context, "mcor_block_all", MCOR_MEDIUM, bricks->block_count,
+        MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->block_keys))
+    : status;
   for (; cubes.doublings > 0 && status == MCOR_OK;
        cubes = mcor_cubes_of(context, cubes.doublings - 1))
   {
     status = mcor_test_cubes(context, iso, &cubes, 0);
-    if (status == MCOR_OK)
-    {
-      status = mcor_divide_cubes(context, &cubes, &kept, kept_count, &children);
-    }
+    status =
+      status == MCOR_OK ? mcor_divide_cubes(context, &cubes, &kept, kept_count, &children) : status;
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);

@@ -3,7 +3,7 @@
 
 /* Extraction [III-D.1]. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_pair_rounds.h"
 #include "mcor_plane.h"
@@ -110,6 +110,23 @@ static mcor_status mcor_count_edges(mcor_context* context)
   return MCOR_OK;
 }
 
+/* Of uniform cubes, and of leaves. */
+mcor_status mcor_emit_vertices(mcor_context* context, double iso)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t vertices = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
+  MCOR_TRY(mcor_reserve(context, &mesh->node, vertices * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
+    MCOR_SLOT_ARGS(context), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->adaptive.rungs),
+    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->ends));
+}
+
 /* Triangles, and their cells, of which those between the sides are owned. */
 static mcor_status mcor_emit_triangles(
   mcor_context* context, const int sides[6], mcor_buffer* cells)
@@ -141,4 +158,12 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
   context->run.statistics->triangles_before_trimming += owned;
   return MCOR_OK;
+}
+
+void mcor_release_mesh(mcor_context* context)
+{
+  mcor_mesh* m = &context->mesh;
+  MCOR_RELEASE(context, &m->used, &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends,
+    &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight, &m->flag,
+    &m->evaluations, &m->means, &m->triangles, &m->scanned);
 }

@@ -9,7 +9,7 @@
  * have a level; uniform ones have level 0. */
 
 #include "mcor_pair_rounds.h"
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_ranks.h"
 
@@ -48,15 +48,8 @@ typedef struct mcor_cell_list
 static mcor_status mcor_add_cell(
   mcor_context* context, mcor_cell_list* list, const mcor_world_cell* cell)
 {
-  if (list->count == list->room)
-  {
-    const int64_t room = 2 * list->room + 256;
-    mcor_world_cell* grown = realloc(list->cells, (size_t)room * sizeof *grown);
-    MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld cells ran out.",
-      (long long)room);
-    list->cells = grown;
-    list->room = room;
-  }
+  MCOR_TRY(
+    mcor_make_room(context, (void**)&list->cells, list->count, &list->room, sizeof *list->cells));
   list->cells[list->count++] = *cell;
   return MCOR_OK;
 }
@@ -115,8 +108,7 @@ static mcor_status mcor_list_new_cells(mcor_context* context, mcor_cell_list* li
   if (box->told_count < known.count)
   {
     cl_ulong* told = realloc(box->told, count * sizeof *told);
-    MCOR_RETURN_IF(
-      !told, context, MCOR_OUT_OF_CAPACITY, "Host memory for %d bricks ran out.", known.count);
+    MCOR_TRY(mcor_allocated(context, told));
     memset(told + box->told_count, 0, (count - (size_t)box->told_count) * sizeof *told);
     box->told = told;
     box->told_count = known.count;
@@ -209,8 +201,7 @@ static mcor_status mcor_hear_cells(
       if (!grown || room > MCOR_COUNT_LIMIT)
       {
         free(grown ? grown : places);
-        return mcor_fail(
-          context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld cells ran out.", (long long)room);
+        return mcor_allocated(context, false);
       }
       places = grown;
     }
@@ -228,8 +219,7 @@ static mcor_status mcor_tell_cells(
 {
   const mcor_lattice* lattice = &context->lattice;
   double* places = malloc(((size_t)list->count + 1) * 3 * sizeof *places);
-  MCOR_RETURN_IF(!places, context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld cells ran out.",
-    (long long)list->count);
+  MCOR_TRY(mcor_allocated(context, places));
   for (int64_t i = 0; i < 3 * list->count; ++i)
   {
     const mcor_world_cell* cell = &list->cells[i / 3];
@@ -253,10 +243,7 @@ mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* gro
     return MCOR_OK;
   }
   mcor_status status = mcor_list_new_cells(context, &list);
-  if (status == MCOR_OK)
-  {
-    status = mcor_tell_cells(context, &list, &all, &count);
-  }
+  status = status == MCOR_OK ? mcor_tell_cells(context, &list, &all, &count) : status;
   const bool has_leaves = !mcor_is_adaptive(context) || context->adaptive.count > 0;
   if (status == MCOR_OK && context->grid.count > 0 && has_leaves)
   {

@@ -93,17 +93,17 @@ static mcor_status mcor_list_in_images(
 static mcor_status mcor_list_leaves(mcor_context* context, mcor_tree* tree, int level, size_t* room)
 {
   const mcor_brick_set* set = &tree->split[level + 1];
-  for (size_t i = 0; i < set->capacity; ++i)
+  for (size_t i = 0; i < set->clusters.capacity; ++i)
   {
-    const mcor_cluster cluster = set->slots[i];
+    const mcor_entry cluster = set->clusters.entries[i];
     int first[3];
     mcor_first_of_cluster(&tree->rungs[level + 1], cluster.key, first);
-    for (int bit = 0; bit < 64 && cluster.bricks >> bit; ++bit)
+    for (int bit = 0; bit < 64 && cluster.value >> bit; ++bit)
     {
       const int brick[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3),
         first[2] + (bit >> 4) };
-      MCOR_TRY(cluster.bricks >> bit & 1 ? mcor_list_in_images(context, tree, level, brick, room)
-                                         : MCOR_OK);
+      MCOR_TRY(cluster.value >> bit & 1 ? mcor_list_in_images(context, tree, level, brick, room)
+                                        : MCOR_OK);
     }
     MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
   }
@@ -154,10 +154,9 @@ mcor_status mcor_measure_splits(
     return MCOR_OK;
   }
   mcor_status status = mcor_split_bricks(context, input, &tree);
-  if (status == MCOR_OK)
-  {
-    status = mcor_list_splits(context, &tree, &globals->splits, &globals->split_count);
-  }
+  status = status == MCOR_OK
+    ? mcor_list_splits(context, &tree, &globals->splits, &globals->split_count)
+    : status;
   mcor_release_tree(&tree);
   return status;
 }
@@ -166,7 +165,7 @@ void mcor_release_tree(mcor_tree* tree)
 {
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
-    mcor_set_free(&tree->split[l]);
+    mcor_table_free(&tree->split[l].clusters);
   }
   free(tree->leaves);
   free(tree->finer);

@@ -8,7 +8,80 @@
  * then as many smaller ones as it takes for leaves that touch to differ by one level at most. What
  * they are depends on nothing but the particles. */
 
-#include "mcor_tree_brick.h"
+#include "mcor_internal.h"
+
+/* More leaves than this are not made. Of the parts of each split brick, 8, all but those that are split
+ * are leaves: seven more for each brick at least. */
+#define MCOR_LEAF_LIMIT (INT32_MAX / 64)
+#define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
+
+/* mcor_tree_brick.c. Adds bricks of a cluster to a set. False where memory ran out, or there would be too many
+ * leaves: before the sets take much of either. */
+bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
+bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other);
+/* Whether the sets of all levels together make too many leaves. */
+bool mcor_are_too_many(const mcor_brick_set* levels);
+
+/* Where one level's bricks are among the keys. */
+static inline uint64_t mcor_tree_key(const mcor_rung* rung, const int brick[3])
+{
+  return rung->base +
+    ((uint64_t)brick[2] * (uint64_t)rung->n[1] + (uint64_t)brick[1]) * (uint64_t)rung->n[0] +
+    (uint64_t)brick[0];
+}
+
+/* Bricks of a cluster along an axis. */
+#define MCOR_CLUSTER 4
+
+/* The key of a brick's cluster among those of its level, and the brick's bit there. */
+static inline uint64_t mcor_cluster_key(const mcor_rung* rung, const int brick[3])
+{
+  const uint64_t nx = (uint64_t)(rung->n[0] + 3) / MCOR_CLUSTER;
+  const uint64_t ny = (uint64_t)(rung->n[1] + 3) / MCOR_CLUSTER;
+  return ((uint64_t)(brick[2] / MCOR_CLUSTER) * ny + (uint64_t)(brick[1] / MCOR_CLUSTER)) * nx +
+    (uint64_t)(brick[0] / MCOR_CLUSTER);
+}
+static inline int mcor_cluster_bit(const int brick[3])
+{
+  return (brick[0] & 3) | (brick[1] & 3) << 2 | (brick[2] & 3) << 4;
+}
+
+/* The first brick of a cluster with a key. */
+static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, int brick[3])
+{
+  const uint64_t nx = (uint64_t)(rung->n[0] + 3) / MCOR_CLUSTER;
+  const uint64_t ny = (uint64_t)(rung->n[1] + 3) / MCOR_CLUSTER;
+  brick[0] = MCOR_CLUSTER * (int)(key % nx);
+  brick[1] = MCOR_CLUSTER * (int)(key / nx % ny);
+  brick[2] = MCOR_CLUSTER * (int)(key / nx / ny);
+}
+
+/* The level of a particle: the largest one up to `top` whose smallest h it has. */
+int mcor_tree_level_of(double h, double h_min, int top);
+
+/* The highest level of a run's leaves, 0 where its cubes are uniform. */
+int mcor_tree_top(const mcor_measure* measure, const mcor_options* options);
+
+/* Clusters, or pieces of work alike, of the host between two looks at whether to go on. */
+#define MCOR_TREE_STEP 4096
+
+/* Numbers the bricks of all levels up to the one above the highest leaves'. */
+mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree);
+/* Where a brick is, or with a period its image there; false: it is off the lattice. */
+bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
+bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3]);
+/* Says that there are too many leaves, or no memory for more. */
+mcor_status mcor_fail_leaves(mcor_context* context);
+
+/* mcor_tree_split.c. All bricks that are to be split, by the particles of all ranks. */
+mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree);
+
+/* mcor_tree_key.c. The keys of all split bricks, ascending; to be freed. */
+mcor_status mcor_list_splits(
+  mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
+/* Splits the bricks with these keys. */
+mcor_status mcor_take_splits(
+  mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
 
 /* Of keys, where points or triangles have keys: the rest holds an edge, or a cell, of the brick. */
 #define MCOR_TREE_KEY_BITS 55

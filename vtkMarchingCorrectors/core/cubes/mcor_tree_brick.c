@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the bricks of all levels, their numbers and places. */
+/* Adaptive cubes: the bricks of all levels: their numbers, places and sets. */
 
-#include "mcor_tree_brick.h"
 #include "mcor_plane.h"
+#include "mcor_tree.h"
 
 #include <math.h>
 #include <string.h>
@@ -85,7 +85,7 @@ bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
 {
   int b[3];
   return level > 0 && mcor_place_brick(tree, level, brick, b) &&
-    mcor_set_find(&tree->split[level], mcor_cluster_key(&tree->rungs[level], b)) >>
+    mcor_table_find(&tree->split[level].clusters, mcor_cluster_key(&tree->rungs[level], b)) >>
       mcor_cluster_bit(b) &
     1;
 }
@@ -96,4 +96,51 @@ mcor_status mcor_fail_leaves(mcor_context* context)
     "Adaptive cubes would have more than %d leaves, or more than fit in host memory. Use a larger "
     "cube size.",
     MCOR_LEAF_LIMIT);
+}
+
+/* ---- Sets of bricks ---- */
+
+static size_t mcor_bit_count(uint64_t bits)
+{
+  size_t count = 0;
+  for (; bits; bits &= bits - 1)
+  {
+    ++count;
+  }
+  return count;
+}
+
+bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks)
+{
+  if (bricks == 0)
+  {
+    return true;
+  }
+  uint64_t* cluster = set->count > MCOR_SPLIT_LIMIT ? NULL : mcor_table_add(&set->clusters, key);
+  if (cluster)
+  {
+    set->count += mcor_bit_count(bricks & ~*cluster);
+    *cluster |= bricks;
+  }
+  return cluster != NULL;
+}
+
+bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other)
+{
+  bool added = true;
+  for (size_t i = 0; i < other->clusters.capacity && added; ++i)
+  {
+    added = mcor_set_add(set, other->clusters.entries[i].key, other->clusters.entries[i].value);
+  }
+  return added;
+}
+
+bool mcor_are_too_many(const mcor_brick_set* levels)
+{
+  size_t count = 0;
+  for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
+  {
+    count += levels[l].count;
+  }
+  return count > MCOR_SPLIT_LIMIT;
 }

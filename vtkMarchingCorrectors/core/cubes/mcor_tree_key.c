@@ -4,7 +4,7 @@
 /* Adaptive cubes: split bricks as keys, numbers of all levels' bricks, as other ranks and calls are told
  * of them. */
 
-#include "mcor_tree_brick.h"
+#include "mcor_tree.h"
 
 #include <stdlib.h>
 
@@ -61,14 +61,14 @@ static size_t mcor_write_keys(const mcor_tree* tree, int level, uint64_t* keys)
   const mcor_brick_set* set = &tree->split[level];
   const mcor_rung* rung = &tree->rungs[level];
   size_t count = 0;
-  for (size_t i = 0; i < set->capacity; ++i)
+  for (size_t i = 0; i < set->clusters.capacity; ++i)
   {
     int first[3];
-    mcor_first_of_cluster(rung, set->slots[i].key, first);
-    for (int bit = 0; bit < 64 && set->slots[i].bricks >> bit; ++bit)
+    mcor_first_of_cluster(rung, set->clusters.entries[i].key, first);
+    for (int bit = 0; bit < 64 && set->clusters.entries[i].value >> bit; ++bit)
     {
       const int b[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
-      if (set->slots[i].bricks >> bit & 1)
+      if (set->clusters.entries[i].value >> bit & 1)
       {
         keys[count++] = mcor_tree_key(rung, b);
       }
@@ -87,18 +87,14 @@ mcor_status mcor_list_splits(
   }
   *keys = malloc((total + 1) * sizeof **keys);
   uint64_t* other = malloc((total + 1) * sizeof *other);
-  mcor_status status =
-    *keys && other ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  mcor_status status = mcor_allocated(context, *keys && other);
   *count = 0;
   for (int l = 0; l <= tree->top + 1 && status == MCOR_OK; ++l)
   {
     *count += (int64_t)mcor_write_keys(tree, l, *keys + *count);
     status = mcor_report_launch(context);
   }
-  if (status == MCOR_OK)
-  {
-    status = mcor_sort_keys(context, keys, &other, total);
-  }
+  status = status == MCOR_OK ? mcor_sort_keys(context, keys, &other, total) : status;
   free(other);
   return status;
 }

@@ -16,11 +16,10 @@
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_sph_kernel.h"
-#include "mcor_tree_brick.h"
+#include "mcor_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- Clusters ---- */
 
@@ -195,17 +194,12 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   const mcor_context* context = job->context;
   const mcor_lattice* lattice = &context->lattice;
   const double h_min = context->measure.h_min;
-  mcor_array positions = job->input->positions;
-  positions.components = 3;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
   const int64_t end = job->begin + last;
   for (int64_t begin = job->begin + first; begin < end && !job->failed[slice]; begin += MCOR_CHUNK)
   {
     const int count = end - begin < MCOR_CHUNK ? (int)(end - begin) : MCOR_CHUNK;
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_read_array(&positions, begin, count, a, x[a]);
-    }
+    mcor_read_positions(job->input, begin, count, x);
     mcor_read_smoothing_length(context, job->input, begin, count, h);
     for (int i = 0; i < count && !job->failed[slice]; ++i)
     {
@@ -287,7 +281,7 @@ static mcor_status mcor_split_by_particles(
   mcor_context* context, const mcor_input* input, mcor_tree* tree)
 {
   mcor_tree_job* job = calloc(1, sizeof *job);
-  MCOR_RETURN_IF(!job, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, job));
   const mcor_options* options = context->run.options;
   job->context = context;
   job->input = input;
@@ -295,15 +289,12 @@ static mcor_status mcor_split_by_particles(
   job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale / context->lattice.cube;
   job->is_cube = mcor_is_tensor(options->sph_kernel);
   mcor_status status = mcor_split_in_slices(context, job);
-  if (status == MCOR_OK)
-  {
-    status = mcor_join_slices(context, job, tree);
-  }
+  status = status == MCOR_OK ? mcor_join_slices(context, job, tree) : status;
   for (int s = 0; s < MCOR_SLICES; ++s)
   {
     for (int l = 0; l <= tree->top + 1; ++l)
     {
-      mcor_set_free(&job->split[s][l]);
+      mcor_table_free(&job->split[s][l].clusters);
     }
   }
   free(job);
@@ -329,13 +320,13 @@ static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
 static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int level)
 {
   const mcor_brick_set* set = &tree->split[level];
-  for (size_t i = 0; i < set->capacity; ++i)
+  for (size_t i = 0; i < set->clusters.capacity; ++i)
   {
-    if (set->slots[i].bricks != 0)
+    if (set->clusters.entries[i].value != 0)
     {
       int first[3];
-      uint64_t above = set->slots[i].bricks;
-      mcor_first_of_cluster(&tree->rungs[level], set->slots[i].key, first);
+      uint64_t above = set->clusters.entries[i].value;
+      mcor_first_of_cluster(&tree->rungs[level], set->clusters.entries[i].key, first);
       for (int a = 0; a < (tree->is_plane ? 2 : 3); ++a)
       {
         first[a] = first[a] / 2 - 1;
@@ -385,14 +376,8 @@ static mcor_status mcor_join_ranks(mcor_context* context, mcor_tree* tree)
   const void* all;
   int64_t count;
   mcor_status status = mcor_list_splits(context, tree, &own, &count);
-  if (status == MCOR_OK)
-  {
-    status = mcor_gather(context, own, count, sizeof *own, &all, &count);
-  }
-  if (status == MCOR_OK)
-  {
-    status = mcor_take_splits(context, tree, all, count);
-  }
+  status = status == MCOR_OK ? mcor_gather(context, own, count, sizeof *own, &all, &count) : status;
+  status = status == MCOR_OK ? mcor_take_splits(context, tree, all, count) : status;
   free(own);
   return status;
 }

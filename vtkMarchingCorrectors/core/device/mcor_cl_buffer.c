@@ -273,10 +273,7 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
   }
   mcor_buffer bigger = { 0 };
   mcor_status status = mcor_reserve(context, &bigger, bytes);
-  if (status == MCOR_OK && old > 0)
-  {
-    status = mcor_copy(context, buffer, &bigger, 0, old);
-  }
+  status = status == MCOR_OK && old > 0 ? mcor_copy(context, buffer, &bigger, 0, old) : status;
   mcor_release(context, status == MCOR_OK ? buffer : &bigger);
   if (status == MCOR_OK)
   {

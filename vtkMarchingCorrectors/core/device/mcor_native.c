@@ -9,7 +9,6 @@
 #include "mcor_pool.h"
 #include "mcor_system.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -252,6 +251,18 @@ static cl_int mcor_release_device(cl_device_id device)
 
 /* ---- Objects ---- */
 
+/* Of objects that own nothing else. */
+#define MCOR_RELEASE_ALONE(name, type)                                                             \
+  static cl_int name(type object)                                                                  \
+  {                                                                                                \
+    free(object);                                                                                  \
+    return CL_SUCCESS;                                                                             \
+  }
+MCOR_RELEASE_ALONE(mcor_release_queue, cl_command_queue)
+MCOR_RELEASE_ALONE(mcor_release_event, cl_event)
+MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
+MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
+
 /* A new object, all zero but its table; NULL and the error where there is no memory. */
 static void* mcor_make_object(size_t size, cl_int no_memory, cl_int* error)
 {
@@ -268,10 +279,7 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
   void* user, cl_int* error)
 {
-  (void)properties;
-  (void)count;
-  (void)notify;
-  (void)user;
+  (void)properties, (void)count, (void)notify, (void)user;
   cl_context context = mcor_make_object(sizeof *context, CL_OUT_OF_HOST_MEMORY, error);
   if (context)
   {
@@ -293,20 +301,13 @@ static cl_int mcor_release_context(cl_context context)
 static cl_command_queue mcor_make_queue(
   cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* error)
 {
-  (void)device;
-  (void)properties;
+  (void)device, (void)properties;
   cl_command_queue queue = mcor_make_object(sizeof *queue, CL_OUT_OF_HOST_MEMORY, error);
   if (queue)
   {
     queue->context = context;
   }
   return queue;
-}
-
-static cl_int mcor_release_queue(cl_command_queue queue)
-{
-  free(queue);
-  return CL_SUCCESS;
 }
 
 static cl_int mcor_finish_queue(cl_command_queue queue)
@@ -329,20 +330,12 @@ static cl_int mcor_event_time(
     sizeof event->end, room, to, needed);
 }
 
-static cl_int mcor_release_event(cl_event event)
-{
-  free(event);
-  return CL_SUCCESS;
-}
-
 /* ---- Buffers ---- */
 
 static cl_mem mcor_make_buffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
-  (void)context;
-  (void)flags;
-  (void)host;
+  (void)context, (void)flags, (void)host;
   cl_mem buffer = mcor_make_object(sizeof *buffer, CL_MEM_OBJECT_ALLOCATION_FAILURE, error);
   if (buffer)
   {
@@ -468,12 +461,6 @@ static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_dev
   return program->program ? CL_SUCCESS : CL_BUILD_PROGRAM_FAILURE;
 }
 
-static cl_int mcor_release_program(cl_program program)
-{
-  free(program);
-  return CL_SUCCESS;
-}
-
 static cl_int mcor_build_info(cl_program program, cl_device_id device, cl_program_build_info what,
   size_t room, void* to, size_t* needed)
 {
@@ -520,12 +507,6 @@ static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* 
     kernel->arguments[i] = kernel->values[i];
   }
   return kernel;
-}
-
-static cl_int mcor_release_kernel(cl_kernel kernel)
-{
-  free(kernel);
-  return CL_SUCCESS;
 }
 
 static cl_int mcor_set_argument(cl_kernel kernel, cl_uint i, size_t size, const void* value)

@@ -13,7 +13,6 @@
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_probe.h"
-#include "mcor_stage.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -48,75 +47,24 @@ static void mcor_release_derive(mcor_derive_run* run)
 
 /* ---- arrays ------------------------------------------------------------------------------- */
 
-typedef struct mcor_fix_job
-{
-  const mcor_context* context;
-  const mcor_array* array;
-  const uint8_t* solid; /* whose values play no part */
-  int component;
-  double shift, scale;
-  void* values;
-} mcor_fix_job;
-
-static void mcor_put_fix_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_fix_job* job = data;
-  const bool single = job->context->cl.fix_size == sizeof(int32_t);
-  for (int64_t i = first; i < last; ++i)
-  {
-    const int64_t from = mcor_source_of(job->context, i);
-    const double v = job->solid && job->solid[from]
-      ? 0
-      : (mcor_array_at(job->array, from, job->component) - job->shift) * job->scale;
-    if (single)
-    {
-      ((int32_t*)job->values)[i] = (int32_t)lrint(v);
-    }
-    else
-    {
-      ((int64_t*)job->values)[i] = (int64_t)llrint(v);
-    }
-  }
-  (void)slice;
-}
-
-/* Component number c of those that vary, as fixed-point numbers, to its row of the arrays. Its scale
- * is that of the fixed-point numbers from then on. */
-static mcor_status mcor_load_fix(mcor_derive_run* run, mcor_buffer* raw, int c)
-{
-  mcor_context* context = run->context;
-  const int count = context->grid.count;
-  mcor_component* component = &context->attributes.varying[c];
-  /* One bit for the sign, one for differences. */
-  component->scale = ldexp(component->scale, context->cl.fix_size == sizeof(int32_t) ? 29 : 61);
-  mcor_fix_job job = { context, &run->input->attributes[component->attribute], run->input->solid,
-    component->component, component->shift, component->scale, NULL };
-  const size_t bytes = (size_t)count * context->cl.fix_size;
-  MCOR_TRY(mcor_reserve(context, raw, bytes));
-  MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
-  const mcor_status status =
-    mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_put_fix_slice, &job, NULL);
-  MCOR_TRY(mcor_unmap(context, raw, &job.values));
-  MCOR_TRY(status);
-  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(raw), MCOR_BUFFER(&run->arrays), MCOR_INT(c));
-}
-
+/* The components that vary as fixed-point numbers, which their scales are those of from then on. */
 static mcor_status mcor_load_arrays(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
-  mcor_buffer raw = { 0 };
-  const size_t count = (size_t)context->grid.count;
-  mcor_status status = mcor_reserve(context, &run->arrays,
-    (size_t)context->attributes.varying_count * count * context->cl.fix_size);
-  for (int c = 0; c < context->attributes.varying_count && status == MCOR_OK; ++c)
+  const mcor_attributes* attributes = &context->attributes;
+  const size_t count = (size_t)context->grid.count, fix = context->cl.fix_size;
+  MCOR_TRY(mcor_reserve(context, &run->arrays, (size_t)attributes->varying_count * count * fix));
+  for (int i = 0; i < attributes->varying_count; ++i)
   {
-    status = mcor_load_fix(run, &raw, c);
+    mcor_component* c = &attributes->varying[i];
+    /* One bit for the sign, one for differences. */
+    c->scale = ldexp(c->scale, fix == sizeof(int32_t) ? 29 : 61);
+    MCOR_TRY(mcor_sort_values(context, run->input, &run->input->attributes[c->attribute],
+      c->component, c->shift, c->scale, true, &run->arrays, i));
   }
-  mcor_release(context, &raw);
-  MCOR_TRY(status);
+  mcor_release(context, &context->stage.values);
   run->particles = malloc(count * sizeof(cl_int) + 1);
-  MCOR_RETURN_IF(!run->particles, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, run->particles));
   return mcor_read(context, &context->grid.order, 0, run->particles, count * sizeof(cl_int));
 }
 
@@ -268,30 +216,17 @@ static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
   const size_t n = (size_t)run->inside, real = context->cl.real_size;
-  void *order = NULL, *moments = NULL, *slopes = NULL;
-  mcor_status status = mcor_map(context, &run->batch.order, n * sizeof(cl_int), false, &order);
-  if (status == MCOR_OK)
-  {
-    status = mcor_map(context, &run->moments, n * 9 * real, false, &moments);
-  }
-  if (status == MCOR_OK)
-  {
-    status = mcor_map(context, &run->slopes,
-      n * 3 * (size_t)context->attributes.varying_count * real, false, &slopes);
-  }
-  if (status == MCOR_OK)
-  {
-    mcor_derive_job job = { run, order, moments, slopes };
-    status =
-      mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL);
-  }
-  const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.order, &order),
-    mcor_unmap(context, &run->moments, &moments), mcor_unmap(context, &run->slopes, &slopes) };
-  for (int i = 0; i < 3; ++i)
-  {
-    status = status == MCOR_OK ? unmapped[i] : status;
-  }
-  return status;
+  const size_t arrays = (size_t)context->attributes.varying_count;
+  void* views[3] = { NULL };
+  const mcor_mapping mappings[] = { { &run->batch.order, n * sizeof(cl_int), &views[0] },
+    { &run->moments, n * 9 * real, &views[1] },
+    { &run->slopes, n * 3 * arrays * real, &views[2] } };
+  mcor_status status = mcor_map_all(context, mappings, 3);
+  mcor_derive_job job = { run, views[0], views[1], views[2] };
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL)
+    : status;
+  return mcor_unmap_all(context, mappings, 3, status);
 }
 
 static mcor_status mcor_derive_batch(mcor_derive_run* run)
@@ -361,8 +296,7 @@ static mcor_status mcor_make_derivatives(
       complete = d->gradients[a] != NULL;
     }
   }
-  MCOR_RETURN_IF(!complete, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for gradients at %lld particles could not be allocated.", (long long)d->count);
+  MCOR_TRY(mcor_allocated(context, complete));
   return MCOR_OK;
 }
 

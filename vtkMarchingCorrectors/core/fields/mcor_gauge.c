@@ -10,7 +10,6 @@
 #include "mcor_ranks.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -117,8 +116,7 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
     return MCOR_OK; /* another call may take the search grid */
   }
   double* ends = malloc(6 * (size_t)call->count * sizeof *ends);
-  MCOR_RETURN_IF(!ends, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld gauges could not be allocated.", (long long)call->count);
+  MCOR_TRY(mcor_allocated(context, ends));
   for (int64_t i = 0; i < call->count; ++i)
   {
     memcpy(ends + 6 * i, call->lines[i].from, sizeof call->lines[i].from);
@@ -147,9 +145,8 @@ static mcor_status mcor_gauge_on_grid(
     .context = context, .input = input, .points = &points, .samples = &samples
   };
   job->data = &run;
-  mcor_status status = room && valid
-    ? mcor_load_attributes(context, input, 0)
-    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  mcor_status status = mcor_allocated(context, room && valid);
+  status = status == MCOR_OK ? mcor_load_attributes(context, input, 0) : status;
   status = status == MCOR_OK ? mcor_gauge_all(job) : status;
   mcor_release_probe(&run);
   free(room);
@@ -215,8 +212,7 @@ static mcor_status mcor_run_gauge(
     return mcor_gauge_input(context, input, options, &call);
   }
   mcor_gauge_line* lines = malloc((size_t)call.count * sizeof *lines);
-  MCOR_RETURN_IF(!lines, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld gauges could not be allocated.", (long long)call.count);
+  MCOR_TRY(mcor_allocated(context, lines));
   mcor_status status = MCOR_OK;
   for (int64_t i = 0; i < call.count && status == MCOR_OK; ++i)
   {

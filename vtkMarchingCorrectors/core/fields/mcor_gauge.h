@@ -71,10 +71,6 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
 mcor_status mcor_read_lines(
   const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count, mcor_gauges* gauges);
 
-/* Room for one more element of an array. */
-bool mcor_gauge_room(
-  mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
-
 /* mcor_gauge_solve.c. Evaluates samples [first, last) of the job's, and appends what is found to its records. */
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);
 void mcor_free_gauge_parts(mcor_gauge_job* job);

@@ -94,34 +94,12 @@ double mcor_gauge_step(double h_scale, double smoothing_length_min)
   return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
 }
 
-bool mcor_gauge_room(
-  mcor_context* context, void** array, int64_t count, int64_t* room, size_t width)
-{
-  if (count < *room)
-  {
-    return true;
-  }
-  const int64_t more = 2 * *room + 1024;
-  void* grown = realloc(*array, (size_t)more * width);
-  *array = grown ? grown : *array;
-  *room = grown ? more : *room;
-  if (!grown)
-  {
-    mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld %s could not be allocated.",
-      (long long)more, "parts of gauges");
-  }
-  return grown != NULL;
-}
-
 /* Parts with their neighbours, as far as the whole has some. */
 static mcor_status mcor_append_samples(
   mcor_gauge_job* job, const mcor_gauge_samples* whole, int64_t own_first, int64_t own_last)
 {
-  if (!mcor_gauge_room(job->context, (void**)&job->samples, job->sample_count, &job->sample_room,
-        sizeof *job->samples))
-  {
-    return MCOR_OUT_OF_CAPACITY;
-  }
+  MCOR_TRY(mcor_make_room(job->context, (void**)&job->samples, job->sample_count, &job->sample_room,
+    sizeof *job->samples));
   mcor_gauge_samples* samples = &job->samples[job->sample_count++];
   *samples = *whole;
   samples->begin = whole->first;
@@ -267,8 +245,7 @@ mcor_status mcor_read_lines(
   if (!sorted || !gauges->readings || !gauges->crossings)
   {
     free(sorted);
-    return mcor_fail(job->context, MCOR_OUT_OF_CAPACITY,
-      "Host memory for %lld gauges could not be allocated.", (long long)job->line_count);
+    return mcor_allocated(job->context, false);
   }
   if (count > 0)
   {

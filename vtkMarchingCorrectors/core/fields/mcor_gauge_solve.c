@@ -35,15 +35,8 @@ void mcor_free_gauge_parts(mcor_gauge_job* job)
 static mcor_status mcor_append_part(
   const mcor_gauge_job* job, mcor_gauge_parts* parts, const mcor_gauge_part* part)
 {
-  if (parts->count == parts->capacity)
-  {
-    const int64_t capacity = 2 * parts->capacity + 1024;
-    mcor_gauge_part* grown = realloc(parts->parts, (size_t)capacity * sizeof *grown);
-    MCOR_RETURN_IF(!grown, job->context, MCOR_OUT_OF_CAPACITY,
-      "Host memory for the crossings of gauges could not be allocated.");
-    parts->parts = grown;
-    parts->capacity = capacity;
-  }
+  MCOR_TRY(mcor_make_room(
+    job->context, (void**)&parts->parts, parts->count, &parts->capacity, sizeof *parts->parts));
   parts->parts[parts->count++] = *part;
   return MCOR_OK;
 }
@@ -152,9 +145,7 @@ static mcor_status mcor_make_inner(const mcor_gauge_job* job, int64_t n, mcor_ga
   inner->place = malloc((size_t)(n + 1) * sizeof *inner->place);
   inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
   inner->line = malloc((size_t)(n + 1) * sizeof *inner->line);
-  MCOR_RETURN_IF(!inner->place || !inner->weight || !inner->line, job->context,
-    MCOR_OUT_OF_CAPACITY, "Host memory for %lld points of gauges could not be allocated.",
-    (long long)n);
+  MCOR_TRY(mcor_allocated(job->context, inner->place && inner->weight && inner->line));
   return MCOR_OK;
 }
 
@@ -290,11 +281,8 @@ static mcor_status mcor_evaluate_samples(
 
 static mcor_status mcor_append_record(mcor_gauge_job* job, int64_t line, double place)
 {
-  if (!mcor_gauge_room(job->context, (void**)&job->records, job->record_count, &job->record_room,
-        sizeof *job->records))
-  {
-    return MCOR_OUT_OF_CAPACITY;
-  }
+  MCOR_TRY(mcor_make_room(job->context, (void**)&job->records, job->record_count, &job->record_room,
+    sizeof *job->records));
   job->records[job->record_count++] = (mcor_gauge_record){ line, place };
   return MCOR_OK;
 }

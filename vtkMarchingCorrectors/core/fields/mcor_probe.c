@@ -9,7 +9,6 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
-#include "mcor_stage.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -166,11 +165,9 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
     { &run->gradients, n * 3 * arrays * real, &job.views.gradients } };
   const int count = run->samples->weight_gradient ? 5 : 3;
   mcor_status status = mcor_map_all(context, views, count);
-  if (status == MCOR_OK)
-  {
-    status =
-      mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL);
-  }
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL)
+    : status;
   return mcor_unmap_all(context, views, count, status);
 }
 
@@ -315,9 +312,7 @@ static mcor_status mcor_make_samples(
       complete = s->gradients[a] != NULL;
     }
   }
-  MCOR_RETURN_IF(!complete, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld points could not be allocated.", (long long)s->count);
-  return MCOR_OK;
+  return mcor_allocated(context, complete);
 }
 
 /* The tables of the attributes. */
@@ -329,8 +324,8 @@ static mcor_status mcor_make_tables(
   s->gradients = gradients ? mcor_zeros(arrays, sizeof(double*)) : NULL;
   s->attribute_not_finite = mcor_zeros(arrays, sizeof(int64_t));
   s->attribute_count = input->attribute_count;
-  MCOR_RETURN_IF(!s->values || (gradients && !s->gradients) || !s->attribute_not_finite, context,
-    MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(
+    mcor_allocated(context, s->values && (s->gradients || !gradients) && s->attribute_not_finite));
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input) ||
     context->run.options->globals || input->attribute_count != context->kept.input.attribute_count)
   {

@@ -201,10 +201,9 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
   mcor_status status =
     mcor_map(context, &run->batch.in_node, n * 4 * sizeof(cl_int), true, &job.node);
-  if (status == MCOR_OK)
-  {
-    status = mcor_map(context, &run->batch.in_offset, n * 4 * real, true, &job.offset);
-  }
+  status = status == MCOR_OK
+    ? mcor_map(context, &run->batch.in_offset, n * 4 * real, true, &job.offset)
+    : status;
   run->first = first;
   run->count = (int)n;
   if (status == MCOR_OK)

@@ -286,16 +286,11 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
 {
   mcor_staging staging = { 0 };
   mcor_status status = mcor_stage(context, input, &staging);
-  if (status == MCOR_OK)
-  {
-    status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15);
-  }
+  status =
+    status == MCOR_OK ? mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15) : status;
   context->grid.count = staging.count;
   context->attributes.kept = 0; /* in another order */
-  if (status == MCOR_OK && staging.count > 0)
-  {
-    status = mcor_sort_particles(context, &staging);
-  }
+  status = status == MCOR_OK && staging.count > 0 ? mcor_sort_particles(context, &staging) : status;
   const mcor_status unmapped = mcor_unmap_staging(context, &staging);
   MCOR_TRY(status);
   MCOR_TRY(unmapped);
@@ -383,7 +378,8 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
     "particles with the most extreme values.",
     low, high, single ? "single" : "double",
     single ? "Use double precision, or" : "Use another unit, or");
-  MCOR_TRY(mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, &grid->value, 0));
+  MCOR_TRY(
+    mcor_sort_values(context, input, NULL, 0, context->value_shift, 1, false, &grid->value, 0));
   return mcor_order_coincident(context);
 }
 

@@ -4,9 +4,7 @@
 /* Checking everything a caller hands in. */
 
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

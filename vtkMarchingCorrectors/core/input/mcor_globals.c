@@ -47,7 +47,7 @@ static mcor_status mcor_measure_components(
 {
   const size_t count = mcor_count_components(input);
   globals->components = calloc(count + 1, sizeof *globals->components);
-  MCOR_RETURN_IF(!globals->components, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, globals->components));
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];

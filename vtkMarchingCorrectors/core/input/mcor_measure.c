@@ -8,7 +8,7 @@
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
-#include "mcor_tree_brick.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>
@@ -253,11 +253,9 @@ static mcor_status mcor_measure_particles(
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
   mcor_status status = mcor_begin_watch(context, input, &job.watch);
   int slices;
-  if (status == MCOR_OK)
-  {
-    status =
-      mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices);
-  }
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices)
+    : status;
   if (status == MCOR_OK)
   {
     for (int s = 0; s < slices; ++s)

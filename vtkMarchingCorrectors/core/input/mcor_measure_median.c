@@ -1,131 +1,118 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Medians: about that of the scalar, and that of a few numbers. */
+/* Values in the middle: about the median of the scalar, to which values are relative on the device; an iso value
+ * for those who have named none; and the median of a few numbers. Of the scalar, values are counted in bins,
+ * and those in the bin that is looked for again. What is found depends neither on the order of the particles
+ * nor on who of several ranks has which. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-#define MCOR_MEDIAN_BINS 1024
+#define MCOR_BINS 1024
 #define MCOR_MEDIAN_PASSES 8
+#define MCOR_ISO_PASSES 64
 
-typedef struct mcor_bin
-{
-  int64_t count;
-  double low, high; /* of the values in it */
-} mcor_bin;
+#define MCOR_THREE_DECADES 1000.0
 
 typedef struct mcor_bin_job
 {
   const mcor_input* input;
-  double low, high;
-  mcor_bin (*bins)[MCOR_MEDIAN_BINS]; /* [MCOR_SLICES] */
+  double low, high; /* of the bins */
+  int64_t count[MCOR_SLICES][MCOR_BINS];
+  double least[MCOR_SLICES][MCOR_BINS]; /* of the values in it, and minus the greatest */
+  double minus[MCOR_SLICES][MCOR_BINS];
 } mcor_bin_job;
 
-/* Sorts the values of fluid particles in [low, high] into bins. */
+/* Halved, as the difference may be too large for a number. */
+static int mcor_bin_of(const mcor_bin_job* job, double width, double value)
+{
+  const double part = (0.5 * value - 0.5 * job->low) / width * 2;
+  return part < MCOR_BINS - 1 ? (int)part : MCOR_BINS - 1;
+}
+
 static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_bin_job* job = data;
-  const mcor_input* input = job->input;
-  const double low = job->low, high = job->high;
-  const double width = high / MCOR_MEDIAN_BINS - low / MCOR_MEDIAN_BINS;
-  mcor_bin* bins = job->bins[slice];
-  for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
-  {
-    bins[b] = (mcor_bin){ 0, high, low };
-  }
+  mcor_bin_job* job = data;
+  const uint8_t* solid = job->input->solid;
+  const double width = job->high / MCOR_BINS - job->low / MCOR_BINS;
   double chunk[MCOR_CHUNK];
+  for (int b = 0; b < MCOR_BINS; ++b)
+  {
+    job->count[slice][b] = 0;
+    job->least[slice][b] = job->minus[slice][b] = INFINITY;
+  }
   for (int64_t i = first; i < last; ++i)
   {
     const int64_t at = (i - first) % MCOR_CHUNK, rest = last - i;
     if (at == 0)
     {
-      mcor_read_scalar(input, i, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, chunk);
+      mcor_read_scalar(job->input, i, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, chunk);
     }
     const double v = chunk[at];
-    if ((!input->solid || !input->solid[i]) && v >= low && v <= high)
+    if (isfinite(v) && v >= job->low && v <= job->high && !(solid && solid[i]))
     {
-      /* Halved, as the difference may be too large for a number. */
-      const int b = (int)((0.5 * v - 0.5 * low) / width * 2);
-      mcor_bin* bin = bins + (b < MCOR_MEDIAN_BINS ? b : MCOR_MEDIAN_BINS - 1);
-      ++bin->count;
-      bin->low = v < bin->low ? v : bin->low;
-      bin->high = v > bin->high ? v : bin->high;
+      const int b = mcor_bin_of(job, width, v);
+      double *least = &job->least[slice][b], *minus = &job->minus[slice][b];
+      ++job->count[slice][b];
+      *least = v < *least ? v : *least;
+      *minus = -v < *minus ? -v : *minus;
     }
   }
 }
 
-static mcor_status mcor_merge_bins(mcor_context* context, mcor_bin* bins)
+/* Those of all particles, of all ranks, end in the first slice. A context that is NULL has no call. */
+static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks, mcor_bin_job* job)
 {
-  int64_t count[MCOR_MEDIAN_BINS];
-  double low[MCOR_MEDIAN_BINS], high[MCOR_MEDIAN_BINS];
-  for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
-  {
-    count[b] = bins[b].count;
-    low[b] = bins[b].low;
-    high[b] = bins[b].high;
-  }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, count, MCOR_MEDIAN_BINS));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, MCOR_MEDIAN_BINS));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, MCOR_MEDIAN_BINS));
-  for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
-  {
-    bins[b] = (mcor_bin){ count[b], low[b], high[b] };
-  }
-  return MCOR_OK;
-}
-
-/* The bins of all particles, of all ranks, end in the first ones. */
-static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
-{
-  mcor_bin* all = job->bins[0];
-  mcor_fill_bins(job, 0, 0, 0); /* where there are no particles, nobody does */
   int slices;
+  mcor_fill_bins(job, 0, 0, 0); /* where there are no particles, nobody does */
   MCOR_TRY(
     mcor_parallel_run(context, job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job, &slices));
-  for (int s = 1; s < slices; ++s)
+  for (int n = MCOR_BINS; n < slices * MCOR_BINS; ++n)
   {
-    for (int b = 0; b < MCOR_MEDIAN_BINS; ++b)
-    {
-      const mcor_bin* bin = &job->bins[s][b];
-      all[b].count += bin->count;
-      all[b].low = bin->low < all[b].low ? bin->low : all[b].low;
-      all[b].high = bin->high > all[b].high ? bin->high : all[b].high;
-    }
+    const int s = n / MCOR_BINS, b = n % MCOR_BINS;
+    job->count[0][b] += job->count[s][b];
+    job->least[0][b] = fmin(job->least[0][b], job->least[s][b]);
+    job->minus[0][b] = fmin(job->minus[0][b], job->minus[s][b]);
   }
-  return mcor_merge_bins(context, all);
+  const int failed = ranks &&
+    (ranks->reduce_counts(ranks->user, MCOR_SUM_OF, job->count[0], MCOR_BINS) ||
+      ranks->reduce_doubles(ranks->user, MCOR_LEAST, job->least[0], MCOR_BINS) ||
+      ranks->reduce_doubles(ranks->user, MCOR_LEAST, job->minus[0], MCOR_BINS));
+  return context ? mcor_heard(context, failed) : failed ? MCOR_CANCELLED : MCOR_OK;
 }
 
+/* ---- the median ---- */
+
 /* Of the bin that holds the median, while many are in that bin. A bin ends where its values do, so
- * that a huge outlier does not move the median away from them. Counts, and least and greatest
- * values, do not depend on the order of the particles. */
+ * that a huge outlier does not move the median away from them. */
 static mcor_status mcor_narrow_median(
   mcor_context* context, mcor_bin_job* job, int64_t fluid_count, double* median)
 {
   int64_t below = 0;
   for (int pass = 0; pass < MCOR_MEDIAN_PASSES; ++pass)
   {
-    if (!(job->high / MCOR_MEDIAN_BINS - job->low / MCOR_MEDIAN_BINS > 0))
+    if (!(job->high / MCOR_BINS - job->low / MCOR_BINS > 0))
     {
       break;
     }
-    MCOR_TRY(mcor_make_bins(context, job));
-    const mcor_bin* bin = job->bins[0];
-    const mcor_bin* last = bin + MCOR_MEDIAN_BINS - 1;
-    for (; bin < last && 2 * (below + bin->count) < fluid_count; ++bin)
+    MCOR_TRY(mcor_make_bins(context, context->run.options->ranks, job));
+    int b = 0;
+    for (; b < MCOR_BINS - 1 && 2 * (below + job->count[0][b]) < fluid_count; ++b)
     {
-      below += bin->count;
+      below += job->count[0][b];
     }
-    if (bin->count == 0)
+    if (job->count[0][b] == 0)
     {
       break;
     }
-    job->low = bin->low;
-    job->high = bin->high;
-    if (bin->count < fluid_count / 16)
+    job->low = job->least[0][b];
+    job->high = -job->minus[0][b];
+    if (job->count[0][b] < fluid_count / 16)
     {
       break;
     }
@@ -137,13 +124,87 @@ static mcor_status mcor_narrow_median(
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median)
 {
   const mcor_measure* m = &context->measure;
-  mcor_bin_job job = { input, m->scalar_min, m->scalar_max,
-    malloc(MCOR_SLICES * sizeof *job.bins) };
-  MCOR_RETURN_IF(!job.bins, context, MCOR_OUT_OF_CAPACITY, "Host memory for the median ran out.");
-  const mcor_status status = mcor_narrow_median(context, &job, m->fluid_count, median);
-  free(job.bins);
+  mcor_bin_job* job = malloc(sizeof *job);
+  MCOR_TRY(mcor_allocated(context, job));
+  job->input = input;
+  job->low = m->scalar_min;
+  job->high = m->scalar_max;
+  const mcor_status status = mcor_narrow_median(context, job, m->fluid_count, median);
+  free(job);
   return status;
 }
+
+/* ---- an iso value ---- */
+
+/* Of the values in order the one of this number: until its bin holds one value alone. */
+static bool mcor_select_iso(
+  mcor_bin_job* job, const mcor_ranks* ranks, const double range[2], int64_t number, double* value)
+{
+  job->low = range[0];
+  job->high = range[1];
+  for (int pass = 0; pass < MCOR_ISO_PASSES && job->low < job->high; ++pass)
+  {
+    if (mcor_make_bins(NULL, ranks, job) != MCOR_OK)
+    {
+      return false;
+    }
+    int b = 0;
+    for (; b < MCOR_BINS - 1 && number >= job->count[0][b]; ++b)
+    {
+      number -= job->count[0][b];
+    }
+    job->low = job->least[0][b];
+    job->high = -job->minus[0][b];
+  }
+  *value = job->low;
+  return true;
+}
+
+static bool mcor_choose_iso(
+  mcor_bin_job* job, const mcor_ranks* ranks, double range[2], double* iso_value)
+{
+  double found[2] = { INFINITY, -INFINITY }, ends[2], median;
+  int64_t count = 0;
+  job->low = -INFINITY; /* all are in the last bin */
+  job->high = INFINITY;
+  if (mcor_make_bins(NULL, ranks, job) != MCOR_OK)
+  {
+    return false;
+  }
+  for (int b = 0; b < MCOR_BINS; ++b)
+  {
+    count += job->count[0][b];
+    found[0] = fmin(found[0], job->least[0][b]);
+    found[1] = fmax(found[1], -job->minus[0][b]);
+  }
+  if (count == 0 || !mcor_select_iso(job, ranks, found, count / 50, &ends[0]) ||
+    !mcor_select_iso(job, ranks, found, count - 1 - count / 50, &ends[1]) ||
+    !mcor_select_iso(job, ranks, found, (count - 1) / 2, &median))
+  {
+    return false;
+  }
+  const bool decades = found[0] > 0 && ends[1] / ends[0] >= MCOR_THREE_DECADES;
+  *iso_value = decades ? sqrt(ends[0]) * sqrt(ends[1]) : median;
+  range[0] = found[0];
+  range[1] = found[1];
+  return true;
+}
+
+int mcor_find_iso_value(
+  const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value)
+{
+  mcor_bin_job* job = malloc(sizeof *job);
+  if (!job)
+  {
+    return 0;
+  }
+  job->input = input;
+  const bool found = mcor_choose_iso(job, ranks, range, iso_value);
+  free(job);
+  return found;
+}
+
+/* ---- of a few numbers ---- */
 
 static int mcor_compare_doubles(const void* a, const void* b)
 {

@@ -135,7 +135,7 @@ mcor_status mcor_choose_samples(
 {
   mcor_sampling job = { .context = context, .input = input, .which = which };
   job.found = malloc(MCOR_SLICES * sizeof *job.found);
-  MCOR_RETURN_IF(!job.found, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, job.found));
   for (int s = 0; s < MCOR_SLICES; ++s)
   {
     job.found[s].count = 0;

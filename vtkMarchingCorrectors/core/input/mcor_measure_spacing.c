@@ -43,7 +43,6 @@ static void mcor_add_neighbours(mcor_neighbours* nearest, const double* d2, int 
 typedef struct mcor_spacing
 {
   const mcor_input* input;
-  mcor_array positions;
   double scale; /* a power of 2 that brings all coordinates below 1 */
   mcor_samples_found samples;
   mcor_neighbours nearest[MCOR_SAMPLES];
@@ -59,10 +58,7 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   {
     const int64_t rest = job->input->count - begin;
     const int count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_read_array(&job->positions, begin, count, a, x[a]);
-    }
+    mcor_read_positions(job->input, begin, count, x);
     for (int64_t s = first; s < last; ++s)
     {
       const double* at = job->samples.sample[s].x;
@@ -132,11 +128,11 @@ static mcor_status mcor_scale_positions(
   int exponent = 0, most = INT_MIN;
   double largest[3];
   job->input = input;
-  job->positions = input->positions;
-  job->positions.components = 3;
+  mcor_array positions = input->positions;
+  positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    largest[a] = mcor_largest(&job->positions, NULL, input->count, a);
+    largest[a] = mcor_largest(&positions, NULL, input->count, a);
   }
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
   for (int a = 0; a < 3; ++a)
@@ -190,7 +186,7 @@ mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate)
 {
   mcor_spacing* job = calloc(1, sizeof *job);
-  MCOR_RETURN_IF(!job, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, job));
   const mcor_status status = mcor_find_spacing(context, input, job, estimate);
   free(job);
   MCOR_TRY(status);

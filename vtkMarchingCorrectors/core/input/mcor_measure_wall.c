@@ -118,16 +118,11 @@ static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[
 static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_wall* wall = data;
-  mcor_array positions = wall->input->positions;
-  positions.components = 3;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_read_array(&positions, begin, count, a, x[a]);
-    }
+    mcor_read_positions(wall->input, begin, count, x);
     mcor_read_smoothing_length(wall->context, wall->input, begin, count, h);
     for (int i = 0; i < count; ++i)
     {
@@ -240,8 +235,7 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
   }
   mcor_wall* wall = calloc(1, sizeof *wall);
   int64_t(*weights)[MCOR_SAMPLES][2] = calloc(MCOR_SLICES, sizeof *weights);
-  mcor_status status =
-    wall && weights ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  mcor_status status = mcor_allocated(context, wall && weights);
   if (status == MCOR_OK)
   {
     *wall = (mcor_wall){ .context = context, .input = input, .reach = m->support_max };

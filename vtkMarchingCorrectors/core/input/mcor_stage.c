@@ -4,9 +4,9 @@
 /* Particles from the caller's arrays to the device, in input order: those that are needed, and in a periodic
  * box their images. */
 
+#include "mcor_stage.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
-#include "mcor_stage_chunk.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -336,7 +336,8 @@ static mcor_status mcor_refuse_heavy(
 }
 
 /* Room for the particles that the job stages. */
-static mcor_status mcor_make_room(mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
+static mcor_status mcor_make_stage_room(
+  mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
 {
   const int64_t count = job->input->count;
   int slices;
@@ -357,8 +358,7 @@ static mcor_status mcor_make_room(mcor_context* context, mcor_stage_job* job, mc
   if (job->input->solid || job->reach)
   {
     context->source = malloc(bytes + 1);
-    MCOR_RETURN_IF(!context->source, context, MCOR_OUT_OF_CAPACITY,
-      "Host memory for %d particles could not be allocated.", staging->count);
+    MCOR_TRY(mcor_allocated(context, context->source));
     mcor_use_large_pages(context->source, bytes);
   }
   return staging->count > 0 ? mcor_map_staging(context, staging->count, staging) : MCOR_OK;
@@ -368,7 +368,7 @@ static mcor_status mcor_stage_particles(
   mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
 {
   const mcor_input* input = job->input;
-  MCOR_TRY(mcor_make_room(context, job, staging));
+  MCOR_TRY(mcor_make_stage_room(context, job, staging));
   int slices;
   MCOR_TRY(mcor_parallel_run(context, staging->count > 0 ? input->count : 0, MCOR_HEAVY_GRAIN,
     mcor_stage_slice, job, &slices));
@@ -407,8 +407,7 @@ mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_stag
   {
     job.reach = &reach;
     job.images = malloc((size_t)input->count);
-    MCOR_RETURN_IF(!job.images, context, MCOR_OUT_OF_CAPACITY,
-      "Host memory for %lld particles could not be allocated.", (long long)input->count);
+    MCOR_TRY(mcor_allocated(context, job.images));
   }
   const mcor_status status = mcor_stage_particles(context, &job, staging);
   free(job.images);

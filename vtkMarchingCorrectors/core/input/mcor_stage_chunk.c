@@ -3,9 +3,9 @@
 
 /* A chunk of the caller's particles, in the staging arrays' units. */
 
-#include "mcor_stage_chunk.h"
 #include "mcor_plane.h"
-#include "mcor_tree_brick.h"
+#include "mcor_stage.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,7 +4,9 @@
 /* Values of particles, from the caller's arrays to the device: by the order of the search grid. */
 
 #include "mcor_parallel.h"
-#include "mcor_stage_chunk.h"
+#include "mcor_stage.h"
+
+#include <math.h>
 
 typedef struct mcor_value_job
 {
@@ -13,8 +15,27 @@ typedef struct mcor_value_job
   const mcor_array* array;
   int component;
   double shift, scale;
+  bool fixed;
   void* values;
 } mcor_value_job;
+
+/* Fixed-point numbers, rounded. */
+static void mcor_store_rounded(
+  const mcor_context* context, void* array, int64_t first, const double* values, int count)
+{
+  const bool single = context->cl.fix_size == sizeof(int32_t);
+  for (int i = 0; i < count; ++i)
+  {
+    if (single)
+    {
+      ((int32_t*)array)[first + i] = (int32_t)lrint(values[i]);
+    }
+    else
+    {
+      ((int64_t*)array)[first + i] = (int64_t)llrint(values[i]);
+    }
+  }
+}
 
 static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t last)
 {
@@ -41,20 +62,22 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
     {
       used[i] = input->solid[mcor_source_of(job->context, begin + i)] ? 0 : used[i];
     }
-    mcor_store_reals(job->context, job->values, begin, used, n);
+    job->fixed ? mcor_store_rounded(job->context, job->values, begin, used, n)
+               : mcor_store_reals(job->context, job->values, begin, used, n);
   }
   (void)slice;
 }
 
-/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`: from
- * the caller's order to the sorted one, to row `to_row`, one value per particle long. */
+/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`, as real or
+ * fixed-point numbers: from the caller's order to the sorted one, to row `to_row`, one value per particle long. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, double shift, double scale, mcor_buffer* to, int to_row)
+  const mcor_array* array, int component, double shift, double scale, bool fixed, mcor_buffer* to,
+  int to_row)
 {
   const mcor_grid* grid = &context->grid;
   const size_t bytes = (size_t)grid->count * context->cl.real_size;
   mcor_buffer* raw = &context->stage.values;
-  mcor_value_job job = { context, input, array, component, shift, scale, NULL };
+  mcor_value_job job = { context, input, array, component, shift, scale, fixed, NULL };
   MCOR_TRY(mcor_reserve(context, raw, bytes));
   MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
   const mcor_status status =

@@ -21,15 +21,13 @@
  * mcor_pair_rounds.c. */
 
 #include "mcor_box.h"
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_tree_brick.h"
+#include "mcor_tree.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 int mcor_has_box(const mcor_options* options)
 {
@@ -341,17 +339,12 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_reach_job* job = data;
   const mcor_lattice* lattice = &job->context->lattice;
-  mcor_array positions = job->input->positions;
-  positions.components = 3;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], farthest = 0;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
     mcor_read_smoothing_length(job->context, job->input, begin, count, h);
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_read_array(&positions, begin, count, a, x[a]);
-    }
+    mcor_read_positions(job->input, begin, count, x);
     for (int i = 0; i < count; ++i)
     {
       const double support = mcor_reach_of(job->box, h[i]);

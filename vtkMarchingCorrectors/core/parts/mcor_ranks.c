@@ -7,7 +7,7 @@
 
 #include "mcor_ranks.h"
 
-static mcor_status mcor_heard(mcor_context* context, int failed)
+mcor_status mcor_heard(mcor_context* context, int failed)
 {
   MCOR_RETURN_IF(failed != 0, context, MCOR_CANCELLED,
     "Another rank, or the communication with it, failed. See the message of that rank.");

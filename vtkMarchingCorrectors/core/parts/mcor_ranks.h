@@ -7,6 +7,9 @@
 
 #include "mcor_internal.h"
 
+/* Of a function of options.ranks, which has failed or not. */
+mcor_status mcor_heard(mcor_context* context, int failed);
+
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count);
 mcor_status mcor_reduce_counts(

@@ -22,8 +22,7 @@ mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
     return MCOR_OK;
   }
   cl_ulong* cells = malloc(2 * bytes);
-  MCOR_RETURN_IF(!cells, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %zu triangles could not be allocated.", triangles);
+  MCOR_TRY(mcor_allocated(context, cells));
   mcor_status status = mcor_read(context, buffer, 0, cells, bytes);
   status = status == MCOR_OK ? mcor_read(context, shared, 0, cells + triangles, bytes) : status;
   for (size_t i = 0; i < triangles && status == MCOR_OK; ++i)
@@ -64,8 +63,7 @@ mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
     return MCOR_OK;
   }
   *owners = calloc((size_t)mesh->vertex_count + 1, 1);
-  MCOR_RETURN_IF(!*owners, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %d points could not be allocated.", mesh->vertex_count);
+  MCOR_TRY(mcor_allocated(context, *owners));
   void *corners = NULL, *cells = NULL;
   if (triangles == 0)
   {

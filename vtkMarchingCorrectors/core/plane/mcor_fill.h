@@ -7,7 +7,7 @@
  * others. See mcor_fill.c. */
 
 #include "mcor_cap.h"
-#include "mcor_cap_map.h"
+#include "mcor_table.h"
 
 /* Nodes of one brick that marching has evaluated, bits x + 4 y. */
 typedef struct mcor_fill_brick
@@ -22,8 +22,8 @@ typedef struct mcor_fill_line
   double iso, value; /* relative to A0, as the device has it; the caller's */
   int brick_count, vertex_count, cut_count;
   mcor_fill_brick* bricks;
-  mcor_cap_map edges;  /* vertices on lattice edges, by these */
-  mcor_cap_map joined; /* ambiguous squares whose nodes above are joined */
+  mcor_table edges;  /* vertices on lattice edges, by these */
+  mcor_table joined; /* ambiguous squares whose nodes above are joined */
   double *offset,
     *margin;       /* [vertex_count]: along the edge; how far inside of what trimming leaves */
   cl_ulong* cuts;  /* [cut_count], see mcor_trim.cl; ascending */
@@ -59,7 +59,7 @@ typedef struct mcor_filling
   mcor_cap_face face;
   int64_t node_count;
   int32_t *band, *number; /* [node_count]; number: of those that are used, -1 of others */
-  mcor_cap_map cut_of;
+  mcor_table cut_of;
   mcor_fill_cut* cuts;
   int32_t* cut_number; /* [cut_count] */
   int64_t cut_count, cut_room;

@@ -70,7 +70,7 @@ static mcor_status mcor_take_fill_vertices(
     line->margin[v] = mcor_is_trimmed(context)
       ? mcor_get_real(context, views[MCOR_FILL_QUANTITY], v) - threshold
       : INFINITY;
-    if (mcor_cap_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) < 0)
+    if (mcor_table_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) < 0)
     {
       return mcor_no_fill_memory(context);
     }
@@ -131,7 +131,7 @@ static mcor_status mcor_take_fill_bricks(
     {
       const uint64_t key =
         mcor_fill_key(at[0] * MCOR_BRICK + (n & 3), at[1] * MCOR_BRICK + (n >> 2), 0);
-      if (joined >> n & 1 && mcor_cap_number(&line->joined, key, 0) < 0)
+      if (joined >> n & 1 && mcor_table_number(&line->joined, key, 0) < 0)
       {
         return mcor_no_fill_memory(context);
       }
@@ -193,8 +193,8 @@ void mcor_end_fill(mcor_context* context)
   for (int i = 0; fill && i < fill->line_count; ++i)
   {
     mcor_fill_line* line = &fill->lines[i];
-    mcor_free_cap_map(&line->edges);
-    mcor_free_cap_map(&line->joined);
+    mcor_table_free(&line->edges);
+    mcor_table_free(&line->joined);
     free(line->bricks);
     free(line->offset);
     free(line->margin);
@@ -204,7 +204,7 @@ void mcor_end_fill(mcor_context* context)
   if (fill)
   {
     mcor_free_cap_face(&fill->face);
-    mcor_free_cap_map(&fill->cut_of);
+    mcor_table_free(&fill->cut_of);
     free(fill->lines);
     free(fill->levels);
     free(fill->band);

@@ -69,7 +69,7 @@ static mcor_status mcor_add_vertex(mcor_fill_job* job, int level, mcor_fill_corn
 {
   const mcor_fill_line* line = &job->fill->lines[job->fill->levels[level]];
   const int32_t v =
-    mcor_find_cap_number(&line->edges, mcor_fill_key(corner->u, corner->v, corner->axis));
+    mcor_find_number(&line->edges, mcor_fill_key(corner->u, corner->v, corner->axis));
   if (v < 0 || (line->margin[v] > 0 && line->number[v] < 0))
   {
     return mcor_does_not_fit(job->context, corner);
@@ -121,7 +121,7 @@ static int mcor_fill_mate(const mcor_fill_job* job, int i)
 {
   const mcor_fill_corner* corners = job->border;
   const mcor_fill_line* line = &job->fill->lines[job->fill->levels[corners[i].level]];
-  const bool joined = mcor_find_cap_number(&line->joined, job->square) >= 0;
+  const bool joined = mcor_find_number(&line->joined, job->square) >= 0;
   const int step = corners[i].falls == joined ? 1 : job->count - 1;
   int mate = (i + step) % job->count;
   while (corners[mate].level != corners[i].level)
@@ -180,7 +180,7 @@ static mcor_status mcor_find_cut(
   const uint64_t edge = mcor_fill_key(p->u, p->v, p->axis);
   /* Keys of a map are one number: parts are told apart above those of edges. */
   const uint64_t key = edge ^ (uint64_t)p->part << 44;
-  const int32_t index = mcor_cap_number(&fill->cut_of, key, (int32_t)fill->cut_count);
+  const int32_t index = mcor_table_number(&fill->cut_of, key, (int32_t)fill->cut_count);
   if (index < 0 ||
     !mcor_fill_room((void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts))
   {

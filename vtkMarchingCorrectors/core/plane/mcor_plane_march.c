@@ -3,7 +3,7 @@
 
 /* Marching squares: see mcor_plane.cl. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_plane.h"
 

@@ -6,7 +6,7 @@
  * at hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values,
  * often masses or smoothing lengths, is that value. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
@@ -79,7 +79,7 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
   attributes->kept = 0;
   attributes->varying_count = attributes->count = 0;
   attributes->varying = malloc(most * sizeof *attributes->varying);
-  MCOR_RETURN_IF(!attributes->varying, context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, attributes->varying));
   return MCOR_OK;
 }
 
@@ -101,8 +101,7 @@ mcor_status mcor_list_attributes(
   surface->attribute_count = input->attribute_count;
   surface->attributes = calloc(count + 1, sizeof(double*));
   surface->attribute_not_finite = calloc(count + 1, sizeof(int64_t));
-  MCOR_RETURN_IF(!surface->attributes || !surface->attribute_not_finite, context,
-    MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+  MCOR_TRY(mcor_allocated(context, surface->attributes && surface->attribute_not_finite));
   MCOR_TRY(mcor_clear_components(context, input));
   MCOR_TRY(mcor_check_components(context, input));
   int next = 0;
@@ -226,7 +225,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   {
     const mcor_component* c = &attributes->varying[first + i];
     MCOR_TRY(mcor_sort_values(context, input, &input->attributes[c->attribute], c->component,
-      c->shift, c->scale, &attributes->sorted, i));
+      c->shift, c->scale, false, &attributes->sorted, i));
   }
   mcor_release(context, &context->stage.values);
   return MCOR_OK;

@@ -13,7 +13,7 @@
  * that they have in the whole. */
 
 #include "mcor_box.h"
-#include "mcor_cap_wall.h"
+#include "mcor_cap_job.h"
 
 #include <stdlib.h>
 
@@ -39,10 +39,8 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
     {
       on_side = on_side || (a != axis && (node[a] == plane[2 * a] || node[a] == plane[2 * a + 1]));
     }
-    if (on_side && mcor_cap_number(&job->edges[axis], mcor_cap_key(node), v) < 0)
-    {
-      return mcor_no_cap_memory(job->context);
-    }
+    MCOR_TRY(mcor_allocated(
+      job->context, !on_side || mcor_table_number(&job->edges[axis], mcor_cap_key(node), v) >= 0));
   }
   return MCOR_OK;
 }
@@ -150,11 +148,10 @@ mcor_status mcor_cap(mcor_context* context, double iso)
     status = mcor_append_caps(&job, iso);
     context->run.statistics->cap_triangles += job.owned_count;
   }
-  mcor_cap_map* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes,
-    &job.cuts };
+  mcor_table* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes, &job.cuts };
   for (int i = 0; i < 5; ++i)
   {
-    mcor_free_cap_map(maps[i]);
+    mcor_table_free(maps[i]);
   }
   free(job.vertices);
   free(job.triangles);

@@ -104,6 +104,22 @@ mcor_status mcor_make_cap_face(
 /* Whether there is room for the caps. */
 mcor_status mcor_check_caps(mcor_context* context);
 
+/* Views of the bricks that are marched; decisions: NULL where the field is not asked. */
+enum
+{
+  MCOR_VIEW_BRICKS,
+  MCOR_VIEW_KNOWN,
+  MCOR_VIEW_ABOVE,
+  MCOR_VIEW_VALID,
+  MCOR_VIEW_USED,
+  MCOR_VIEW_DECISIONS,
+  MCOR_BRICK_VIEWS
+};
+typedef void (*mcor_look)(
+  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data);
+/* Calls `look` with them, if there are any. */
+mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data);
+
 /* Axis a's lower or upper side; opposite: the other one, where that is known. */
 mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face);

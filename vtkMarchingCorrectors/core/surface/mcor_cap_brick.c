@@ -5,18 +5,17 @@
  * share of the weight is too great. Where marching has evaluated them its answer is taken. */
 
 #include "mcor_box.h"
-#include "mcor_cap_wall.h"
+#include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define MCOR_WALL_LIMIT (1 << 20) /* bricks */
 #define MCOR_WALL_BATCH (1 << 12) /* those evaluated at a time */
 
 void mcor_free_wall(mcor_wall* wall)
 {
-  mcor_free_cap_map(&wall->index);
+  mcor_table_free(&wall->index);
   free(wall->bricks);
 }
 
@@ -27,7 +26,7 @@ static uint64_t mcor_wall_key(const int at[3])
 
 const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[3])
 {
-  const int32_t number = mcor_find_cap_number(&wall->index, mcor_wall_key(at));
+  const int32_t number = mcor_find_number(&wall->index, mcor_wall_key(at));
   return number < 0 ? NULL : &wall->bricks[number];
 }
 
@@ -52,27 +51,18 @@ static void mcor_set_wall_extent(const mcor_context* context, mcor_wall* wall)
 static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
 {
   const int32_t next = (int32_t)wall->count;
-  const int32_t number = mcor_cap_number(&wall->index, mcor_wall_key(at), next);
+  const int32_t number = mcor_table_number(&wall->index, mcor_wall_key(at), next);
   if (number != next)
   {
-    return number < 0 ? mcor_no_cap_memory(context) : MCOR_OK;
+    return mcor_allocated(context, number >= 0);
   }
   MCOR_RETURN_IF(next >= MCOR_WALL_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. Use "
     "a "
     "larger cube size, or no caps.",
     MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
-  if (wall->count == wall->room)
-  {
-    const int64_t room = 2 * wall->room + 1024;
-    mcor_wall_brick* grown = realloc(wall->bricks, (size_t)room * sizeof *grown);
-    if (!grown)
-    {
-      return mcor_no_cap_memory(context);
-    }
-    wall->bricks = grown;
-    wall->room = room;
-  }
+  MCOR_TRY(
+    mcor_make_room(context, (void**)&wall->bricks, wall->count, &wall->room, sizeof *wall->bricks));
   mcor_wall_brick* brick = &wall->bricks[wall->count++];
   *brick = (mcor_wall_brick){ .at = { at[0], at[1], at[2] } };
   const cl_int node[4] = { at[0] * MCOR_BRICK, at[1] * MCOR_BRICK, at[2] * MCOR_BRICK, 0 };
@@ -99,7 +89,7 @@ static mcor_status mcor_reach_wall(
     {
       for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
       {
-        const int32_t found = is_solid ? -1 : mcor_find_cap_number(&wall->index, mcor_wall_key(at));
+        const int32_t found = is_solid ? -1 : mcor_find_number(&wall->index, mcor_wall_key(at));
         MCOR_TRY(is_solid ? mcor_add_wall_brick(context, wall, at) : MCOR_OK);
         if (found >= 0)
         {
@@ -148,14 +138,11 @@ static mcor_status mcor_sort_wall(mcor_context* context, mcor_wall* wall)
   {
     qsort(wall->bricks, (size_t)count, sizeof *wall->bricks, mcor_compare_wall_bricks);
   }
-  mcor_free_cap_map(&wall->index);
-  wall->index = (mcor_cap_map){ 0 };
+  mcor_table_free(&wall->index);
   for (int64_t i = 0; i < count; ++i)
   {
-    if (mcor_cap_number(&wall->index, mcor_wall_key(wall->bricks[i].at), (int32_t)i) < 0)
-    {
-      return mcor_no_cap_memory(context);
-    }
+    const uint64_t key = mcor_wall_key(wall->bricks[i].at);
+    MCOR_TRY(mcor_allocated(context, mcor_table_number(&wall->index, key, (int32_t)i) >= 0));
   }
   return MCOR_OK;
 }
@@ -172,15 +159,16 @@ static mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall)
 
 /* ---- what marching knows ------------------------------------------------------------------------ */
 
-/* views: bricks, known, above, used, decisions. */
 static void mcor_take_wall_masks(
-  const mcor_context* context, void* const views[5], const mcor_wall* wall)
+  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
 {
-  const cl_ulong *known = views[1], *above = views[2], *used = views[3], *decisions = views[4];
+  const mcor_wall* wall = data;
+  const cl_int* bricks = views[MCOR_VIEW_BRICKS];
+  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
+                 *used = views[MCOR_VIEW_USED], *decisions = views[MCOR_VIEW_DECISIONS];
   for (int slot = 0; slot < context->bricks.now.count; ++slot)
   {
-    const int32_t number =
-      mcor_find_cap_number(&wall->index, mcor_wall_key((const cl_int*)views[0] + 4 * (size_t)slot));
+    const int32_t number = mcor_find_number(&wall->index, mcor_wall_key(bricks + 4 * (size_t)slot));
     if (number >= 0)
     {
       mcor_wall_brick* brick = &wall->bricks[number];
@@ -193,24 +181,6 @@ static void mcor_take_wall_masks(
       }
     }
   }
-}
-
-static mcor_status mcor_take_wall_bricks(mcor_context* context, const mcor_wall* wall)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
-  const int count = n == 0 ? 0 : context->run.options->topology == MCOR_TOPOLOGY_FIELD ? 5 : 4;
-  void* views[5] = { NULL };
-  const mcor_mapping mappings[5] = { { &now->bricks, 4 * n * sizeof(cl_int), &views[0] },
-    { &now->known, mask, &views[1] }, { &now->above, mask, &views[2] },
-    { &context->mesh.used, mask, &views[3] },
-    { &context->topology.decisions, MCOR_DECISION_MASKS * mask, &views[4] } };
-  const mcor_status status = mcor_map_all(context, mappings, count);
-  if (status == MCOR_OK && count > 0)
-  {
-    mcor_take_wall_masks(context, views, wall);
-  }
-  return mcor_unmap_all(context, mappings, count, status);
 }
 
 /* ---- what it does not know ---------------------------------------------------------------------- */
@@ -254,11 +224,11 @@ mcor_status mcor_load_wall(
 {
   mcor_set_wall_extent(context, wall);
   MCOR_TRY(mcor_find_wall(context, wall));
-  MCOR_TRY(mcor_take_wall_bricks(context, wall));
+  MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
   const size_t room = (size_t)MCOR_WALL_BATCH * MCOR_BRICK_NODES;
   cl_int* nodes = malloc(4 * room * sizeof *nodes);
   int64_t* to = malloc(room * sizeof *to);
-  mcor_status status = nodes && to ? MCOR_OK : mcor_no_cap_memory(context);
+  mcor_status status = mcor_allocated(context, nodes && to);
   for (int64_t i = 0; i < wall->count && status == MCOR_OK; i += MCOR_WALL_BATCH)
   {
     const int64_t end = i + MCOR_WALL_BATCH < wall->count ? i + MCOR_WALL_BATCH : wall->count;

@@ -18,17 +18,6 @@
 
 /* ---- what marching knows ------------------------------------------------------------------- */
 
-enum
-{
-  MCOR_CAP_VIEW_BRICKS,
-  MCOR_CAP_VIEW_KNOWN,
-  MCOR_CAP_VIEW_ABOVE,
-  MCOR_CAP_VIEW_VALID,
-  MCOR_CAP_VIEW_CELLS,
-  MCOR_CAP_VIEW_DECISIONS,
-  MCOR_CAP_VIEWS
-};
-
 /* Sets `to` at those nodes of a brick that lie in a plane of the face, where their bits in a mask are
  * set. */
 static void mcor_mark_plane(
@@ -54,21 +43,22 @@ static void mcor_mark_plane(
 }
 
 static void mcor_take_masks(
-  const mcor_context* context, void* const views[MCOR_CAP_VIEWS], mcor_cap_face* face)
+  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
 {
-  const cl_ulong *known = views[MCOR_CAP_VIEW_KNOWN], *above = views[MCOR_CAP_VIEW_ABOVE],
-                 *valid = views[MCOR_CAP_VIEW_VALID], *cells = views[MCOR_CAP_VIEW_CELLS],
-                 *decisions = views[MCOR_CAP_VIEW_DECISIONS];
+  mcor_cap_face* face = data;
+  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
+                 *valid = views[MCOR_VIEW_VALID], *used = views[MCOR_VIEW_USED],
+                 *decisions = views[MCOR_VIEW_DECISIONS];
   for (int slot = 0; slot < context->bricks.now.count; ++slot)
   {
-    const cl_int* brick = (const cl_int*)views[MCOR_CAP_VIEW_BRICKS] + 4 * (size_t)slot;
+    const cl_int* brick = (const cl_int*)views[MCOR_VIEW_BRICKS] + 4 * (size_t)slot;
     const cl_ulong k = known[slot];
     mcor_mark_plane(face, brick, face->plane, k, MCOR_CAP_KNOWN, face->state);
     mcor_mark_plane(face, brick, face->plane, k & above[slot], MCOR_CAP_ABOVE, face->state);
     mcor_mark_plane(face, brick, face->plane, k & valid[slot], MCOR_CAP_VALID, face->state);
     mcor_mark_plane(face, brick, face->inner, k, MCOR_CAP_KNOWN, face->within);
     mcor_mark_plane(face, brick, face->inner, k & valid[slot], MCOR_CAP_VALID, face->within);
-    mcor_mark_plane(face, brick, face->cell, cells[slot], MCOR_CAP_USED, face->state);
+    mcor_mark_plane(face, brick, face->cell, used[slot], MCOR_CAP_USED, face->state);
     if (decisions)
     {
       mcor_mark_plane(face, brick, face->plane,
@@ -78,27 +68,25 @@ static void mcor_take_masks(
   }
 }
 
-static mcor_status mcor_take_bricks(mcor_context* context, mcor_cap_face* face)
+mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data)
 {
   const mcor_brick_data* now = &context->bricks.now;
-  const size_t n = (size_t)now->count;
-  const bool resolved = context->run.options->topology == MCOR_TOPOLOGY_FIELD;
-  const size_t mask = n * sizeof(cl_ulong);
-  const int count = n == 0 ? 0 : resolved ? MCOR_CAP_VIEWS : MCOR_CAP_VIEW_DECISIONS;
-  void* views[MCOR_CAP_VIEWS] = { NULL };
-  const mcor_mapping mappings[MCOR_CAP_VIEWS] = {
-    [MCOR_CAP_VIEW_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_CAP_VIEW_BRICKS] },
-    [MCOR_CAP_VIEW_KNOWN] = { &now->known, mask, &views[MCOR_CAP_VIEW_KNOWN] },
-    [MCOR_CAP_VIEW_ABOVE] = { &now->above, mask, &views[MCOR_CAP_VIEW_ABOVE] },
-    [MCOR_CAP_VIEW_VALID] = { &now->valid, mask, &views[MCOR_CAP_VIEW_VALID] },
-    [MCOR_CAP_VIEW_CELLS] = { &context->mesh.used, mask, &views[MCOR_CAP_VIEW_CELLS] },
-    [MCOR_CAP_VIEW_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
-      &views[MCOR_CAP_VIEW_DECISIONS] }
+  const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
+  const int count = n == 0 ? 0 : mcor_is_resolved(context) ? MCOR_BRICK_VIEWS : MCOR_VIEW_DECISIONS;
+  void* views[MCOR_BRICK_VIEWS] = { NULL };
+  const mcor_mapping mappings[MCOR_BRICK_VIEWS] = {
+    [MCOR_VIEW_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_VIEW_BRICKS] },
+    [MCOR_VIEW_KNOWN] = { &now->known, mask, &views[MCOR_VIEW_KNOWN] },
+    [MCOR_VIEW_ABOVE] = { &now->above, mask, &views[MCOR_VIEW_ABOVE] },
+    [MCOR_VIEW_VALID] = { &now->valid, mask, &views[MCOR_VIEW_VALID] },
+    [MCOR_VIEW_USED] = { &context->mesh.used, mask, &views[MCOR_VIEW_USED] },
+    [MCOR_VIEW_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
+      &views[MCOR_VIEW_DECISIONS] }
   };
   const mcor_status status = mcor_map_all(context, mappings, count);
   if (status == MCOR_OK && count > 0)
   {
-    mcor_take_masks(context, views, face);
+    look(context, views, data);
   }
   return mcor_unmap_all(context, mappings, count, status);
 }
@@ -265,9 +253,7 @@ static mcor_status mcor_fill_cap_nodes(
   const size_t room = MCOR_CAP_BATCH + MCOR_CAP_TILE * MCOR_CAP_TILE;
   cl_int* nodes = malloc(room * 4 * sizeof *nodes);
   int64_t* to = malloc(room * sizeof *to);
-  mcor_status status = nodes && to
-    ? MCOR_OK
-    : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
+  mcor_status status = mcor_allocated(context, nodes && to);
   int count = 0;
   for (int t = 1; t <= face->tile_count && status == MCOR_OK; ++t)
   {
@@ -304,7 +290,7 @@ mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face)
 {
   MCOR_TRY(mcor_make_cap_face(context, axis, upper, iso + context->value_shift, face));
-  MCOR_TRY(mcor_take_bricks(context, face));
+  MCOR_TRY(mcor_see_bricks(context, mcor_take_masks, face));
   if (opposite)
   {
     mcor_take_opposite(opposite, face);

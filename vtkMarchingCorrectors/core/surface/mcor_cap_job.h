@@ -7,7 +7,7 @@
  * (mcor_cap_mesh.c). */
 
 #include "mcor_cap.h"
-#include "mcor_cap_map.h"
+#include "mcor_table.h"
 
 #include <math.h>
 
@@ -44,8 +44,8 @@ typedef struct mcor_cap_job
   mcor_context* context;
   int old_count; /* vertices of the mesh */
   /* The surface's vertices, by lower node and axis of their edge; of a pinched one the first. */
-  mcor_cap_map edges[3];
-  mcor_cap_map nodes, cuts;
+  mcor_table edges[3];
+  mcor_table nodes, cuts;
   mcor_cap_vertex* vertices;
   int64_t vertex_count, vertex_room;
   cl_int* triangles;
@@ -86,10 +86,38 @@ static inline void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[
 /* mcor_cap_place.c. Moves the cuts of caps at walls to where solids have their share. */
 mcor_status mcor_place_wall_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points);
 
-/* mcor_cap_mesh.c */
-mcor_status mcor_no_cap_memory(mcor_context* context);
-
-/* Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
+/* mcor_cap_mesh.c. Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
 mcor_status mcor_append_caps(mcor_cap_job* job, double iso);
+
+/* ---- Caps at walls ---- */
+
+/* A brick of nodes near both fluid and solids. */
+typedef struct mcor_wall_brick
+{
+  cl_ulong key; /* of its first cell */
+  cl_int at[3]; /* in bricks */
+  bool has_fluid, is_known;
+  /* Of nodes, and of the cells and faces that have their lowest node here. */
+  cl_ulong above, used, joined[3];
+  double margin[MCOR_BRICK_NODES]; /* of nodes above */
+} mcor_wall_brick;
+
+typedef struct mcor_wall
+{
+  mcor_table index; /* numbers of bricks */
+  mcor_wall_brick* bricks;
+  int64_t count, room;
+  int first[3], end[3]; /* nodes: of the box, the ring around it, and what is beside */
+} mcor_wall;
+
+/* mcor_cap_brick.c. The bricks where there may be caps, in the order of their keys. */
+mcor_status mcor_load_wall(
+  mcor_context* context, double iso, mcor_cap_points* points, mcor_wall* wall);
+/* NULL: there is none. */
+const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[3]);
+void mcor_free_wall(mcor_wall* wall);
+
+/* mcor_cap_wall.c. Caps where the surface ends at solids. */
+mcor_status mcor_cap_walls(mcor_cap_job* job, double iso, mcor_cap_points* points);
 
 #endif

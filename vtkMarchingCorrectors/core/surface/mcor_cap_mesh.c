@@ -10,11 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-mcor_status mcor_no_cap_memory(mcor_context* context)
-{
-  return mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory for caps could not be allocated.");
-}
-
 bool mcor_is_cap(const mcor_context* context, int64_t v)
 {
   return v >= context->mesh.cap_first;
@@ -58,7 +53,7 @@ static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
   cl_int* node = malloc(n * 4 * sizeof *node);
   void* offset = calloc(n * 4, real);
   uint8_t* flag = malloc(n);
-  mcor_status status = node && offset && flag ? MCOR_OK : mcor_no_cap_memory(context);
+  mcor_status status = mcor_allocated(context, node && offset && flag);
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
   {
     const mcor_cap_vertex* vertex = &job->vertices[i];
@@ -95,7 +90,7 @@ static mcor_status mcor_keep_cap_keys(mcor_cap_job* job)
     memcpy(mesh->cap_keys + 2 * i, job->vertices[i].key, sizeof job->vertices[i].key);
     mesh->cap_keys[2 * i] &= ~MCOR_RING_CELL;
   }
-  return mesh->cap_keys ? MCOR_OK : mcor_no_cap_memory(job->context);
+  return mcor_allocated(job->context, mesh->cap_keys);
 }
 
 void mcor_store_cap_key(const mcor_context* context, int64_t v, uint64_t key[2])

@@ -65,7 +65,7 @@ mcor_status mcor_place_wall_cuts(mcor_cap_job* job, double iso, mcor_cap_points*
   int64_t *vertices = malloc((all + 1) * sizeof *vertices), count = 0;
   cl_int* nodes = calloc(4 * room + 1, sizeof *nodes);
   void* offsets = calloc(4 * room + 1, job->context->cl.real_size);
-  mcor_status status = vertices && nodes && offsets ? MCOR_OK : mcor_no_cap_memory(job->context);
+  mcor_status status = mcor_allocated(job->context, vertices && nodes && offsets);
   for (int64_t i = 0; i < job->vertex_count && status == MCOR_OK; ++i)
   {
     vertices[count] = i;

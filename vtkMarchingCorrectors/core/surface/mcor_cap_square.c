@@ -19,30 +19,13 @@ typedef struct mcor_cap_corner
 
 /* ---- vertices ---------------------------------------------------------------------------------- */
 
-/* Room for one more element of an array. */
-static bool mcor_cap_room(void** array, int64_t count, int64_t* room, size_t width)
-{
-  if (count < *room)
-  {
-    return true;
-  }
-  const int64_t more = 2 * *room + 1024;
-  void* grown = realloc(*array, (size_t)more * width);
-  *array = grown ? grown : *array;
-  *room = grown ? more : *room;
-  return grown != NULL;
-}
-
 static mcor_status mcor_add_cap_vertex(mcor_cap_job* job, const double at[3], bool is_cut)
 {
   mcor_context* context = job->context;
   MCOR_RETURN_IF(job->old_count + job->vertex_count >= MCOR_COUNT_LIMIT, context,
     MCOR_OUT_OF_CAPACITY, "The caps have too many vertices. Use a larger cube size.");
-  if (!mcor_cap_room(
-        (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices))
-  {
-    return mcor_no_cap_memory(context);
-  }
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices));
   mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
   *vertex = (mcor_cap_vertex){ .is_cut = is_cut, .key = { job->square, job->lookups } };
   mcor_put_cap_vertex(vertex, at);
@@ -51,15 +34,12 @@ static mcor_status mcor_add_cap_vertex(mcor_cap_job* job, const double at[3], bo
 
 /* Of a map's key, a vertex that is made where there is none. */
 static mcor_status mcor_find_cap_vertex(
-  mcor_cap_job* job, mcor_cap_map* map, uint64_t key, const double at[3], bool is_cut, int32_t* v)
+  mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], bool is_cut, int32_t* v)
 {
   const int32_t next = (int32_t)(job->old_count + job->vertex_count);
   ++job->lookups;
-  *v = mcor_cap_number(map, key, next);
-  if (*v < 0)
-  {
-    return mcor_no_cap_memory(job->context);
-  }
+  *v = mcor_table_number(map, key, next);
+  MCOR_TRY(mcor_allocated(job->context, *v >= 0));
   return *v == next ? mcor_add_cap_vertex(job, at, is_cut && !job->border) : MCOR_OK;
 }
 
@@ -94,7 +74,7 @@ static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, const mcor_cap_face* 
   cell[face->axis] = face->cell;
   cell[face->across[0]] = face->first[0] + u0;
   cell[face->across[1]] = face->first[1] + v0;
-  int32_t vertex = mcor_find_cap_number(&job->edges[axis], mcor_cap_key(node));
+  int32_t vertex = mcor_find_number(&job->edges[axis], mcor_cap_key(node));
   MCOR_RETURN_IF(vertex < 0, context, MCOR_DEVICE_ERROR,
     "A cap does not fit the surface at node %d %d %d. Please report it.", node[0], node[1],
     node[2]);
@@ -162,12 +142,10 @@ static mcor_status mcor_cap_cut(
 mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3])
 {
   const int64_t next = job->triangle_count + 1;
-  if (!mcor_cap_room(
-        (void**)&job->triangles, next, &job->triangle_room, 3 * sizeof *job->triangles) ||
-    !mcor_cap_room((void**)&job->cells, next, &job->cell_room, sizeof *job->cells))
-  {
-    return mcor_no_cap_memory(job->context);
-  }
+  MCOR_TRY(mcor_make_room(
+    job->context, (void**)&job->triangles, next, &job->triangle_room, 3 * sizeof *job->triangles));
+  MCOR_TRY(
+    mcor_make_room(job->context, (void**)&job->cells, next, &job->cell_room, sizeof *job->cells));
   job->cells[job->triangle_count] = job->square;
   job->owned_count += !(job->square & MCOR_RING_CELL);
   memcpy(job->triangles + 3 * job->triangle_count++, corners, 3 * sizeof *corners);

@@ -205,8 +205,7 @@ mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_ca
     "caps.",
     (long long)face->count[0], (long long)face->count[1]);
   face->tile = calloc(places, sizeof *face->tile);
-  MCOR_RETURN_IF(
-    !face->tile, context, MCOR_OUT_OF_CAPACITY, "Host memory for a cap could not be allocated.");
+  MCOR_TRY(mcor_allocated(context, face->tile));
   if (empty_is_above)
   {
     return mcor_note_tiles(context, face, low, high);
@@ -225,8 +224,7 @@ mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face)
   face->state = calloc(nodes, 1);
   face->within = calloc(nodes, 1);
   face->margin = calloc(nodes, sizeof(double));
-  MCOR_RETURN_IF(!face->place || !face->state || !face->within || !face->margin, context,
-    MCOR_OUT_OF_CAPACITY, "Host memory for %zu nodes of a cap could not be allocated.", nodes);
+  MCOR_TRY(mcor_allocated(context, face->place && face->state && face->within && face->margin));
   int count = 0;
   for (int32_t p = 0; p < face->tiles[0] * face->tiles[1]; ++p)
   {

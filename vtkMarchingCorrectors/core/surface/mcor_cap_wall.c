@@ -9,8 +9,8 @@
  *
  * Squares of caps are numbered as cells are, after all squares of sides. */
 
-#include "mcor_cap_wall.h"
 #include "mcor_box.h"
+#include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -62,10 +62,7 @@ static mcor_status mcor_list_wall_edges(
   mcor_context* context = job->cap->context;
   const mcor_mesh* mesh = &context->mesh;
   job->edges = malloc(((size_t)mesh->triangle_count + 1) * sizeof *job->edges);
-  if (!job->edges)
-  {
-    return mcor_no_cap_memory(context);
-  }
+  MCOR_TRY(mcor_allocated(context, job->edges));
   for (int32_t t = 0; t < mesh->triangle_count; ++t)
   {
     const cl_int* corner = triangles + 3 * (size_t)t;
@@ -180,7 +177,7 @@ static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* ce
       }
       const cl_int node[3] = { cell->node[0] + (c & 1), cell->node[1] + (c >> 1 & 1),
         cell->node[2] + (c >> 2) };
-      const int32_t v = mcor_find_cap_number(&cap->edges[a], mcor_cap_key(node));
+      const int32_t v = mcor_find_number(&cap->edges[a], mcor_cap_key(node));
       const bool is_inside =
         v >= 0 && mcor_get_real(cap->context, cap->quantity, v) > cap->threshold;
       inside = inside || (v >= 0 && is_inside);

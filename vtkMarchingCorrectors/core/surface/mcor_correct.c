@@ -3,7 +3,7 @@
 
 /* Correction [III-D.2]. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 
 #include <stdlib.h>

@@ -109,14 +109,11 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
     return MCOR_OK;
   }
   job.sums = calloc((size_t)surface->point_count * 3 + 1, sizeof(double));
-  MCOR_RETURN_IF(!job.sums, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for the normals could not be allocated.");
+  MCOR_TRY(mcor_allocated(context, job.sums));
   mcor_status status = mcor_add_triangles(context, &job);
-  if (status == MCOR_OK)
-  {
-    status = mcor_parallel_run(
-      context, surface->point_count, MCOR_LIGHT_GRAIN, mcor_store_sums, &job, NULL);
-  }
+  status = status == MCOR_OK ? mcor_parallel_run(context, surface->point_count, MCOR_LIGHT_GRAIN,
+                                 mcor_store_sums, &job, NULL)
+                             : status;
   free(job.sums);
   return status;
 }

@@ -4,7 +4,7 @@
 /* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
  * makes, and ascending in the order of the whole surface's points. */
 
-#include "mcor_adaptive_level.h"
+#include "mcor_adaptive.h"
 #include "mcor_cap.h"
 #include "mcor_tree.h"
 
@@ -22,8 +22,7 @@ mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
   }
   const size_t bytes = (size_t)count * sizeof **cuts;
   *cuts = malloc(bytes);
-  MCOR_RETURN_IF(!*cuts, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for the keys of %d points could not be allocated.", count);
+  MCOR_TRY(mcor_allocated(context, *cuts));
   return mcor_read(context, &context->trim.distinct, 0, *cuts, bytes);
 }
 

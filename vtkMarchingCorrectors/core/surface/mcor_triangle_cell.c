@@ -93,8 +93,7 @@ mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* 
     surface->triangle_keys = keys ? keys : surface->triangle_keys;
     good = good && keys;
   }
-  MCOR_RETURN_IF(!good, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %zu triangles could not be allocated.", count);
+  MCOR_TRY(mcor_allocated(context, good));
   return MCOR_OK;
 }
 
@@ -191,8 +190,7 @@ mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mc
     return MCOR_OK;
   }
   int32_t* number = malloc(((size_t)surface->point_count + 1) * sizeof *number);
-  MCOR_RETURN_IF(!number, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld points could not be allocated.", (long long)surface->point_count);
+  MCOR_TRY(mcor_allocated(context, number));
   const int64_t points = mcor_drop_triangles(surface, kept, number);
   mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
   mcor_list_surface_arrays(surface, arrays);

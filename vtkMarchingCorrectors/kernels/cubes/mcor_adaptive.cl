@@ -49,11 +49,8 @@ ulong mcor_adaptive_wanted_key(__global const mcor_rung* rungs, int4 leaf, int b
 __kernel void mcor_adaptive_count_wanted(
   const int count, const int plane, __global const uint* finer, __global int* counts)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    counts[i] = (int)popcount(mcor_adaptive_wanted(finer[i], plane));
-  }
+  MCOR_ITEM(i, i < count);
+  counts[i] = (int)popcount(mcor_adaptive_wanted(finer[i], plane));
 }
 
 /* One work-item = one leaf. Reads the scanned counts. Writes the keys of the bricks that it needs. */
@@ -61,11 +58,7 @@ __kernel void mcor_adaptive_fill_wanted(const int count, const int plane,
   __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
   __global const int* scanned, __global ulong* keys)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   int to = scanned[i];
   for (ulong rest = mcor_adaptive_wanted(finer[i], plane); rest; rest &= rest - 1)
   {
@@ -77,11 +70,7 @@ __kernel void mcor_adaptive_fill_wanted(const int count, const int plane,
 __kernel void mcor_adaptive_bricks(const int count, const int top, __global const mcor_rung* rungs,
   __global const ulong* keys, __global int4* bricks)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   int level = 0;
   while (level < top && keys[i] >= rungs[level + 1].base)
   {
@@ -97,11 +86,7 @@ __kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count, const int 
   __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
   __global int* tables)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const ulong wanted = mcor_adaptive_wanted(finer[i], plane);
   for (int b = 0; b < MCOR_LEAF_SLOTS; ++b)
   {
@@ -155,11 +140,7 @@ __kernel void mcor_adaptive_sign(const int slot_count, __global const uchar* pro
   __global const real* node_value, __global const real* node_weight, const real iso,
   const real node_threshold, __global ulong* known, __global ulong* above, __global ulong* valid)
 {
-  const int slot = get_global_id(0);
-  if (slot >= slot_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < slot_count);
   if (!known[slot] && MCOR_IS_CERTAIN(proofs[slot]))
   {
     above[slot] = proofs[slot] == MCOR_ABOVE ? ~0UL : 0;
@@ -215,11 +196,7 @@ __kernel void mcor_adaptive_need(const int count, const int plane, __global cons
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global uchar* proofs)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
   if (finer[i] == 0 && !plane)
   {
@@ -246,11 +223,7 @@ __kernel void mcor_adaptive_move(MCOR_SLOT_PARAMS, const int old_count,
   const int words, __global const uint* old_value, __global const uint* old_weight,
   __global ulong* known, __global uint* node_value, __global uint* node_weight)
 {
-  const int old = get_global_id(0);
-  if (old >= old_count || !old_known[old])
-  {
-    return;
-  }
+  MCOR_ITEM(old, old < old_count && old_known[old]);
   const int4 b = old_bricks[old];
   const int slot = mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, b.w, b.x, b.y, b.z));
   if (slot < 0)

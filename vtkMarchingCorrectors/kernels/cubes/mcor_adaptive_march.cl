@@ -264,11 +264,7 @@ ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
  * its cells is valid at all nodes and has nodes on both sides. */
 __kernel void mcor_adaptive_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
 {
-  const int i = get_global_id(0);
-  if (i >= count || !mixed[i])
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count && mixed[i]);
   const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
   const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   bool some = mcor_leaf_crossed(&leaf, hanging) != 0;
@@ -283,11 +279,8 @@ __kernel void mcor_adaptive_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
 __kernel void mcor_adaptive_seeds(
   const int count, __global const uchar* mixed, __global const ulong* cells, __global ulong* seeds)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    seeds[i] = mixed[i] ? cells[i] : 0;
-  }
+  MCOR_ITEM(i, i < count);
+  seeds[i] = mixed[i] ? cells[i] : 0;
 }
 
 /* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
@@ -297,11 +290,7 @@ __kernel void mcor_adaptive_classify(MCOR_LEAF_PARAMS, __global const uchar* mix
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   if (!mixed[i])
   {
     used[i] = 0;
@@ -341,11 +330,7 @@ __kernel void mcor_adaptive_classify(MCOR_LEAF_PARAMS, __global const uchar* mix
 __kernel void mcor_adaptive_edges(const int slot_count, __global const uint* quadrants,
   __global ulong* edges, __global int* vertex_count)
 {
-  const int slot = get_global_id(0);
-  if (slot >= slot_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < slot_count);
   __global const uint* words = quadrants + slot * (long)MCOR_QUADRANT_WORDS;
   __global ulong* to = edges + (long)slot * MCOR_EDGE_MASKS;
   int vertices = 0;
@@ -384,11 +369,7 @@ __kernel void mcor_adaptive_triangles(MCOR_LEAF_PARAMS, __global const int4* cel
   __global ulong* triangle_cells, __global const ulong* used, __global const ulong* edges,
   __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
 {
-  const int i = get_global_id(0);
-  if (i >= count || used[i] == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count && used[i] != 0);
   const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
   const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   const ulong key = mcor_adaptive_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);

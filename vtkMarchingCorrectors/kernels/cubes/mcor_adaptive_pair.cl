@@ -61,11 +61,8 @@ __kernel void mcor_adaptive_pair_keys(const int count, const int top,
 __kernel void mcor_adaptive_pair_places(
   const int count, const int top, __global const int* index, __global int* place_leaves)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    place_leaves[index[i * (top + 1L)]] = i;
-  }
+  MCOR_ITEM(i, i < count);
+  place_leaves[index[i * (top + 1L)]] = i;
 }
 #endif
 
@@ -281,11 +278,7 @@ __kernel void mcor_adaptive_pair_grow(const int count, const int plane, __global
   __global const uchar* mixed, __global const int4* bricks, MCOR_PLACE_PARAMS,
   __global const ulong* domain, __global ulong* grown, __global uint* reached, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i >= count || !mixed[i])
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count && mixed[i]);
   const ulong before = grown[i];
   /* Others add to them meanwhile: what is missed is there in the next round. */
   const ulong first = atomic_or(reached + 2L * i, 0), rest = atomic_or(reached + 2L * i + 1, 0);
@@ -301,12 +294,11 @@ __kernel void mcor_adaptive_pair_grow(const int count, const int plane, __global
   grown[i] = cells;
   mcor_add_cells(reached, i, cells);
   const ulong fresh = cells & ~before & faces.used;
-  const ulong low[3] = { MCOR_LOW_X, MCOR_LOW_Y, MCOR_LOW_Z };
   for (int face = 0; face < 6 && fresh; ++face)
   {
     const int axis = face >> 1, side = face & 1;
-    const ulong at =
-      side ? faces.upper[axis] & low[axis] << (3 << 2 * axis) : faces.lower[axis] & low[axis];
+    const ulong low = mcor_lowest(axis);
+    const ulong at = side ? faces.upper[axis] & low << (3 << 2 * axis) : faces.lower[axis] & low;
     if (fresh & at)
     {
       mcor_leaf_reach_across(
@@ -320,22 +312,16 @@ __kernel void mcor_adaptive_pair_grow(const int count, const int plane, __global
 __kernel void mcor_adaptive_pair_take(const int count, __global const int4* heard,
   MCOR_PLACE_PARAMS, __global uint* reached, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    const int4 cell = heard[i];
-    mcor_leaf_reach(MCOR_PLACE_ARGS, cell.w, cell.x, cell.y, cell.z, reached, flags);
-  }
+  MCOR_ITEM(i, i < count);
+  const int4 cell = heard[i];
+  mcor_leaf_reach(MCOR_PLACE_ARGS, cell.w, cell.x, cell.y, cell.z, reached, flags);
 }
 
 /* One work-item = one leaf. Leaves those of its cells that are reached. */
 __kernel void mcor_adaptive_pair_keep(
   const int count, __global const ulong* reached, __global ulong* cells)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    cells[i] &= reached[i];
-  }
+  MCOR_ITEM(i, i < count);
+  cells[i] &= reached[i];
 }
 #endif

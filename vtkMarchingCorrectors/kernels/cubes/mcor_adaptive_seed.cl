@@ -19,11 +19,8 @@
 __kernel void mcor_adaptive_scale(
   const int count, __global const real* inv_h, const real factor, __global real* scaled)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    scaled[i] = inv_h[i] * factor;
-  }
+  MCOR_ITEM(i, i < count);
+  scaled[i] = inv_h[i] * factor;
 }
 
 #endif
@@ -278,12 +275,9 @@ __kernel void mcor_adaptive_regions(MCOR_GRID_PARAMS, const int first, const int
 __kernel void mcor_adaptive_region_keys(const int region_count, __global const mcor_rung* rungs,
   __global const int* regions, __global const int4* leaves, __global ulong* keys)
 {
-  const int r = get_global_id(0);
-  if (r < region_count)
-  {
-    const int4 leaf = leaves[regions[r]];
-    keys[r] = mcor_adaptive_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
-  }
+  MCOR_ITEM(r, r < region_count);
+  const int4 leaf = leaves[regions[r]];
+  keys[r] = mcor_adaptive_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
 }
 
 #endif
@@ -324,11 +318,7 @@ int mcor_leaf_of_region(
 __kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, const int plane, __global const uint* finer,
   __global const int* states, __global uchar* chosen)
 {
-  const int r = get_global_id(0);
-  if (r >= region_count)
-  {
-    return;
-  }
+  MCOR_ITEM(r, r < region_count);
   const int4 parent = leaves[regions[r]] >> 1;
   const int level = leaves[regions[r]].w;
   const int directions = plane ? 4 : 8;
@@ -368,11 +358,7 @@ __kernel void mcor_adaptive_take(MCOR_REGION_PARAMS, const int slot_count,
   __global const uint* leaf_value, __global const uint* leaf_weight, __global uchar* proofs,
   __global ulong* known, __global uint* node_value, __global uint* node_weight)
 {
-  const int slot = get_global_id(0);
-  if (slot >= slot_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < slot_count);
   const int4 b = bricks[slot];
   const int region = mcor_find_region(MCOR_REGION_ARGS, b.w + 1, b.x >> 1, b.y >> 1, b.z >> 1);
   const int i = mcor_leaf_of_region(regions, leaves, region, b.x, b.y, b.z);

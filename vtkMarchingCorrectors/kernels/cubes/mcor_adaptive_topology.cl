@@ -13,11 +13,7 @@ __kernel void mcor_adaptive_plain(const int count, __global const uint* finer,
   __global const int* tables, __global const ulong* used, __global int* neighbours,
   __global ulong* plain, __global ulong* plain_used)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
   const int slot = slots[0];
   const ulong cells = ~mcor_leaf_hanging_cells(mcor_leaf_hanging(finer[i]));
@@ -39,11 +35,7 @@ __kernel void mcor_adaptive_recount(const int count, __global const int* tables,
   MCOR_DECISION_PARAMS, __global const ulong* above, __global const ulong* used,
   __global const uchar* case_table, __global int* triangle_count, __global int* tunnel_count)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const int slot = tables[i * (long)MCOR_LEAF_SLOTS];
   ulong m[8];
   int tunnels = 0;

@@ -12,11 +12,8 @@
 /* One work-item = one cube of the first size, all of which exist. Writes its key. */
 __kernel void mcor_block_all(const int count, __global ulong* keys)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    keys[i] = (ulong)i;
-  }
+  MCOR_ITEM(i, i < count);
+  keys[i] = (ulong)i;
 }
 #endif
 
@@ -27,11 +24,7 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
   const int cubes_y, __global const ulong* keys, const int size, MCOR_SEED_PARAMS,
   __global uchar* states)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 brick = mcor_block_of_key(keys[i], cubes_x, cubes_y) * (size / MCOR_BRICK);
@@ -48,11 +41,7 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cub
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {
-  const int i = get_global_id(0);
-  if (i >= block_count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < block_count);
   const int4 cube = mcor_block_of_key(block_keys[i], blocks_x, blocks_y);
   int seen = 1 << states[i];
   for (int d = 0; d < 27; ++d)
@@ -76,11 +65,7 @@ __kernel void mcor_block_count(const int count, const int cubes_x, const int cub
   __global const ulong* keys, __global const uchar* inactive, const int nx, const int ny,
   const int nz, __global int* counts)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
   int children = 0;
   for (int c = 0; c < 8 && !inactive[i]; ++c)
@@ -95,11 +80,7 @@ __kernel void mcor_block_fill(const int count, const int cubes_x, const int cube
   __global const ulong* keys, const int nx, const int ny, const int nz, __global const int* scanned,
   __global ulong* child_keys)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
   int to = scanned[i];
   for (int c = 0; c < 8 && to < scanned[i + 1]; ++c)
@@ -116,11 +97,8 @@ __kernel void mcor_block_fill(const int count, const int cubes_x, const int cube
 __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {
-  const int slot = get_global_id(0);
-  if (slot < brick_count && known[slot])
-  {
-    const int4 brick = bricks[slot];
-    mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
-  }
+  MCOR_ITEM(slot, slot < brick_count && known[slot]);
+  const int4 brick = bricks[slot];
+  mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
 }
 #endif

@@ -131,11 +131,8 @@ int mcor_adaptive_find(MCOR_SLOT_PARAMS, ulong key)
 __kernel void mcor_brick_count(
   const int word_count, __global const uint* brick_bits, __global int* counts)
 {
-  const int word = get_global_id(0);
-  if (word < word_count)
-  {
-    counts[word] = (int)popcount(brick_bits[word]);
-  }
+  MCOR_ITEM(word, word < word_count);
+  counts[word] = (int)popcount(brick_bits[word]);
 }
 
 /* One work-item = one word of 32 bricks. Reads bits and scanned counts. Writes the coordinates of
@@ -143,11 +140,7 @@ __kernel void mcor_brick_count(
 __kernel void mcor_brick_fill(
   MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
-  const int word = get_global_id(0);
-  if (word >= block_count * MCOR_BLOCK_WORDS)
-  {
-    return;
-  }
+  MCOR_ITEM(word, word < block_count * MCOR_BLOCK_WORDS);
   int slot = brick_base[word];
   for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
   {
@@ -162,11 +155,7 @@ __kernel void mcor_brick_fill(
 __kernel void mcor_brick_neighbours(
   MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   const int4 brick = bricks[slot];
   const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
   for (int d = 1; d < 8; ++d)
@@ -188,25 +177,19 @@ __kernel void mcor_brick_neighbours(
 __kernel void mcor_brick_index(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global uint* placed, __global int* slot_of)
 {
-  const int slot = get_global_id(0);
-  if (slot < brick_count)
-  {
-    const int4 brick = bricks[slot];
-    const int m = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-    mcor_request_brick(placed, m);
-    slot_of[m] = slot;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
+  const int4 brick = bricks[slot];
+  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  mcor_request_brick(placed, m);
+  slot_of[m] = slot;
 }
 
 /* One work-item = one word of 32 bricks. Counts those without slots. */
 __kernel void mcor_brick_count_new(const int word_count, __global const uint* brick_bits,
   __global const uint* placed, __global int* counts)
 {
-  const int word = get_global_id(0);
-  if (word < word_count)
-  {
-    counts[word] = (int)popcount(brick_bits[word] & ~placed[word]);
-  }
+  MCOR_ITEM(word, word < word_count);
+  counts[word] = (int)popcount(brick_bits[word] & ~placed[word]);
 }
 
 /* One work-item = one word of 32 bricks. Reads bits and scanned counts. Gives slots from `first` on
@@ -216,11 +199,7 @@ __kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first, __global con
   __global int* neighbours, __global ulong* known, __global ulong* cells, __global ulong* examined,
   __global ulong* above, __global ulong* valid)
 {
-  const int word = get_global_id(0);
-  if (word >= block_count * MCOR_BLOCK_WORDS)
-  {
-    return;
-  }
+  MCOR_ITEM(word, word < block_count * MCOR_BLOCK_WORDS);
   int slot = first + scanned[word];
   for (uint bits = brick_bits[word] & ~placed[word]; bits; bits &= bits - 1, ++slot)
   {
@@ -277,11 +256,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global ulong* examined, __global ulong* above, __global ulong* valid, __global uint* node_value,
   __global uint* node_weight)
 {
-  const int old = get_global_id(0);
-  if (old >= old_count)
-  {
-    return;
-  }
+  MCOR_ITEM(old, old < old_count);
   const int4 brick = old_bricks[old];
   const int slot = mcor_find_brick(MCOR_BRICK_ARGS, brick.x, brick.y, brick.z);
   if (slot < 0)

@@ -13,11 +13,7 @@ __kernel void mcor_march_need(const int brick_count, __global const int* neighbo
   __global const ulong* cells, __global const ulong* known, __global ulong* need,
   __global ulong* examined, __global ulong* fresh)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   bool some = false;
   if (!known[slot])
   {
@@ -61,15 +57,12 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* evalu
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)
 {
-  const int slot = get_global_id(0);
-  if (slot < brick_count && evaluated[slot])
-  {
-    known[slot] |= evaluated[slot];
-    const ulong2 signs =
-      mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold);
-    above[slot] = signs.x;
-    valid[slot] = signs.y;
-  }
+  MCOR_ITEM(slot, slot < brick_count && evaluated[slot]);
+  known[slot] |= evaluated[slot];
+  const ulong2 signs =
+    mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold);
+  above[slot] = signs.x;
+  valid[slot] = signs.y;
 }
 #endif
 
@@ -77,18 +70,12 @@ __kernel void mcor_march_sign(const int brick_count, __global const ulong* evalu
  * (bits x, y, z). */
 MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
 {
-  for (int i = 0; i < 8; i += 2)
+  for (int axis = 0; axis < 3; ++axis)
   {
-    m[i + 1] = mcor_from_next_x(m[i], m[i + 1]);
-  }
-  for (int i = 0; i < 4; ++i)
-  {
-    const int low = (i & 1) | (i & 2) << 1;
-    m[low | 2] = mcor_from_next_y(m[low], m[low | 2]);
-  }
-  for (int i = 0; i < 4; ++i)
-  {
-    m[i + 4] = mcor_from_next_z(m[i], m[i + 4]);
+    for (int i = 0; i < 8; ++i)
+    {
+      m[i] = i >> axis & 1 ? mcor_from_next(axis, m[i ^ 1 << axis], m[i]) : m[i];
+    }
   }
 }
 
@@ -129,9 +116,13 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
 /* A brick's cells that are beside these through crossed faces. */
 ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
 {
-  return mcor_from_next_x(used & lower[0], 0) | mcor_from_last_x(used & upper[0], 0) |
-    mcor_from_next_y(used & lower[1], 0) | mcor_from_last_y(used & upper[1], 0) |
-    mcor_from_next_z(used & lower[2], 0) | mcor_from_last_z(used & upper[2], 0);
+  ulong cells = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells |= mcor_from_next(axis, used & lower[axis], 0);
+    cells |= mcor_from_last(axis, used & upper[axis], 0);
+  }
+  return cells;
 }
 
 /* Cells that are valid at all nodes and have nodes on both sides. above: of their corners. */
@@ -151,11 +142,7 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   __global const ulong* cells, __global const ulong* above, __global const ulong* valid,
   __global ulong* used)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   ulong m[8];
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
@@ -168,18 +155,11 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
  * neighbours. */
 MCOR_ONE_COPY void mcor_march_around(const ulong* m, int axis, ulong* q)
 {
+  const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
   q[0] = m[0];
-  if (axis == 0)
-  {
-    q[1] = mcor_from_last_y(m[0], m[2]);
-    q[2] = mcor_from_last_z(m[0], m[4]);
-    q[3] = mcor_from_last_z(q[1], mcor_from_last_y(m[4], m[6]));
-    return;
-  }
-  q[1] = mcor_from_last_x(m[0], m[1]);
-  q[2] = axis == 1 ? mcor_from_last_z(m[0], m[4]) : mcor_from_last_y(m[0], m[2]);
-  q[3] = axis == 1 ? mcor_from_last_z(q[1], mcor_from_last_x(m[4], m[5]))
-                   : mcor_from_last_y(q[1], mcor_from_last_x(m[2], m[3]));
+  q[1] = mcor_from_last(b, m[0], m[1 << b]);
+  q[2] = mcor_from_last(c, m[0], m[1 << c]);
+  q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
 }
 
 /* MCOR_EDGE_MASKS, three an axis: crossed edges; of these, those next to a cell that is not used; of
@@ -208,23 +188,17 @@ __kernel void mcor_march_count(const int brick_count, MCOR_DECISION_PARAMS,
   __global ulong* edges, __global int* vertex_count, __global int* triangle_count,
   __global int* tunnel_count)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   ulong m[8], lower[8];
   mcor_brick_masks(used, neighbours, slot, 7, lower);
   mcor_brick_masks(above, neighbours, slot, 0, m);
-  const ulong changes[3] = { m[0] ^ mcor_from_next_x(m[0], m[1]),
-    m[0] ^ mcor_from_next_y(m[0], m[2]), m[0] ^ mcor_from_next_z(m[0], m[4]) };
   __global ulong* to = edges + (long)slot * MCOR_EDGE_MASKS;
   int vertices = 0;
   for (int a = 0; a < 3; ++a)
   {
     ulong q[4];
     mcor_march_around(lower, a, q);
-    vertices += mcor_march_edges(changes[a], q, a, to);
+    vertices += mcor_march_edges(m[0] ^ mcor_from_next(a, m[0], m[1 << a]), q, a, to);
   }
   vertex_count[slot] = vertices;
   int tunnels = 0;
@@ -273,11 +247,7 @@ __kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, const int levels,
   __global const ulong* edges, __global const real* node_value, __global const int* vertex_base,
   const real iso, __global int4* vertex_edge, __global real* vertex_ends)
 {
-  const int slot = get_global_id(0);
-  if (slot >= slot_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < slot_count);
   const int4 brick = bricks[slot];
   __global const ulong* e = edges + (long)slot * MCOR_EDGE_MASKS;
   int to = vertex_base[slot];
@@ -381,11 +351,7 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_DECISION_PARAMS, 
   __global const uchar* case_table, __global const int* vertex_base,
   __global const int* triangle_base, __global ulong* triangle_cells, __global int* triangles)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || used[slot] == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
   ulong m[8];
   int numbers[3][MCOR_CELL_NODES];
   mcor_brick_masks(above, neighbours, slot, 0, m);
@@ -412,10 +378,7 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_DECISION_PARAMS, 
 __kernel void mcor_march_bits(
   const int count, __global const ulong* masks, __global const ulong* within, __global int* bits)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    bits[i] = (int)popcount(masks[i] & within[i]);
-  }
+  MCOR_ITEM(i, i < count);
+  bits[i] = (int)popcount(masks[i] & within[i]);
 }
 #endif

@@ -228,11 +228,7 @@ __kernel void MCOR_PAIR_SEED(MCOR_GRID_PARAMS, __global const uchar* side_flags,
 __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* cells, __global uint* brick_bits)
 {
-  const int own = get_global_id(0);
-  if (own >= block_count * MCOR_BLOCK_BRICKS || cells[own] == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(own, own < block_count * MCOR_BLOCK_BRICKS && cells[own] != 0);
   const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, own);
   for (int d = 0; d < 8; ++d)
   {
@@ -250,12 +246,9 @@ __kernel void mcor_pair_request(
 __kernel void mcor_pair_fill(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* pair_cells, __global ulong* cells)
 {
-  const int slot = get_global_id(0);
-  if (slot < brick_count)
-  {
-    const int4 brick = bricks[slot];
-    cells[slot] = pair_cells[mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
-  }
+  MCOR_ITEM(slot, slot < brick_count);
+  const int4 brick = bricks[slot];
+  cells[slot] = pair_cells[mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
 }
 
 /* Hands cells to a brick; false where it has no slot yet. flags: 1 a cell is new, 2 a brick must be
@@ -298,11 +291,7 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   __global const ulong* above, __global const ulong* valid, __global uint* requested,
   __global uint* cells, __global int* flags)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || fresh[slot] == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count && fresh[slot] != 0);
   const ulong before = examined[slot];
   ulong m[8], faces[3], upper[3];
   mcor_brick_masks(above, neighbours, slot, 0, m);
@@ -324,18 +313,15 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   const int4 brick = bricks[slot];
   __global const int* n = neighbours + slot * 14L;
   bool all = mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, requested, cells, flags);
-  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(-1, 0, 0, 0), n[7],
-    (used & faces[0] & MCOR_LOW_X) << 3, requested, cells, flags);
-  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(1, 0, 0, 0), n[0],
-    (used & upper[0]) >> 3 & MCOR_LOW_X, requested, cells, flags);
-  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, -1, 0, 0), n[8],
-    (used & faces[1] & MCOR_LOW_Y) << 12, requested, cells, flags);
-  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 1, 0, 0), n[1],
-    (used & upper[1]) >> 12 & MCOR_LOW_Y, requested, cells, flags);
-  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, -1, 0), n[10],
-    (used & faces[2] & MCOR_LOW_Z) << 48, requested, cells, flags);
-  all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + (int4)(0, 0, 1, 0), n[3], (used & upper[2]) >> 48,
-    requested, cells, flags);
+  for (int a = 0; a < 3; ++a)
+  {
+    const int4 by = (int4)(a == 0, a == 1, a == 2, 0);
+    const int d = (1 << a) - 1, far = 3 << 2 * a;
+    all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick - by, n[d + 7],
+      (used & faces[a] & mcor_lowest(a)) << far, requested, cells, flags);
+    all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + by, n[d],
+      (used & upper[a]) >> far & mcor_lowest(a), requested, cells, flags);
+  }
   if (!all)
   {
     examined[slot] = 0; /* again in the next round, when those bricks exist */
@@ -347,11 +333,7 @@ __kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
 __kernel void mcor_pair_request_cells(
   MCOR_BLOCK_PARAMS, const int count, __global const int4* reached, __global uint* brick_bits)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const int4 cell = reached[i];
   const ulong bit = 1UL << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 3) << 4);
   for (int d = 0; d < 8; ++d)
@@ -371,11 +353,7 @@ __kernel void mcor_pair_request_cells(
 __kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int count, __global const int4* reached,
   __global const int* slot_of, __global uint* cells, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const int4 cell = reached[i];
   const int m = mcor_brick_number(MCOR_BLOCK_ARGS, cell.x >> 2, cell.y >> 2, cell.z >> 2);
   const int slot = m < 0 ? -1 : slot_of[m];

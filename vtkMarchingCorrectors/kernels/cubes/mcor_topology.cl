@@ -19,11 +19,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   const int all, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   ulong m[8], p[8], u[8];
   mcor_brick_masks(used, neighbours, slot, 7, u);
   mcor_brick_masks(above, neighbours, slot, 0, m);
@@ -77,11 +73,7 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
   __global const int* base, const real iso, __global int4* sample_node,
   __global real4* sample_offset)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   int to = base[slot];
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -111,11 +103,7 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* sample_node, __global const real4* sample_offset,
   const real iso, __global uchar* side)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
@@ -144,11 +132,7 @@ __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
   __global const uchar* side, __global ulong* decisions, __global int* joined_count)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   int from = base[slot], count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -170,11 +154,7 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   __global const ulong* used, __global const ulong* above, __global const int* cases,
   __global const mcor_cell_row* rows, __global ulong* decisions, __global int* counts)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   ulong m[8], cells = 0;
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
@@ -269,11 +249,7 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
   __global const int* base, const real iso, __global int4* sample_node,
   __global real4* sample_offset)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   int to = base[slot];
   for (ulong rest = decisions[slot * (long)MCOR_DECISION_MASKS + 3]; rest; rest &= rest - 1)
   {
@@ -304,11 +280,7 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
 __kernel void mcor_topology_agree(const int brick_count, __global const int* base,
   __global const uchar* side, __global ulong* decisions)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
   __global ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
   ulong below = 0, above = 0;
   int from = base[slot];

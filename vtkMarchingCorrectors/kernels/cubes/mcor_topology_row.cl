@@ -3,14 +3,6 @@
 
 /* How a cell is cut: by its case, and by what the field decided on its faces and on tunnels in it. */
 
-/* At each place of a brick what is one place before it along an axis; last: of the brick before. */
-ulong mcor_from_last(int axis, ulong m, ulong last)
-{
-  return axis == 0 ? mcor_from_last_x(m, last)
-    : axis == 1    ? mcor_from_last_y(m, last)
-                   : mcor_from_last_z(m, last);
-}
-
 /* Faces across an axis, by their lowest node, that are ambiguous. corners: see mcor_cell_corners. */
 ulong mcor_ambiguous_faces(const ulong* corners, int axis)
 {

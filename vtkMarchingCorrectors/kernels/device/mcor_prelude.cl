@@ -43,6 +43,12 @@
 #endif
 #endif
 
+/* The number of this work-item, of which there may be more than there is to do: they return at once. */
+#define MCOR_ITEM(item, condition)                                                                 \
+  const int item = get_global_id(0);                                                               \
+  if (!(condition))                                                                                \
+  return
+
 #define MCOR_CAT_(a, b) a##b
 #define MCOR_CAT(a, b) MCOR_CAT_(a, b)
 
@@ -129,32 +135,26 @@ real mcor_lane_sum(realv v)
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL
 
+/* Those that are lowest along an axis. */
+ulong mcor_lowest(int axis)
+{
+  return axis == 0 ? MCOR_LOW_X : axis == 1 ? MCOR_LOW_Y : MCOR_LOW_Z;
+}
+
 /* The mask whose bit n is bit n + 1 along an axis; `next` is the neighbour brick's mask there. */
-ulong mcor_from_next_x(ulong m, ulong next)
+ulong mcor_from_next(int axis, ulong m, ulong next)
 {
-  return ((m >> 1) & ~(MCOR_LOW_X << 3)) | ((next & MCOR_LOW_X) << 3);
-}
-ulong mcor_from_next_y(ulong m, ulong next)
-{
-  return ((m >> 4) & ~(MCOR_LOW_Y << 12)) | ((next & MCOR_LOW_Y) << 12);
-}
-ulong mcor_from_next_z(ulong m, ulong next)
-{
-  return (m >> 16) | (next << 48);
+  const ulong low = mcor_lowest(axis);
+  const int step = 1 << 2 * axis;
+  return (m >> step & ~(low << 3 * step)) | (next & low) << 3 * step;
 }
 
 /* The mask whose bit n is bit n - 1 along an axis; `last` is the neighbour brick's mask there. */
-ulong mcor_from_last_x(ulong m, ulong last)
+ulong mcor_from_last(int axis, ulong m, ulong last)
 {
-  return ((m & ~(MCOR_LOW_X << 3)) << 1) | ((last >> 3) & MCOR_LOW_X);
-}
-ulong mcor_from_last_y(ulong m, ulong last)
-{
-  return ((m & ~(MCOR_LOW_Y << 12)) << 4) | ((last >> 12) & MCOR_LOW_Y);
-}
-ulong mcor_from_last_z(ulong m, ulong last)
-{
-  return (m << 16) | (last >> 48);
+  const ulong low = mcor_lowest(axis);
+  const int step = 1 << 2 * axis;
+  return (m & ~(low << 3 * step)) << step | (last >> 3 * step & low);
 }
 
 /* Index of the lowest bit set. */

@@ -14,11 +14,7 @@ __kernel void mcor_derive_place(const int first, const int count, const real uni
   const int first_y, const int first_z, const int last_x, const int last_y, const int last_z,
   __global int4* node, __global real4* offset, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const fix x = px[first + i], y = py[first + i], z = pz[first + i];
   const fix step_x = (fix)(edge_x * units), step_y = (fix)(edge_y * units),
             step_z = (fix)(edge_z * units);
@@ -96,11 +92,7 @@ __kernel void mcor_derive_gradients(MCOR_GRID_PARAMS, const int group_count,
   const int first, __global const int* order, const int first_array, const int array_count,
   const int stride, __global const real* arrays, __global real* moments, __global real* slopes)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   const int count = min(array_count - first_array, MCOR_ARRAY_STEP);
   mcor_points points;

@@ -11,16 +11,13 @@ __kernel void mcor_probe_key(const int count, const int first_x, const int first
   const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
   __global const int4* node, __global ulong* keys)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    const int4 n = node[i];
-    const ulong z = (n.z >> 2) - first_z, y = (n.y >> 2) - first_y, x = (n.x >> 2) - first_x;
-    const ulong brick =
-      n.x < 0 ? (ulong)bricks_z * bricks_y * bricks_x : (z * bricks_y + y) * bricks_x + x;
-    keys[i] =
-      n.x < 0 ? brick << 6 : brick << 6 | (ulong)((n.z & 3) << 4 | (n.y & 3) << 2 | (n.x & 3));
-  }
+  MCOR_ITEM(i, i < count);
+  const int4 n = node[i];
+  const ulong z = (n.z >> 2) - first_z, y = (n.y >> 2) - first_y, x = (n.x >> 2) - first_x;
+  const ulong brick =
+    n.x < 0 ? (ulong)bricks_z * bricks_y * bricks_x : (z * bricks_y + y) * bricks_x + x;
+  keys[i] =
+    n.x < 0 ? brick << 6 : brick << 6 | (ulong)((n.z & 3) << 4 | (n.y & 3) << 2 | (n.x & 3));
 }
 
 /* One work-item = one point of the sorted order. Reads the points in input order. Writes them as
@@ -29,12 +26,9 @@ __kernel void mcor_probe_order(const int count, __global const int* order,
   __global const int4* node, __global const real4* offset, __global int4* sorted_node,
   __global real4* sorted_offset)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    sorted_node[i] = node[order[i]];
-    sorted_offset[i] = offset[order[i]];
-  }
+  MCOR_ITEM(i, i < count);
+  sorted_node[i] = node[order[i]];
+  sorted_offset[i] = offset[order[i]];
 }
 
 /* Writes the sums at a group of points. */
@@ -117,11 +111,7 @@ __kernel void mcor_probe_gradients(MCOR_GRID_PARAMS, const int group_count,
   const int first_array, __global real* weight_gradient, const int attribute_count,
   const int stride, __global const real* attributes, __global real* gradients)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   const int count = min(attribute_count - first_array, MCOR_ARRAY_STEP);
   __global const real* arrays[MCOR_ARRAY_STEP];

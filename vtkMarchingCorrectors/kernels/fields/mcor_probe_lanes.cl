@@ -12,6 +12,24 @@ typedef struct
   realv weight[MCOR_CLUSTER], sums[MCOR_CLUSTER][MCOR_ATTRIBUTE_LIMIT];
 } mcor_cluster;
 
+/* Whether the parts lie so close together that it takes longer to pack their lists of particles than to
+ * go through the whole tile: measured at planes of points. */
+#define MCOR_TILE_SHARE 0.8f
+bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mcor_points* points)
+{
+  real rest = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    real most = points->half_size[a][0];
+    for (int part = 1; part < MCOR_PARTS; ++part)
+    {
+      most = fmax(most, points->half_size[a][part]);
+    }
+    rest += query->half_size[a] - most;
+  }
+  return rest < MCOR_TILE_SHARE * grid->levels[0].support;
+}
+
 /* The first groups of those from begin to before end that fit into one cluster: returns how many, one
  * at least, and the box around their points, in cubes from the first one's node. */
 int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,

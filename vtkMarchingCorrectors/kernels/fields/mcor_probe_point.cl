@@ -9,11 +9,7 @@ __kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global 
   __global const int4* node, __global const real4* offset, __global real* weight_sum,
   MCOR_ATTRIBUTE_PARAMS)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;

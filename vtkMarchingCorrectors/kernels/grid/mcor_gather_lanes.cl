@@ -386,35 +386,12 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
   sums[3] = s3;
 }
 
-/* Whether the parts lie so close together that it takes longer to pack their lists of particles than to
- * go through the whole tile: measured at planes of points. */
-#define MCOR_TILE_SHARE 0.8f
-bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mcor_points* points)
-{
-  real rest = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    real most = points->half_size[a][0];
-    for (int part = 1; part < MCOR_PARTS; ++part)
-    {
-      most = fmax(most, points->half_size[a][part]);
-    }
-    rest += query->half_size[a] - most;
-  }
-  return rest < MCOR_TILE_SHARE * grid->levels[0].support;
-}
-
-/* Particle i of a reach, or of its tile. */
-#define MCOR_SEEN(reach, of_tile, name, i)                                                         \
-  ((of_tile) ? (realv)((reach)->tile.name[i]) : MCOR_REACH(reach, name, i))
-
-/* As mcor_attribute_add for the first `step` arrays, but sets the weights, too, and adds them: in one
- * loop, as each sum alone would wait for its last addition. of_tile: goes through the tile instead of
- * the lists of the parts. It and `step` are constants. */
+/* As mcor_attribute_add for the first `step` arrays, a constant, but sets the weights, too, and adds them: in
+ * one loop, as each sum alone would wait for its last addition. */
 __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
-  const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const bool of_tile,
-  const int step, int count, const int stride, __global const real* attributes, realv* weight,
-  realv* weight_sum, realv sums[MCOR_ATTRIBUTE_STEP])
+  const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,
+  int count, const int stride, __global const real* attributes, realv* weight, realv* weight_sum,
+  realv sums[MCOR_ATTRIBUTE_STEP])
 {
   real values[MCOR_ATTRIBUTE_STEP][MCOR_PARTS * (MCOR_TILE_SIZE + 16)];
   const real* from[MCOR_ATTRIBUTE_STEP];
@@ -425,25 +402,21 @@ __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
     s[c] = sums[c];
     if (c < count)
     {
-      of_tile ? mcor_tile_values(&reach->tile, attributes + c * (long)stride, values[c])
-              : mcor_attribute_load(reach, attributes + c * (long)stride, values[c]);
+      mcor_attribute_load(reach, attributes + c * (long)stride, values[c]);
     }
   }
   mcor_points_relative(grid, query, points, at);
-  const int particles = of_tile ? reach->tile.count : MCOR_REACH_COUNT(reach);
-  for (int i = 0; i < particles; ++i)
+  for (int i = 0; i < MCOR_REACH_COUNT(reach); ++i)
   {
-    mcor_points_from(at, points, MCOR_SEEN(reach, of_tile, x, i), MCOR_SEEN(reach, of_tile, y, i),
-      MCOR_SEEN(reach, of_tile, z, i), d);
+    mcor_points_from(
+      at, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i), MCOR_REACH(reach, z, i), d);
     const mcor_length length = mcor_length_of(d);
-    const realv k =
-      mcor_weight_gradient(d, &length, MCOR_SEEN(reach, of_tile, inv_h, i), &slope, along);
-    weight[i] = MCOR_SEEN(reach, of_tile, weight, i) * k;
+    const realv k = mcor_weight_gradient(d, &length, MCOR_REACH(reach, inv_h, i), &slope, along);
+    weight[i] = MCOR_REACH(reach, weight, i) * k;
     w += weight[i];
     for (int c = 0; c < step; ++c)
     {
-      const realv value = of_tile ? (realv)(from[c][i]) : MCOR_VALUE(from[c], i);
-      s[c] = MCOR_FMA(weight[i], value, s[c]);
+      s[c] = MCOR_FMA(weight[i], MCOR_VALUE(from[c], i), s[c]);
     }
   }
   *weight_sum = w;
@@ -453,28 +426,19 @@ __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
   }
 }
 
-#define MCOR_ATTRIBUTE_BEGIN(of_tile, step)                                                        \
+#define MCOR_ATTRIBUTE_BEGIN(step)                                                                 \
   mcor_attribute_begin(                                                                            \
-    grid, query, points, reach, of_tile, step, count, stride, attributes, weight, &w, sums)
-#define MCOR_ATTRIBUTE_BEGIN_ANY(of_tile)                                                          \
-  (count == 0      ? MCOR_ATTRIBUTE_BEGIN(of_tile, 0)                                              \
-      : count == 1 ? MCOR_ATTRIBUTE_BEGIN(of_tile, 1)                                              \
-                   : MCOR_ATTRIBUTE_BEGIN(of_tile, MCOR_ATTRIBUTE_STEP))
+    grid, query, points, reach, step, count, stride, attributes, weight, &w, sums)
 
 void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_points* points,
   real iso, mcor_reach* reach, bool evaluated, int count, const int stride,
   __global const real* attributes, realv sums[MCOR_ATTRIBUTE_LIMIT], realv* weight_sum)
 {
   const bool known = evaluated && reach->tile.complete;
-  const bool of_tile = MCOR_PARTS > 1 && !known &&
-    count <= MCOR_ATTRIBUTE_STEP && mcor_reach_is_tile(grid, query, points);
   realv w = 0;
-  bool first = true;
-  while (of_tile ? mcor_tile_next(grid, query, &reach->tile, first)
-                 : mcor_reach_next(grid, query, points, iso, reach, first))
+  for (bool first = true; mcor_reach_next(grid, query, points, iso, reach, first); first = false)
   {
     realv weight[MCOR_TILE_SIZE];
-    first = false;
     for (int i = 0; known && i < MCOR_REACH_COUNT(reach); ++i)
     {
       weight[i] = MCOR_REACH(reach, weight, i) * reach->w[i];
@@ -482,7 +446,9 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
     }
     if (!known)
     {
-      of_tile ? MCOR_ATTRIBUTE_BEGIN_ANY(true) : MCOR_ATTRIBUTE_BEGIN_ANY(false);
+      count == 0     ? MCOR_ATTRIBUTE_BEGIN(0)
+        : count == 1 ? MCOR_ATTRIBUTE_BEGIN(1)
+                     : MCOR_ATTRIBUTE_BEGIN(MCOR_ATTRIBUTE_STEP);
     }
     for (int c = known ? 0 : MCOR_ATTRIBUTE_STEP; c < count; c += MCOR_ATTRIBUTE_STEP)
     {
@@ -490,6 +456,5 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
         min(count - c, MCOR_ATTRIBUTE_STEP), weight, sums + c);
     }
   }
-  reach->tile.complete = reach->tile.complete && !of_tile; /* the lists are not made */
   *weight_sum = w;
 }

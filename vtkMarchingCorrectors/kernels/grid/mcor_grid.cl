@@ -9,11 +9,7 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   __global const uchar* level_of, __global const fix* x, __global const fix* y,
   __global const fix* z, __global ulong* keys)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   __global const mcor_level* level = levels + level_of[i];
   const ulong cell_x = mcor_cell_of_particle(level, 0, x[i]);
   const ulong cell_y = mcor_cell_of_particle(level, 1, y[i]);
@@ -160,14 +156,11 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, __glo
 __kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
   __global real* weight, __global real* trim_weight)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    const real size = trim_weight[i];
-    const real w = fabs(size) * norm * inv_h[i] * inv_h[i] * inv_h[i];
-    trim_weight[i] = w;
-    weight[i] = size < 0 ? (real)0 : w; /* the same array where there are no solids */
-  }
+  MCOR_ITEM(i, i < count);
+  const real size = trim_weight[i];
+  const real w = fabs(size) * norm * inv_h[i] * inv_h[i] * inv_h[i];
+  trim_weight[i] = w;
+  weight[i] = size < 0 ? (real)0 : w; /* the same array where there are no solids */
 }
 
 /* Groups of more than MCOR_INSERTION_LIMIT particles with the same key are sorted by all work-items
@@ -270,11 +263,8 @@ __kernel void mcor_grid_merge(
 __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   __global const fix* in, __global fix* out, const int out_row)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    out[(long)out_row * count + i] = in[order[i]];
-  }
+  MCOR_ITEM(i, i < count);
+  out[(long)out_row * count + i] = in[order[i]];
 }
 
 /* Whether sorted particles i and j differ in their scalar only; mostly x tells. */
@@ -325,11 +315,8 @@ __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __g
  * the scalar. */
 __kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    flags[i] = i == 0 || !MCOR_SAME(i, i - 1);
-  }
+  MCOR_ITEM(i, i < count);
+  flags[i] = i == 0 || !MCOR_SAME(i, i - 1);
 }
 
 /* One work-item = one sorted particle. Reads the scanned flags. Writes a key that it shares with those
@@ -337,11 +324,8 @@ __kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __
 __kernel void mcor_grid_fill_places(
   const int count, __global const int* scanned, __global ulong* keys)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    keys[i] = (ulong)scanned[i + 1];
-  }
+  MCOR_ITEM(i, i < count);
+  keys[i] = (ulong)scanned[i + 1];
 }
 
 #endif
@@ -418,11 +402,7 @@ __kernel void mcor_grid_weight(const int count, const real h_scale, __global con
   __global const fix* pz, __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,
   __global real* trim_weight, __global int* without)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const real mass = fabs(trim_weight[i]);
   real sum = density[i];
   if (!(sum > mass * MCOR_LEAST_DENSITY))

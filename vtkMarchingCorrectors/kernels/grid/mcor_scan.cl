@@ -15,11 +15,7 @@ int mcor_segment_begin(int segment, int segments, int count)
 __kernel void mcor_scan_sum(
   __global const int* counts, const int count, const int segments, __global long* sums)
 {
-  const int segment = get_global_id(0);
-  if (segment >= segments)
-  {
-    return;
-  }
+  MCOR_ITEM(segment, segment < segments);
   long sum = 0;
   const int end = mcor_segment_begin(segment + 1, segments, count);
   for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
@@ -79,11 +75,7 @@ __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
 __kernel void mcor_scan_fill(
   __global int* counts, const int count, const int segments, __global long* sums)
 {
-  const int segment = get_global_id(0);
-  if (segment >= segments)
-  {
-    return;
-  }
+  MCOR_ITEM(segment, segment < segments);
   long sum = segments > 1 ? sums[segment] : 0;
   const int end = mcor_segment_begin(segment + 1, segments, count);
   for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
@@ -103,11 +95,7 @@ __kernel void mcor_scan_fill(
 __kernel void mcor_sort_count(__global const ulong* keys, const int count, const int segments,
   const int shift, const int bits, __global int* histogram)
 {
-  const int segment = get_global_id(0);
-  if (segment >= segments)
-  {
-    return;
-  }
+  MCOR_ITEM(segment, segment < segments);
   int bins[1 << MCOR_DIGIT_BITS];
   const int radix = 1 << bits;
   for (int b = 0; b < radix; ++b)
@@ -133,11 +121,7 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   const int out_bits, __global const int* histogram, __global ulong* sorted_keys,
   __global int* sorted_values)
 {
-  const int segment = get_global_id(0);
-  if (segment >= segments)
-  {
-    return;
-  }
+  MCOR_ITEM(segment, segment < segments);
   int bins[1 << MCOR_DIGIT_BITS];
   const int radix = 1 << bits;
   for (int b = 0; b < radix; ++b)
@@ -161,11 +145,8 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
 /* One work-item = one sorted key. Writes 1 where a key differs from the one before it. */
 __kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    flags[i] = i == 0 || keys[i] != keys[i - 1];
-  }
+  MCOR_ITEM(i, i < count);
+  flags[i] = i == 0 || keys[i] != keys[i - 1];
 }
 
 /* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
@@ -173,11 +154,7 @@ __kernel void mcor_unique_count(__global const ulong* keys, const int count, __g
 __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* values,
   const int count, __global const int* scanned, __global ulong* distinct, __global int* index_of)
 {
-  const int i = get_global_id(0);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count);
   const bool first = i == 0 || keys[i] != keys[i - 1];
   const int index = scanned[i + 1] - 1;
   if (first)

@@ -21,9 +21,8 @@ bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
 __kernel void mcor_box_void_cubes(const int count, const int cubes_x, const int cubes_y,
   __global const ulong* keys, const int size, MCOR_BOX_PARAMS, __global uchar* states)
 {
-  const int i = get_global_id(0);
-  if (i < count &&
-    !mcor_box_reaches(MCOR_BOX_ARGS, mcor_block_of_key(keys[i], cubes_x, cubes_y) * size, size))
+  MCOR_ITEM(i, i < count);
+  if (!mcor_box_reaches(MCOR_BOX_ARGS, mcor_block_of_key(keys[i], cubes_x, cubes_y) * size, size))
   {
     states[i] = MCOR_VOID;
   }
@@ -34,10 +33,9 @@ __kernel void mcor_box_void_bricks(const int block_count, const int blocks_x, co
   __global const ulong* block_keys, MCOR_BOX_PARAMS, __global uchar* states,
   __global uint* brick_bits)
 {
-  const int m = get_global_id(0);
-  if (m < block_count * MCOR_BLOCK_BRICKS &&
-    !mcor_box_reaches(MCOR_BOX_ARGS,
-      mcor_brick_of_number(block_keys, blocks_x, blocks_y, m) * MCOR_BRICK, MCOR_BRICK))
+  MCOR_ITEM(m, m < block_count * MCOR_BLOCK_BRICKS);
+  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, m);
+  if (!mcor_box_reaches(MCOR_BOX_ARGS, brick * MCOR_BRICK, MCOR_BRICK))
   {
     states[m] = MCOR_VOID;
     atomic_and(brick_bits + (m >> 5), ~(1u << (m & 31)));
@@ -49,13 +47,10 @@ __kernel void mcor_box_void_bricks(const int block_count, const int blocks_x, co
 __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, MCOR_SIDES_PARAMS,
   const int ring, __global const ulong* cells, __global ulong* clipped)
 {
-  const int i = get_global_id(0);
-  if (i < brick_count)
-  {
-    const int by = ring ? 3 << bricks[i].w : 0, end = ring ? by + 1 : 0;
-    clipped[i] = cells[i] &
-      mcor_cells_within(x0 - by, y0 - by, z0 - by, x1 + end, y1 + end, z1 + end, bricks[i]);
-  }
+  MCOR_ITEM(i, i < brick_count);
+  const int by = ring ? 3 << bricks[i].w : 0, end = ring ? by + 1 : 0;
+  clipped[i] = cells[i] &
+    mcor_cells_within(x0 - by, y0 - by, z0 - by, x1 + end, y1 + end, z1 + end, bricks[i]);
 }
 
 /* One work-item = one batch of triangles. Reads what mcor_trim_count did. Writes to what remains of a
@@ -64,12 +59,8 @@ __kernel void mcor_box_trim(const int triangle_count, __global const int* triang
   __global const real* weight, const real threshold, __global const int* remaining,
   __global const ulong* cells, __global ulong* trimmed)
 {
-  const int batch = get_global_id(0);
+  MCOR_ITEM(batch, (long)batch * MCOR_BATCH < triangle_count);
   const long begin = (long)batch * MCOR_BATCH;
-  if (begin >= triangle_count)
-  {
-    return;
-  }
   int to = remaining[batch];
   for (long i = begin; to < remaining[batch + 1]; ++i)
   {

@@ -56,10 +56,10 @@ __kernel void mcor_plane_count(const int brick_count, __global const int* neighb
   ulong m[8], lower[8];
   mcor_brick_masks(used, neighbours, slot, 7, lower);
   mcor_brick_masks(above, neighbours, slot, 0, m);
-  const ulong changes[2] = { m[0] ^ mcor_from_next_x(m[0], m[1]),
-    m[0] ^ mcor_from_next_y(m[0], m[2]) };
-  const ulong beside[2] = { mcor_from_last_y(lower[0], lower[2]),
-    mcor_from_last_x(lower[0], lower[1]) };
+  const ulong changes[2] = { m[0] ^ mcor_from_next(0, m[0], m[1]),
+    m[0] ^ mcor_from_next(1, m[0], m[2]) };
+  const ulong beside[2] = { mcor_from_last(1, lower[0], lower[2]),
+    mcor_from_last(0, lower[0], lower[1]) };
   __global ulong* to = edges + (long)slot * MCOR_EDGE_MASKS;
   int vertices = 0, lines = 0;
   for (int a = 0; a < MCOR_EDGE_MASKS; ++a)

@@ -46,11 +46,7 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   MCOR_ATTRIBUTE_PARAMS)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
@@ -97,11 +93,7 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;

@@ -185,11 +185,7 @@ __kernel void mcor_boundary_points(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int plane, __global real* eigenvalue)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;

@@ -8,11 +8,7 @@ __kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global 
   __global const int4* node, const real iso, __global real4* offset, __global real* value,
   __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;

@@ -193,11 +193,7 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global real* linear, __global real* value, __global real4* gradient, __global real* weight,
   __global uchar* evaluations, MCOR_ATTRIBUTE_PARAMS)
 {
-  const int group = get_global_id(0);
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
   const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;

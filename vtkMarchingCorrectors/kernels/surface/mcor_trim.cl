@@ -25,12 +25,8 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {
-  const int batch = get_global_id(0);
+  MCOR_ITEM(batch, (long)batch * MCOR_BATCH < triangle_count);
   const long begin = (long)batch * MCOR_BATCH;
-  if (begin >= triangle_count)
-  {
-    return;
-  }
   const long end = min(begin + MCOR_BATCH, (long)triangle_count);
   int left = 0, cut = 0;
   for (long i = begin; i < end; ++i)
@@ -59,12 +55,8 @@ ulong mcor_trim_key(int a, int b)
 __kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global const int* cuts, __global ulong* keys)
 {
-  const int batch = get_global_id(0);
+  MCOR_ITEM(batch, (long)batch * MCOR_BATCH < triangle_count);
   const long begin = (long)batch * MCOR_BATCH;
-  if (begin >= triangle_count)
-  {
-    return;
-  }
   int cut = cuts[batch];
   for (long i = begin; cut < cuts[batch + 1]; ++i)
   {
@@ -107,12 +99,8 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
   __global const int* remaining, __global const int* cuts, __global const int* cut_vertex,
   __global int* out)
 {
-  const int batch = get_global_id(0);
+  MCOR_ITEM(batch, (long)batch * MCOR_BATCH < triangle_count);
   const long begin = (long)batch * MCOR_BATCH;
-  if (begin >= triangle_count)
-  {
-    return;
-  }
   __global int *to = out + 3L * remaining[batch], *end = out + 3L * remaining[batch + 1];
   int cut = cuts[batch];
   for (long i = begin; to < end; ++i)
@@ -153,19 +141,16 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
 {
-  const int i = get_global_id(0);
-  if (i < count)
+  MCOR_ITEM(i, i < count);
+  const real share = gradient[i].w - fluid_share * weight[i];
+  real m = fluid_share <= 0 ? quantity[i]
+    : MCOR_FIELD == 2       ? share
+                            : fmin(quantity[i] - threshold, share);
+  if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
   {
-    const real share = gradient[i].w - fluid_share * weight[i];
-    real m = fluid_share <= 0 ? quantity[i]
-      : MCOR_FIELD == 2       ? share
-                              : fmin(quantity[i] - threshold, share);
-    if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
-    {
-      m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
-    }
-    margin[i] = m;
+    m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
   }
+  margin[i] = m;
 }
 
 /* Where what is wa and wb at the ends of an edge, and linear between, is w: off the ends. */
@@ -182,11 +167,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
 {
-  const int i = get_global_id(0);
-  if (i >= cut_count)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < cut_count);
   const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
   const bool inside = trimmed_by[a] > threshold;
   real s = mcor_trim_fraction(trimmed_by[a], trimmed_by[b], threshold);

@@ -461,8 +461,8 @@ protected:
   /** Whether any rank has fluid; the first one says so if not. */
   bool HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
     vtkSPHParticles& particles, const std::string& consequence);
-  /** What is global, for a surface, or for mcor_probe and mcor_derive. False if that failed, or, of
-   * samples, in a plane. */
+  /** What is global, for a surface, or for mcor_probe and mcor_derive; what the dimension found means for the
+   * options. False if that failed. */
   bool MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
     mcor_options& options, bool forSamples, mcor_globals& globals);
 

@@ -65,6 +65,7 @@ struct Case
   const char* File;
   bool IsPlane; // the points lie in a plane; else in space
   Run Do;
+  int Constant = -1; // the axis across which the particles are moved into a plane
 };
 
 const std::vector<Case> Cases = {
@@ -136,6 +137,27 @@ const std::vector<Case> Cases = {
       filter->SetFluidArrayName("ParticleType");
       return DeriveWith(filter, "Velocity", particles, controller);
     } },
+  { "probe, two dimensions, periods, also across the plane", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHProbe> probe;
+      probe->DetectArraysOff();
+      probe->SetSmoothingLength(0.06);
+      probe->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.6, -1.0, 0.5);
+      probe->ComputeGradientsOn();
+      return ProbeWith(probe, particles, points, controller);
+    },
+    1 },
+  { "derivatives, two dimensions, estimated smoothing length", "double_dam_break_small", false,
+    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHDerivatives> filter;
+      filter->DetectArraysOff();
+      filter->EstimateSmoothingLengthOn();
+      filter->ComputeLambda2On();
+      return DeriveWith(filter, "Velocity", particles, controller);
+    },
+    2 },
 };
 
 /// Numbers the points, so that they are known wherever they go.
@@ -150,24 +172,34 @@ void AddIndex(vtkPolyData* data)
   data->GetPointData()->AddArray(index);
 }
 
-Data Read(const std::string& file)
+/// constant: as of a case.
+Data Read(const std::string& file, int constant)
 {
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
-  AddIndex(reader->GetOutput());
-  return reader->GetOutput();
+  Data data = reader->GetOutput();
+  AddIndex(data);
+  for (vtkIdType i = 0; constant >= 0 && i < data->GetNumberOfPoints(); ++i)
+  {
+    double at[3];
+    data->GetPoint(i, at);
+    at[constant] = 0.7;
+    data->GetPoints()->SetPoint(i, at);
+  }
+  return data;
 }
 
-/// A lattice somewhat larger than the particles' bounds, with points that are nowhere.
-Data MakePoints(vtkPolyData* particles, bool isPlane)
+/// A lattice somewhat larger than the particles' bounds, with points that are nowhere; where they lie in a plane,
+/// most points do, too.
+Data MakePoints(vtkPolyData* particles, const Case& tried)
 {
   auto data = Data::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   double bounds[6];
   particles->GetBounds(bounds);
-  const int counts[3] = { 31, 29, isPlane ? 1 : 27 };
+  const int counts[3] = { 31, 29, tried.IsPlane ? 1 : 27 };
   for (int k = 0; k < counts[0] * counts[1] * counts[2]; ++k)
   {
     const int cell[3] = { k % counts[0], k / counts[0] % counts[1], k / counts[0] / counts[1] };
@@ -176,6 +208,10 @@ Data MakePoints(vtkPolyData* particles, bool isPlane)
     {
       const double share = counts[a] == 1 ? 0.25 : 1.2 * cell[a] / (counts[a] - 1) - 0.1;
       at[a] = bounds[2 * a] + share * (bounds[2 * a + 1] - bounds[2 * a]);
+    }
+    if (tried.Constant >= 0 && k % 7 == 3)
+    {
+      at[tried.Constant] += 0.01 * (k % 5);
     }
     at[1] = k % 501 == 7 ? std::numeric_limits<double>::quiet_NaN() : at[1];
     points->InsertNextPoint(at);
@@ -258,8 +294,8 @@ int CheckPart(const Case& tried, int part, vtkPolyData* particles, vtkPolyData* 
 int Check(int number, bool some, const std::string& folder, vtkMPIController* controller)
 {
   const Case& tried = Cases[static_cast<std::size_t>(number)];
-  const Data particles = Read(folder + "/" + tried.File + ".vtp");
-  const Data points = MakePoints(particles, tried.IsPlane);
+  const Data particles = Read(folder + "/" + tried.File + ".vtp", tried.Constant);
+  const Data points = MakePoints(particles, tried);
   // Each alone: VTK would send no points that are not numbers as they are.
   const Data whole = tried.Do(particles, points, nullptr);
   if (!SaysSomething(whole))

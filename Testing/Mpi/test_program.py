@@ -99,10 +99,6 @@ class Program(unittest.TestCase):
         """In a plane: all points, arrays and lines are those of one process, on squares of one size and of several."""
         plane = self.write_plane()
         pieces = write_pieces(plane, self.folder.name, 3)
-        refused = self.run_ranks(pieces, self.path("filled.vtp"), "--free-surface", "--smoothing-length", "PlaneLength",
-                                 "--volume", "PlaneArea", "--filled")
-        self.assertEqual(refused.returncode, 1)
-        self.assertIn("Filled regions are made by one process alone", refused.stderr)
         for cubes in "uniform", "adaptive":
             how = ["--scalar", "Speed", "--iso", "1,2", "--smoothing-length", "PlaneLength", "--volume", "PlaneArea",
                    "--cubes", cubes, "--quiet"]
@@ -122,6 +118,49 @@ class Program(unittest.TestCase):
                 for name in names:
                     np.testing.assert_array_equal(vtk_to_numpy(alone.GetPointData().GetArray(name)),
                                                   vtk_to_numpy(ranks.GetPointData().GetArray(name)), name)
+
+    def test_filled(self):
+        """What is filled between lines, with its border in a box and a period: the file is that of one process, byte for byte."""
+        plane = self.write_plane()
+        pieces = write_pieces(plane, self.folder.name, 3)
+        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea", "--filled", "--quiet"]
+        speed = ["--scalar", "Speed", "--iso", "1,2"]
+        for how in (["--free-surface", "--cubes", "adaptive"], [*speed, "--weight-sum", "--gradients"],
+                    [*speed, "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0", "--topology", "field"]):
+            done = self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertGreater(read(self.path("alone.vtp")).GetNumberOfPolys(), 1000)
+            done = self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False), how)
+            self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
+        done = self.run_ranks(pieces, self.path("ranks.pvtp"), *size, *how)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.pvtp"))
+        np.testing.assert_array_equal(corners(ranks), corners(alone))
+        np.testing.assert_array_equal(vtk_to_numpy(ranks.GetCellData().GetArray("BandValue")),
+                                      vtk_to_numpy(alone.GetCellData().GetArray("BandValue")))
+
+    def test_fields_in_a_plane(self):
+        """Points on a line, what is derived, gauges: the files are those of one process, byte for byte."""
+        plane = self.write_plane()
+        pieces = write_pieces(plane, self.folder.name, 4)
+        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea"]
+        wet = ["--gauge", "a=0,-0.5,0.5:0,1.2,0.5", "--gauge", "b=-2,0.1,0.5:2,0.3,0.5"]
+        for name, how in (("line.vtp", ["--line=-1.5,0.1,0.5,1.5,0.4,0.5", "--derive", "Velocity", "--gradients"]),
+                          ("derived.vtp", ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "5"]),
+                          ("gauges.csv", wet), ("gauges.csv", [*wet, "--periodic", "3,0,0"])):
+            alone = self.run_alone(plane, self.path("alone_" + name), *size, *how)
+            self.assertEqual(alone.returncode, 0, alone.stderr)
+            done = self.run_ranks(pieces, self.path(name), *size, *how)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(filecmp.cmp(self.path("alone_" + name), self.path(name), shallow=False), name)
+        line = read(self.path("line.vtp")).GetPointData()
+        self.assertGreater(vtk_to_numpy(line.GetArray("vtkValidPointMask")).sum(), 100)
+        self.assertIsNone(line.GetArray("Lambda2"))
+        self.assertGreater(read(self.path("derived.vtp")).GetNumberOfLines(), 5)
+        with open(self.path("gauges.csv"), encoding="utf-8") as stream:
+            self.assertIn(",wet,", stream.read())
 
     def check_same_file(self, *how):
         """A file that the first process merges is, byte for byte, that of one process."""

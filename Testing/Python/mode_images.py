@@ -1,29 +1,53 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A picture for each way in which the filter draws, against the baselines of TestModesImage.cxx.
+"""A picture for each way in which the filter draws, against the baselines of TestModesImage.cxx and TestFilledImage.cxx.
 
-mode_images.py                  through the filters' Python package
-pvpython mode_images.py plugin  through the plugin: made by ParaView, drawn here
+mode_images.py [MODE...]                  through the filters' Python package
+pvpython mode_images.py plugin [MODE...]  through the plugin: made by ParaView, drawn here
 """
+import math
 import os
 import sys
 
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkImagingCore import vtkImageDifference
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
                                          vtkWindowToImageFilter)
 
 DATA = os.path.join(os.environ["MCOR_TEST_DATA"], "dam_break_45k.vtp")
 BASELINES, OUTPUT = os.environ["MCOR_TEST_BASELINES"], os.environ["MCOR_TEST_OUTPUT"]
 THRESHOLD = 10.0  # VTK's own for its image tests
-MODES = ("Iso", "Speed", "FreeSurface", "Preview", "Untrimmed", "Wall", "Weight", "Slice")
+MODES = ("Iso", "Speed", "FreeSurface", "Preview", "Untrimmed", "Wall", "Weight", "Slice", "Filled")
 WEIGHT = ("WeightSum", 0.0, 1.0)
 COLORS = {"Weight": WEIGHT, "Untrimmed": WEIGHT, "Speed": ("Velocity_Magnitude", 0.0, 3.0)}
 SPEEDS = [0.5, 1.0, 1.5, 2.0, 2.5]
+RADII = [0.6, -1.0, 0.3, 0.9]  # and particles: as in TestPlaneParticles.h
+
+
+def write_square():
+    """A square in the plane y = 0.5."""
+    square, points = vtkPolyData(), vtkPoints()
+    points.SetDataTypeToDouble()
+    arrays = {name: vtkDoubleArray() for name in ("SmoothingLength", "Volume", "Radius")}
+    for k in range(-10, 11):
+        for i in range(-10, 11):
+            points.InsertNextPoint(i * 0.1, 0.5, k * 0.1)
+            for name, value in ("SmoothingLength", 0.13), ("Volume", 0.01), ("Radius", math.hypot(i * 0.1, k * 0.1)):
+                arrays[name].InsertNextValue(value)
+    square.SetPoints(points)
+    for name, array in arrays.items():
+        array.SetName(name)
+        square.GetPointData().AddArray(array)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(os.path.join(OUTPUT, "square.vtp"))
+    writer.SetInputData(square)
+    writer.Write()
+    return writer.GetFileName()
 
 
 def make_plane(plane):
@@ -34,12 +58,22 @@ def make_plane(plane):
 
 
 def by_package(mode):
-    from marchingcorrectors import vtkMarchingCorrectors, vtkSPHProbe
+    from marchingcorrectors import vtkMarchingCorrectors
+    if mode == "Slice":
+        from marchingcorrectors import vtkSPHProbe
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(DATA)
+    reader.SetFileName(write_square() if mode == "Filled" else DATA)
     plane = vtkPlaneSource()
     make_plane(plane)
     extract = vtkSPHProbe() if mode == "Slice" else vtkMarchingCorrectors()
+    if mode == "Filled":
+        extract.SetInputConnection(reader.GetOutputPort())
+        extract.SetInputArrayToProcess(0, 0, 0, 0, "Radius")
+        for i, radius in enumerate(RADII):
+            extract.SetValue(i, radius)
+        extract.FilledOn()
+        extract.Update()
+        return extract.GetOutput()
     extract.SetFluidArrayName("ParticleType")
     if mode == "Slice":
         extract.SetInputConnection(plane.GetOutputPort())
@@ -66,8 +100,10 @@ def by_package(mode):
 def by_plugin(mode):
     from paraview import servermanager, simple
     simple.LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())  # its filters come here
-    reader = simple.XMLPolyDataReader(FileName=[DATA])
-    if mode == "Slice":
+    reader = simple.XMLPolyDataReader(FileName=[write_square() if mode == "Filled" else DATA])
+    if mode == "Filled":
+        extract = globals()["MarchingCorrectors"](Input=reader, ContourBy=["POINTS", "Radius"], Isosurfaces=RADII, Filled=1)
+    elif mode == "Slice":
         plane = simple.Plane(Origin=[0.0, 0.0, 0.1], Point1=[3.22, 0.0, 0.1], Point2=[0.0, 1.0, 0.1],
                              XResolution=322, YResolution=100)
         extract = globals()["SPHProbe"](Points=plane, Particles=reader, FluidArray="ParticleType",
@@ -85,8 +121,7 @@ def by_plugin(mode):
     return servermanager.Fetch(extract)
 
 
-def draw(surface, color_by, low, high, path):
-    """As CompareImage() in TestImage.h does."""
+def make_actor(surface, color_by, low, high, cells=False):
     colors = vtkLookupTable()
     colors.SetVectorModeToMagnitude()
     colors.SetHueRange(0.67, 0.0)
@@ -94,25 +129,61 @@ def draw(surface, color_by, low, high, path):
     colors.SetRange(low, high)
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(surface)
-    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SetScalarModeToUseCellFieldData() if cells else mapper.SetScalarModeToUsePointFieldData()
     mapper.SelectColorArray(color_by)
     mapper.SetLookupTable(colors)
     mapper.UseLookupTableScalarRangeOn()
     actor = vtkActor()
     actor.SetMapper(mapper)
     actor.GetProperty().SetInterpolationToPhong()
+    return actor
+
+
+def draw(surface, color_by, low, high, path):
+    """As CompareImage() in TestImage.h does."""
     renderer = vtkRenderer()
-    renderer.AddActor(actor)
-    renderer.SetBackground(0.2, 0.2, 0.25)
+    renderer.AddActor(make_actor(surface, color_by, low, high))
     camera = renderer.GetActiveCamera()
     camera.SetPosition(0.4, 1.5, 3.0)
     camera.SetFocalPoint(1.6, 0.3, 0.0)
     camera.SetViewUp(0.0, 1.0, 0.0)
     renderer.ResetCamera()
     camera.Zoom(1.4)
+    save(renderer, (500, 300), path)
+
+
+def draw_filled(surface, path):
+    """As TestFilledImage.cxx does: lines over bands."""
+    bands = make_actor(surface, "BandValue", 0.0, 1.0, cells=True)
+    lines = vtkPolyData()
+    lines.SetPoints(surface.GetPoints())
+    lines.SetLines(surface.GetLines())
+    mapper, over = vtkPolyDataMapper(), vtkActor()
+    mapper.SetInputData(lines)
+    over.SetMapper(mapper)
+    over.GetProperty().SetColor(0.0, 0.0, 0.0)
+    over.GetProperty().SetLineWidth(2.0)
+    over.SetPosition(0.0, 0.01, 0.0)
+    renderer = vtkRenderer()
+    for actor in bands, over:
+        actor.GetProperty().LightingOff()
+        renderer.AddActor(actor)
+    camera = renderer.GetActiveCamera()
+    camera.SetPosition(0.0, 5.0, 0.0)
+    camera.SetFocalPoint(0.0, 0.5, 0.0)
+    camera.SetViewUp(0.0, 0.0, 1.0)
+    camera.ParallelProjectionOn()
+    renderer.ResetCamera()
+    camera.Zoom(1.3)
+    save(renderer, (300, 300), path)
+
+
+def save(renderer, size, path):
+    renderer.SetBackground(0.2, 0.2, 0.25)
     window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
-    window.SetSize(500, 300)
+    window.SetSize(*size)
     window.AddRenderer(renderer)
     window.Render()
     image = vtkWindowToImageFilter()
@@ -139,12 +210,15 @@ def difference(path, baseline):
     return compare.GetThresholdedError()
 
 
-def main(make, prefix):
+def main(make, prefix, modes):
     failed = []
-    for mode in MODES:
+    for mode in modes or MODES:
         name = f"Test{mode}Image.png"
         path = os.path.join(OUTPUT, prefix + name)
-        draw(make(mode), *COLORS.get(mode, ("Velocity", 0.0, 3.0)), path)
+        if mode == "Filled":
+            draw_filled(make(mode), path)
+        else:
+            draw(make(mode), *COLORS.get(mode, ("Velocity", 0.0, 3.0)), path)
         error = difference(path, os.path.join(BASELINES, name))
         print("%s differs by %g (at most %g)" % (path, error, THRESHOLD))
         if error > THRESHOLD:
@@ -152,7 +226,7 @@ def main(make, prefix):
     sys.exit("not the baselines: " + ", ".join(failed) if failed else 0)
 
 
-if sys.argv[1:] == ["plugin"]:
-    main(by_plugin, "plugin_")
+if sys.argv[1:2] == ["plugin"]:
+    main(by_plugin, "plugin_", sys.argv[2:])
 else:
-    main(by_package, "python_")
+    main(by_package, "python_", sys.argv[1:])

@@ -56,8 +56,6 @@ static mcor_status mcor_extract_all(
   mcor_surface* surface = result;
   mcor_free_surface(surface); /* of an attempt before */
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_RETURN_IF(options->filled && options->ranks, context, MCOR_INVALID_ARGUMENT,
-    "Filled regions are made by one process alone. Run one process, or turn Filled off.");
   MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
     "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
     "first.");

@@ -44,7 +44,7 @@ extern "C"
     double cube;        /* cube size, or the longest of its edges; not read where it is given */
     double edge[3];     /* along x, y, z; the same */
     double wall_share;  /* if the options ask for it; 0: not yet measured */
-    mcor_plane plane;   /* low to x_high are then of the two other coordinates, and 0 */
+    mcor_plane plane;
   } mcor_measure;
 
   /* What must be known about all particles to extract the surface of a box from some of them. */
@@ -129,7 +129,7 @@ extern "C"
 
   /* Lines in the plane of several parts, from their pieces, each from one point to the next, as mcor_extract joins
    * them: into the surface's lines, and their measures. Of the surface the points are read, all of them, in the order
-   * of their keys, each once. MCOR_OUT_OF_CAPACITY: memory ran out. */
+   * of their keys, each once, and where band_value is set the triangles. MCOR_OUT_OF_CAPACITY: memory ran out. */
   mcor_status mcor_join_lines(
     const mcor_plane* plane, const int32_t (*pieces)[2], int64_t count, mcor_surface* surface);
 

@@ -111,13 +111,11 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
     return;
   }
   this->EstimateDistributed(ranks, mine.Core, options);
-  const mcor_globals placed = vtkSPHPlaceInPlane(globals);
   vtkSPHRanksBalance balance;
   balance.HasWork = true;
-  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, placed)
+  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, globals)
                                             : vtkSPHCountWork(mine.Core, options);
-  const mcor_options routed = vtkSPHPlaceInPlane(options, globals);
-  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, routed, placed, balance);
+  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
   options.globals = &globals;
   this->ExtractDistributed(ranks, choice, own, route, options, counts[0], output);
 }
@@ -179,7 +177,9 @@ void vtkMarchingCorrectors::FinishDistributed(
       run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
   const std::unique_ptr<vtkSPHRanksLines> lines = run.Plane.axis > 0
-    ? std::make_unique<vtkSPHRanksLines>(ranks, surface, numbers, points, run.Plane)
+    ? std::make_unique<vtkSPHRanksLines>(ranks, surface,
+        vtkSPHRanksNumbers{ numbers, triangleNumbers, points, triangles }, run.Plane,
+        run.Options.filled != 0)
     : nullptr;
   if (lines && lines->HasFailed())
   {

@@ -76,10 +76,11 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
   {
     return false;
   }
-  if (forSamples && globals.measured.plane.axis > 0)
+  const int axis = globals.measured.plane.axis - 1;
+  options.dimension = axis >= 0 ? 2 : 3;
+  if (axis >= 0) // a period across the plane means nothing
   {
-    this->Fail(vtkSPHRanksNoPlane);
-    return false;
+    options.periodic[2 * axis] = options.periodic[2 * axis + 1] = 0.0;
   }
   return true;
 }

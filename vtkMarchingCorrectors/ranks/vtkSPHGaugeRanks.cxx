@@ -140,9 +140,7 @@ void vtkSPHGauge::MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSP
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
     &globals, mcor_free_globals);
-  if (!this->CallCoreDistributed(ranks, mine, options,
-        [&](mcor_context* context)
-        { return mcor_measure_globals(context, &mine.Core, &options, &globals); }))
+  if (!this->MeasureGlobalsDistributed(ranks, mine, options, false, globals))
   {
     return;
   }

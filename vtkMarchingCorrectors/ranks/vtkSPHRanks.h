@@ -18,11 +18,6 @@
 class vtkMPIController;
 class vtkMultiProcessController;
 
-/** Of particles in two dimensions. */
-constexpr const char* vtkSPHRanksNoPlane = "The particles lie in a plane. Probes and derivatives "
-                                           "there are made by one process alone. Run one process, "
-                                           "or set the dimension to 3.";
-
 class vtkSPHRanks
 {
 public:

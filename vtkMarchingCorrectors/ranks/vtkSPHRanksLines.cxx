@@ -3,10 +3,10 @@
 #include "vtkSPHRanksLines.h"
 
 #include "vtkAbstractArray.h"
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkIdTypeArray.h"
+#include "vtkMarchingCorrectorsOutput.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -29,13 +30,14 @@ using Piece = std::array<std::int32_t, 2>;
 /** Positions, as an array among the others on the way. */
 constexpr const char* Positions = "vtkSPHRanksLines positions";
 
-int AxisOf(const mcor_plane& plane, int a)
+/** How many there are of an array that a surface may lack. */
+std::int64_t CountOf(const void* array, std::int64_t count)
 {
-  return (plane.axis + a) % 3; // as the core turns them
+  return array ? count : 0;
 }
 
-/** Of one rank: numbers and positions of points, and the pieces between them. */
-vtkSPHRanks::Bytes Pack(const mcor_surface& surface, vtkIdTypeArray* numbers)
+/** Of one rank: numbers, positions and iso values of points, pieces of lines between them, triangles. */
+vtkSPHRanks::Bytes Pack(const mcor_surface& surface, const vtkSPHRanksNumbers& numbers)
 {
   vtkSPHRanks::Bytes bytes;
   std::vector<Piece> pieces;
@@ -46,34 +48,69 @@ vtkSPHRanks::Bytes Pack(const mcor_surface& surface, vtkIdTypeArray* numbers)
       pieces.push_back({ surface.line_points[i], surface.line_points[i + 1] });
     }
   }
-  const auto points = static_cast<std::size_t>(surface.point_count);
-  vtkSPHPutNumber(bytes, surface.point_count);
-  vtkSPHPutNumber(bytes, static_cast<std::int64_t>(pieces.size()));
-  vtkSPHPutBytes(bytes, numbers->GetPointer(0), points * sizeof(vtkIdType));
-  vtkSPHPutBytes(bytes, surface.points, 3 * points * sizeof(double));
-  vtkSPHPutBytes(bytes, pieces.data(), pieces.size() * sizeof(Piece));
+  const auto put = [&bytes](const auto* data, std::int64_t count)
+  {
+    vtkSPHPutNumber(bytes, count);
+    vtkSPHPutBytes(bytes, data, static_cast<std::size_t>(count) * sizeof(*data));
+  };
+  put(numbers.OfPoints->GetPointer(0), surface.point_count);
+  put(surface.points, 3 * surface.point_count);
+  put(surface.iso_value, CountOf(surface.iso_value, surface.point_count));
+  put(pieces.data(), static_cast<std::int64_t>(pieces.size()));
+  const std::int64_t triangles = CountOf(surface.band_value, surface.triangle_count);
+  put(numbers.OfTriangles->GetPointer(0), triangles);
+  put(surface.triangles, 3 * triangles);
+  put(surface.band_value, triangles);
   return bytes;
 }
 
-/** Adds a rank's points and pieces to the whole; returns the numbers of its points. */
+template <typename T>
+std::vector<T> GetArray(vtkSPHRanksReader& reader)
+{
+  std::vector<T> values(static_cast<std::size_t>(reader.GetNumber()));
+  reader.GetBytes(values.data(), values.size() * sizeof(T));
+  return values;
+}
+
+/** Moves tuples to the places that numbers say, where they are given. */
+template <typename T>
+void Place(const std::vector<T>& values, const std::vector<vtkIdType>& numbers, T* to)
+{
+  const std::size_t width = values.empty() ? 0 : values.size() / numbers.size();
+  for (std::size_t i = 0; i < values.size() && to; ++i)
+  {
+    to[static_cast<std::size_t>(numbers[i / width]) * width + i % width] = values[i];
+  }
+}
+
+/** Adds a rank's points, pieces and triangles to the whole; returns the numbers of its points. */
 std::vector<vtkIdType> Unpack(
-  const vtkSPHRanks::Bytes& bytes, double* points, std::vector<Piece>& pieces)
+  const vtkSPHRanks::Bytes& bytes, mcor_surface& whole, std::vector<Piece>& pieces)
 {
   vtkSPHRanksReader reader(bytes);
-  std::vector<vtkIdType> numbers(static_cast<std::size_t>(reader.GetNumber()));
-  std::vector<Piece> own(static_cast<std::size_t>(reader.GetNumber()));
-  reader.GetBytes(numbers.data(), numbers.size() * sizeof(vtkIdType));
-  for (const vtkIdType number : numbers)
+  std::vector<vtkIdType> numbers = GetArray<vtkIdType>(reader);
+  const auto numberOf = [&numbers](std::int32_t point)
+  { return static_cast<std::int32_t>(numbers[static_cast<std::size_t>(point)]); };
+  Place(GetArray<double>(reader), numbers, whole.points);
+  Place(GetArray<double>(reader), numbers, whole.iso_value);
+  for (const Piece& piece : GetArray<Piece>(reader))
   {
-    reader.GetBytes(points + 3 * number, 3 * sizeof(double));
+    pieces.push_back({ numberOf(piece[0]), numberOf(piece[1]) });
   }
-  reader.GetBytes(own.data(), own.size() * sizeof(Piece));
-  for (const Piece& piece : own)
-  {
-    pieces.push_back({ static_cast<std::int32_t>(numbers[static_cast<std::size_t>(piece[0])]),
-      static_cast<std::int32_t>(numbers[static_cast<std::size_t>(piece[1])]) });
-  }
+  const std::vector<vtkIdType> triangles = GetArray<vtkIdType>(reader);
+  std::vector<std::int32_t> corners = GetArray<std::int32_t>(reader);
+  std::transform(corners.begin(), corners.end(), corners.begin(), numberOf);
+  Place(corners, triangles, whole.triangles);
+  Place(GetArray<double>(reader), triangles, whole.band_value);
   return numbers;
+}
+
+/** Uninitialized; not null where there are none. */
+template <typename T>
+bool Allocate(T*& array, vtkIdType count)
+{
+  array = static_cast<T*>(std::malloc(static_cast<std::size_t>(count) * sizeof(T) + 1));
+  return array != nullptr;
 }
 
 /** Whole numbers from 0 on. */
@@ -88,67 +125,30 @@ vtkSmartPointer<vtkIdTypeArray> CountUp(const char* name, vtkIdType count)
 }
 
 //------------------------------------------------------------------------------
-mcor_globals vtkSPHPlaceInPlane(const mcor_globals& globals)
-{
-  mcor_globals placed = globals;
-  const mcor_measure& from = globals.measured;
-  mcor_measure& to = placed.measured;
-  for (int a = 0; a < 3 && from.plane.axis > 0; ++a)
-  {
-    const int axis = AxisOf(from.plane, a);
-    const double shift = a == 2 ? from.plane.at : 0.0;
-    to.low[axis] = from.low[a] + shift;
-    to.high[axis] = from.high[a] + shift;
-    to.x_low[axis] = from.x_low[a] + shift;
-    to.x_high[axis] = from.x_high[a] + shift;
-    to.edge[axis] = from.edge[a];
-  }
-  return placed;
-}
-
-//------------------------------------------------------------------------------
-mcor_options vtkSPHPlaceInPlane(const mcor_options& options, const mcor_globals& globals)
-{
-  mcor_options placed = options;
-  if (globals.measured.plane.axis > 0)
-  {
-    const int axis = AxisOf(globals.measured.plane, 2);
-    placed.periodic[2 * axis] = placed.periodic[2 * axis + 1] = 0.0;
-  }
-  return placed;
-}
-
-//------------------------------------------------------------------------------
 vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
-  vtkIdTypeArray* numbers, vtkIdType total, const mcor_plane& plane)
+  const vtkSPHRanksNumbers& numbers, const mcor_plane& plane, bool isFilled)
 {
   std::vector<vtkSPHRanks::Bytes> messages(static_cast<std::size_t>(ranks.GetCount()));
   messages[0] = Pack(surface, numbers);
   const std::vector<vtkSPHRanks::Bytes> received = ranks.Exchange(std::move(messages));
-  std::int64_t counts[2] = { 0, 0 }; // of lines; of failures
-  double measures[3] = { 0.0, 0.0, 0.0 };
-  if (ranks.GetRank() == 0)
+  const bool isFirst = ranks.GetRank() == 0;
+  mcor_surface& whole = this->Whole;
+  whole.point_count = isFirst ? numbers.Points : 0;
+  whole.triangle_count = isFirst && isFilled ? numbers.Triangles : 0;
+  this->Failed = whole.point_count > std::numeric_limits<std::int32_t>::max() ||
+    !Allocate(whole.points, 3 * whole.point_count) ||
+    (isFilled &&
+      (!Allocate(whole.iso_value, whole.point_count) ||
+        !Allocate(whole.triangles, 3 * whole.triangle_count) ||
+        !Allocate(whole.band_value, whole.triangle_count)));
+  if (isFirst && !this->Failed)
   {
-    std::vector<Piece> pieces;
-    this->Whole.point_count = total;
-    this->Whole.points =
-      static_cast<double*>(std::malloc(static_cast<std::size_t>(3 * total + 1) * sizeof(double)));
-    for (std::size_t rank = 0; this->Whole.points && rank < received.size(); ++rank)
-    {
-      this->Numbers.push_back(Unpack(received[rank], this->Whole.points, pieces));
-    }
-    counts[1] = !this->Whole.points ||
-        mcor_join_lines(&plane, reinterpret_cast<const std::int32_t(*)[2]>(pieces.data()),
-          static_cast<std::int64_t>(pieces.size()), &this->Whole) != MCOR_OK
-      ? 1
-      : 0;
-    const mcor_statistics& s = this->Whole.statistics;
-    counts[0] = this->Whole.line_count;
-    measures[0] = s.length;
-    measures[1] = s.area;
-    measures[2] = s.is_closed ? 1.0 : 0.0;
+    this->Take(received, plane);
   }
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 2); // the first rank's
+  const mcor_statistics& s = whole.statistics;
+  std::int64_t counts[2] = { whole.line_count, this->Failed ? 1 : 0 };
+  double measures[3] = { s.length, s.area, s.is_closed ? 1.0 : 0.0 };
+  ranks.Reduce(vtkSPHRanks::SUM, counts, 2); // of lines and measures the first rank's
   ranks.Reduce(vtkSPHRanks::SUM, measures, 3);
   this->Count = counts[0];
   this->Failed = counts[1] > 0;
@@ -158,13 +158,27 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
 }
 
 //------------------------------------------------------------------------------
+// What all ranks have sent, on the first one.
+void vtkSPHRanksLines::Take(
+  const std::vector<vtkSPHRanks::Bytes>& received, const mcor_plane& plane)
+{
+  std::vector<Piece> pieces;
+  for (const vtkSPHRanks::Bytes& bytes : received)
+  {
+    this->Numbers.push_back(Unpack(bytes, this->Whole, pieces));
+  }
+  this->Failed = mcor_join_lines(&plane, reinterpret_cast<const std::int32_t(*)[2]>(pieces.data()),
+                   static_cast<std::int64_t>(pieces.size()), &this->Whole) != MCOR_OK;
+}
+
+//------------------------------------------------------------------------------
 vtkSPHRanksLines::~vtkSPHRanksLines()
 {
   mcor_free_surface(&this->Whole);
 }
 
 //------------------------------------------------------------------------------
-void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output) const
+void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output)
 {
   vtkPointData* arrays = output->GetPointData();
   const auto count = static_cast<std::size_t>(ranks.GetCount());
@@ -193,20 +207,8 @@ void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output) const
   }
   arrays->SetActiveNormals(normals.empty() ? nullptr : normals.c_str());
   arrays->SetActiveScalars(scalars.empty() ? nullptr : scalars.c_str());
-  vtkNew<vtkIdTypeArray> corners, offsets;
-  const std::int64_t lines = this->Whole.line_count;
-  offsets->InsertNextValue(0);
-  for (std::int64_t i = 0; i < lines; ++i)
-  {
-    offsets->InsertNextValue(this->Whole.line_offsets[i + 1]);
-  }
-  for (std::int64_t i = 0; lines > 0 && i < this->Whole.line_offsets[lines]; ++i)
-  {
-    corners->InsertNextValue(this->Whole.line_points[i]);
-  }
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(offsets, corners);
-  output->SetLines(cells);
+  const auto cells = static_cast<vtkIdType>(this->Whole.line_count + this->Whole.triangle_count);
+  vtkMarchingCorrectorsOutput::BuildCells(this->Whole, output);
   arrays->SetGlobalIds(CountUp("GlobalPointIds", output->GetNumberOfPoints()));
-  output->GetCellData()->SetGlobalIds(CountUp("GlobalCellIds", lines));
+  output->GetCellData()->SetGlobalIds(CountUp("GlobalCellIds", cells));
 }

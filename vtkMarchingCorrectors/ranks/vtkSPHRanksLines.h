@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: lines of particles in a plane. Ranks make their parts of them; as they are few, they
- * come together on the first rank, which joins them as one process does.
+ * Private to the module: lines of particles in a plane, and what is filled. Ranks make their parts of them;
+ * these come together on the first rank, which joins lines as one process does.
  */
 #ifndef vtkSPHRanksLines_h
 #define vtkSPHRanksLines_h
@@ -17,21 +17,22 @@ class vtkIdTypeArray;
 class vtkPolyData;
 class vtkSPHRanks;
 
-/** Extents and edges along the axes of the particles, not turned into the plane's, as the ranks divide space. */
-mcor_globals vtkSPHPlaceInPlane(const mcor_globals& globals);
-
-/** The period, but for the constant axis, along which it means nothing. */
-mcor_options vtkSPHPlaceInPlane(const mcor_options& options, const mcor_globals& globals);
+/** Of a rank's points and triangles, and how many there are on all ranks. */
+struct vtkSPHRanksNumbers
+{
+  vtkIdTypeArray *OfPoints, *OfTriangles;
+  vtkIdType Points, Triangles;
+};
 
 class vtkSPHRanksLines
 {
 public:
   /**
-   * Of this rank's surface; numbers: of its points among all `total` ones. Puts the number of lines and their
-   * measures into the surface's statistics, on all ranks. Collective.
+   * Of this rank's surface, whose points and triangles have these numbers among all of them. Puts measures
+   * into the surface's statistics, on all ranks. Collective.
    */
-  vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface, vtkIdTypeArray* numbers,
-    vtkIdType total, const mcor_plane& plane);
+  vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface, const vtkSPHRanksNumbers& numbers,
+    const mcor_plane& plane, bool isFilled);
   ~vtkSPHRanksLines();
 
   vtkIdType GetCount() const { return this->Count; }
@@ -39,14 +40,16 @@ public:
   /** Memory did not suffice, on any rank. */
   bool HasFailed() const { return this->Failed; }
 
-  /** Moves the points and their arrays to the first rank, with all lines; others have none. Collective. */
-  void Move(vtkSPHRanks& ranks, vtkPolyData* output) const;
+  /** Moves the points and their arrays to the first rank, with all cells; others have none. Collective. */
+  void Move(vtkSPHRanks& ranks, vtkPolyData* output);
 
 private:
   vtkSPHRanksLines(const vtkSPHRanksLines&) = delete;
   void operator=(const vtkSPHRanksLines&) = delete;
 
-  mcor_surface Whole = {};                     ///< points and lines, on the first rank
+  void Take(const std::vector<std::vector<char>>& received, const mcor_plane& plane);
+
+  mcor_surface Whole = {};                     ///< points, lines and triangles, on the first rank
   std::vector<std::vector<vtkIdType>> Numbers; ///< on the first rank, of the points of each
   vtkIdType Count = 0;
   bool Failed = false;

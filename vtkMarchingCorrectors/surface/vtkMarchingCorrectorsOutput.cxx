@@ -82,26 +82,25 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   vtkNew<vtkPoints> points;
   points->SetData(vtkSPHAdoptReal(this->Surface.points, 3, this->Surface.point_count, asFloat));
   output->SetPoints(points);
-  this->BuildTriangles(output);
-  this->BuildLines(output);
-  this->BuildBands(output);
+  BuildCells(this->Surface, output);
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
   this->ChooseActive(output, merge);
 }
 
-//------------------------------------------------------------------------------
-// With ids of VTK's own type, as from vtkContourFilter: some filters take a mesh with others for
-// non-manifold.
-void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
+namespace
 {
-  const vtkIdType count = this->Surface.triangle_count;
+/// With ids of VTK's own type, as from vtkContourFilter: some filters take a mesh with others for
+/// non-manifold.
+void BuildTriangles(mcor_surface& s, vtkPolyData* output)
+{
+  const vtkIdType count = s.triangle_count;
   vtkNew<vtkIdTypeArray> corners, offsets;
   corners->SetNumberOfValues(3 * count);
   offsets->SetNumberOfValues(count + 1);
   vtkIdType *corner = corners->GetPointer(0), *offset = offsets->GetPointer(0);
-  const std::int32_t* from = this->Surface.triangles;
+  const std::int32_t* from = s.triangles;
   vtkSMPTools::For(0, count,
     [=](vtkIdType begin, vtkIdType end)
     {
@@ -112,20 +111,19 @@ void vtkMarchingCorrectorsOutput::BuildTriangles(vtkPolyData* output)
       }
     });
   offset[count] = 3 * count;
-  std::free(this->Surface.triangles);
-  this->Surface.triangles = nullptr;
+  std::free(s.triangles);
+  s.triangles = nullptr;
   vtkNew<vtkCellArray> triangles;
   triangles->SetData(offsets, corners);
   output->SetPolys(triangles);
 }
 
-//------------------------------------------------------------------------------
-// Of two dimensions.
-void vtkMarchingCorrectorsOutput::BuildLines(vtkPolyData* output)
+/// Of two dimensions.
+void BuildLines(const mcor_surface& s, vtkPolyData* output)
 {
-  const mcor_surface& s = this->Surface;
   if (!s.line_offsets)
   {
+    output->SetLines(nullptr);
     return;
   }
   vtkNew<vtkIdTypeArray> points, offsets;
@@ -138,11 +136,9 @@ void vtkMarchingCorrectorsOutput::BuildLines(vtkPolyData* output)
   output->SetLines(lines);
 }
 
-//------------------------------------------------------------------------------
-// Of lines, which come before triangles, and of these.
-void vtkMarchingCorrectorsOutput::BuildBands(vtkPolyData* output)
+/// Of lines, which come before triangles, and of these.
+void BuildBands(const mcor_surface& s, vtkPolyData* output)
 {
-  const mcor_surface& s = this->Surface;
   if (!s.band_value)
   {
     return;
@@ -155,6 +151,15 @@ void vtkMarchingCorrectorsOutput::BuildBands(vtkPolyData* output)
   }
   std::copy_n(s.band_value, s.triangle_count, values->GetPointer(0) + s.line_count);
   vtkSPHAddArray(output->GetCellData(), "BandValue", values);
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& surface, vtkPolyData* output)
+{
+  BuildTriangles(surface, output);
+  BuildLines(surface, output);
+  BuildBands(surface, output);
 }
 
 //------------------------------------------------------------------------------

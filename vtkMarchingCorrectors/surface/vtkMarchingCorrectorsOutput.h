@@ -39,10 +39,10 @@ public:
   /** Area, and of a closed surface its volume. */
   void AddMeasures(vtkFieldData* run) const;
 
+  /** Triangles, lines, and between which iso values they are. Takes the surface's triangles. */
+  static void BuildCells(mcor_surface& surface, vtkPolyData* output);
+
 private:
-  void BuildTriangles(vtkPolyData* output);
-  void BuildLines(vtkPolyData* output);
-  void BuildBands(vtkPolyData* output);
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);

@@ -119,6 +119,14 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   {
     return whole;
   }
+  if (std::all_of(parts.begin() + 1, parts.end(),
+        [](vtkPolyData* part) { return part->GetNumberOfPoints() == 0; }))
+  {
+    whole->ShallowCopy(first); // as of lines, and what is filled
+    whole->GetPointData()->RemoveArray("GlobalPointIds");
+    whole->GetCellData()->RemoveArray("GlobalCellIds");
+    return whole;
+  }
   vtkIdType count = 0, triangleCount = 0; // numbers go from 0 on; a triangle is in one part
   for (const auto& part : parts)
   {
@@ -147,10 +155,6 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   vtkNew<vtkCellArray> triangles;
   triangles->SetData(3, corners);
   whole->SetPolys(triangles);
-  if (first->GetNumberOfLines() > 0)
-  {
-    whole->SetLines(first->GetLines()); // all are there, with the points' numbers
-  }
   return whole;
 }
 

@@ -22,13 +22,26 @@ double plane_u(const plane_field* f, int64_t i, int a)
   return f->set->position[3 * i + (f->axis + 1 + a) % 3];
 }
 
+/* By weight, or by the lower eigenvalue of the symmetric matrix m (uu, uv, vv); at walls by their share, too. */
+static double plane_margin(const plane_field* f, const plane_sample* s, const double m[3])
+{
+  const mcor_options* o = f->options;
+  const double least = 0.5 * (m[0] + m[2]) - hypot(0.5 * (m[0] - m[2]), m[1]);
+  const double margin =
+    (o->boundary_detection == MCOR_BOUNDARY_EIGENVALUE ? least : s->weight) - o->vertex_threshold;
+  const double wall = f->set->has_solids && o->wall_share > 0
+    ? o->wall_share * s->weight - (s->weight - s->fluid)
+    : INFINITY;
+  return o->field == MCOR_WEIGHT_SUM ? INFINITY : fmin(margin, wall);
+}
+
 /* Volumes of particles are areas. */
 plane_sample plane_evaluate(const plane_field* f, double u, double v)
 {
   const core_set* set = f->set;
   const mcor_options* o = f->options;
   plane_sample s = { 0 };
-  double sum = 0, slope[2] = { 0, 0 };
+  double sum = 0, slope[2] = { 0, 0 }, moments[3] = { 0, 0, 0 };
   for (int64_t i = 0; i < set->count; ++i)
   {
     const double h = set->smoothing_length[i] * o->h_scale;
@@ -45,6 +58,9 @@ plane_sample plane_evaluate(const plane_field* f, double u, double v)
     s.weight += w;
     s.fluid += solid ? 0 : w;
     sum += solid ? 0 : w * set->scalar[i];
+    moments[0] -= scale * d[0] * g[0];
+    moments[1] -= 0.5 * scale * (d[0] * g[1] + d[1] * g[0]);
+    moments[2] -= scale * d[1] * g[1];
     for (int a = 0; a < 2; ++a)
     {
       s.weight_slope[a] += scale * g[a];
@@ -63,6 +79,7 @@ plane_sample plane_evaluate(const plane_field* f, double u, double v)
       : s.fluid != 0                            ? (slope[a] - s.value * s.fluid_slope[a]) / s.fluid
                                                 : 0;
   }
+  s.margin = plane_margin(f, &s, moments);
   return s;
 }
 
@@ -129,6 +146,14 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
   }
   (void)iso;
   free(used);
+}
+
+mcor_options plane_options(const double* iso)
+{
+  mcor_options options = core_options(iso);
+  options.boundary_flag = 1;
+  options.vertex_threshold = 0;
+  return options;
 }
 
 core_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed)

@@ -21,6 +21,7 @@ typedef struct plane_sample
   double value, gradient[2]; /* of the field, not relative to the iso value */
   double fluid, weight;      /* weight: of trimming */
   double fluid_slope[2], weight_slope[2];
+  double margin; /* how far inside of what trimming leaves */
 } plane_sample;
 
 /* Coordinate u or v of a particle. */
@@ -38,6 +39,9 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
 /* The same, and the lines' directions, ends and normals; closed: they must be. */
 void plane_check_lines(
   const plane_field* field, double iso, const mcor_surface* surface, int closed);
+
+/* Of one iso value; lines are not trimmed. */
+mcor_options plane_options(const double* iso);
 
 /* n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane, smoothing length
  * 1.3 to 1.3 spread, volume 1. */

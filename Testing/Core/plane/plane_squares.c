@@ -305,8 +305,7 @@ static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
     low = before ? t : low;
     high = before ? high : t;
   }
-  return o->field != MCOR_WEIGHT_SUM &&
-    (p.fluid < least + 1e-5 || p.weight < o->vertex_threshold + 1e-5);
+  return o->field != MCOR_WEIGHT_SUM && (p.fluid < least + 1e-5 || p.margin < 1e-4);
 }
 
 /* The number of the edge that a point is on; -1: of none. */
@@ -367,9 +366,9 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
     const int cut = surface->boundary_flag[p] & 3;
     CORE_CHECK(cut == 2 || fabs(at.value - iso) < 1e-5 * range, "point %lld is off by %g",
       (long long)p, at.value - iso);
-    CORE_CHECK(cut != 1 || field->options->wall_share != 0 || at.fluid < 0.06 ||
-        fabs(at.weight - field->options->vertex_threshold) < 3e-5,
-      "cut %lld has weight %g", (long long)p, at.weight);
+    CORE_CHECK(cut != 1 || at.fluid < 0.06 || fabs(at.margin) < 1e-4, "cut %lld has margin %g",
+      (long long)p, at.margin);
+    CORE_CHECK(cut || at.margin > -1e-4, "point %lld is outside, by %g", (long long)p, at.margin);
     of[p] = cut ? -1 : plane_edge_of(&s, u, v);
     if (!cut)
     {

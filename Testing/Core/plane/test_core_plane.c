@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: kernels, the plane, weights, lines against a reference of all squares. */
+/* Two dimensions: kernels, the plane, weights, what is known of lines by other ways than a reference. */
 
 #include "mcor_plane.h"
 #include "plane_reference.h"
@@ -65,127 +65,6 @@ static void test_weight_is_1_inside(void** state)
     }
   }
   core_free_set(&set);
-}
-
-static mcor_options plane_options(const double* iso)
-{
-  mcor_options options = core_options(iso);
-  options.boundary_flag = 1;
-  options.vertex_threshold = 0;
-  return options;
-}
-
-static int64_t compare(
-  mcor_context* context, const core_set* set, const mcor_options* options, int axis, int closed)
-{
-  mcor_input input = core_input(set);
-  const plane_field field = { set, options, axis };
-  mcor_surface surface = core_extract(context, &input, options);
-  const int64_t edges = plane_compare(&field, options->iso_values[0], &surface);
-  plane_check_lines(&field, options->iso_values[0], &surface, closed);
-  mcor_free_surface(&surface);
-  return edges;
-}
-
-static void test_lines_are_those_of_the_field(void** state)
-{
-  const double isos[3] = { 0.5, 0.4, 0.45 };
-  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
-  {
-    for (int f = 0; f < 3; ++f)
-    {
-      const int axis = (k + f) % 3;
-      core_set set = plane_make(12, 0.3, 1.4, axis, 10.0 * axis - 7, (uint64_t)(5 + k));
-      for (int64_t i = 0; i < set.count; ++i)
-      {
-        set.scalar[i] = f == MCOR_SUM ? 1 + 0.05 * set.scalar[i] : set.scalar[i];
-      }
-      mcor_options options = plane_options(&isos[f]);
-      options.sph_kernel = (mcor_sph_kernel)k;
-      options.field = (mcor_field)f;
-      options.h_scale = k == 3 ? 0.75 : 1;
-      CORE_CHECK(compare(*state, &set, &options, axis, f == MCOR_WEIGHT_SUM) > 20, "few edges");
-      options.precision = MCOR_FLOAT64;
-      CORE_CHECK(compare(*state, &set, &options, axis, f == MCOR_WEIGHT_SUM) > 20, "few edges");
-      core_free_set(&set);
-    }
-  }
-}
-
-/* Anything: noise, walls, all options that change where lines are. */
-static void test_random_lines(void** state)
-{
-  uint64_t seed = 11;
-  for (int round = 0; round < 40; ++round)
-  {
-    const int axis = (int)(random_bits(&seed) % 3);
-    core_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
-      axis, 3 * random_unit(&seed), seed);
-    for (int64_t i = 0; i < set.count; ++i)
-    {
-      set.scalar[i] = 2 * random_unit(&seed) - 1;
-      set.solid[i] = random_bits(&seed) % 6 == 0;
-    }
-    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
-    mcor_options options = plane_options(&iso);
-    set.has_solids = round % 4 == 1 && round % 3 != MCOR_WEIGHT_SUM;
-    options.sph_kernel = (mcor_sph_kernel)(random_bits(&seed) % MCOR_SPH_KERNEL_COUNT);
-    options.field = (mcor_field)(round % 3);
-    options.cube_size_factor = 0.3 + 0.5 * random_unit(&seed);
-    options.vertex_threshold = round & 1 ? 0.5 : 0;
-    options.topology = round & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
-    compare(*state, &set, &options, axis, options.field == MCOR_WEIGHT_SUM);
-    core_free_set(&set);
-  }
-}
-
-/* Squares of several sizes: particles whose smoothing lengths grow along u, or that are mixed. Free surfaces are
- * closed across levels. */
-static void test_adaptive_lines(void** state)
-{
-  uint64_t seed = 21;
-  int deep = 0;
-  for (int round = 0; round < 30; ++round)
-  {
-    const int axis = round % 3, mixed = round % 2;
-    core_set set = core_make_set(220);
-    for (int64_t i = 0; i < set.count; ++i)
-    {
-      double* x = set.position + 3 * i;
-      const double u = random_unit(&seed), v = random_unit(&seed);
-      const double h = pow(mixed ? 16 : 24, mixed ? random_unit(&seed) : u);
-      x[axis] = 3;
-      x[(axis + 1) % 3] = (mixed ? 40 : 30 * pow(24, u)) * (mixed ? u : 0.1);
-      x[(axis + 2) % 3] = 3 + 2.5 * (mixed ? 8 : h) * (v - 0.5);
-      set.smoothing_length[i] = h;
-      set.volume[i] = 0.6 * h * h;
-      set.scalar[i] = 2 * random_unit(&seed) - 1;
-      set.solid[i] = random_bits(&seed) % 6 == 0;
-    }
-    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
-    mcor_options options = plane_options(&iso);
-    options.level_limit = round % 5 == 4 ? 2 : MCOR_CUBE_LEVELS - 1;
-    set.has_solids = round % 4 == 1 && round % 3 != MCOR_WEIGHT_SUM;
-    options.sph_kernel = round % 7 == 6 ? MCOR_M_PRIME_4 : MCOR_CUBIC_SPLINE;
-    options.field = (mcor_field)(round % 3);
-    options.cube_size_factor = 0.4 + 0.4 * random_unit(&seed);
-    options.vertex_threshold = round & 1 ? 0.5 : 0;
-    options.topology = round & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
-    CORE_CHECK(compare(*state, &set, &options, axis, options.field == MCOR_WEIGHT_SUM) > 20,
-      "round %d: few edges", round);
-    mcor_input input = core_input(&set);
-    mcor_surface surface = core_extract(*state, &input, &options);
-    int levels = 0;
-    for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
-    {
-      levels += surface.statistics.cells_of_level[l] > 2;
-    }
-    CORE_CHECK(levels > 1, "round %d: %d levels", round, levels);
-    deep += levels > 2;
-    mcor_free_surface(&surface);
-    core_free_set(&set);
-  }
-  assert_true(deep > 10);
 }
 
 /* A circle: its place, length and area. */
@@ -289,35 +168,46 @@ static void test_what_is_no_plane(void** state)
   set.solid[1] = 1;
   set.has_solids = 1;
   input = core_input(&set);
-  expect_error(*state, &input, &options, "solid particle 1 has");
+  expect_error(*state, &input, &options, "solid ones have 1.000000001");
   set.position[5] = NAN;
   expect_error(*state, &input, &options, "position of particle 1 is not a number");
   core_free_set(&set);
 }
 
-/* A point, and particles on a line, are in a plane if the caller says so. */
-static void test_points_and_rows(void** state)
+/* Walls in another plane than the fluid, also where nobody says that there are two dimensions; but not if they
+ * play no part, or are in no plane. */
+static void test_walls_in_another_plane(void** state)
 {
-  const double iso = 0.1;
-  for (int count = 1; count < 12; count += 10)
+  core_set set = plane_make(10, 0.1, 1, 1, -2, 7);
+  const double iso = 0;
+  mcor_options options = plane_options(&iso);
+  for (int64_t i = 0; i < 20; ++i)
   {
-    core_set set = core_make_set(count);
-    for (int i = 0; i < count; ++i)
-    {
-      set.position[3 * i] = i;
-      set.smoothing_length[i] = 1.3;
-      set.volume[i] = 1;
-    }
-    mcor_options options = plane_options(&iso);
-    mcor_input input = core_input(&set);
-    options.field = MCOR_WEIGHT_SUM;
-    mcor_surface surface = core_extract(*state, &input, &options);
-    assert_int_equal(surface.statistics.dimension, 3);
-    mcor_free_surface(&surface);
-    options.dimension = 2;
-    compare(*state, &set, &options, 2, 1);
-    core_free_set(&set);
+    set.solid[i] = 1;
+    set.position[3 * i + 1] = 0.5;
   }
+  set.has_solids = 1;
+  mcor_input input = core_input(&set);
+  for (int dimension = 0; dimension <= 2; dimension += 2)
+  {
+    options.dimension = dimension;
+    expect_error(
+      *state, &input, &options, "fluid particles have y = -2, but the solid ones have 0.5");
+    assert_int_equal(mcor_find_dimension(&input, dimension), dimension == 2 ? 2 : 3);
+    input.ignore_solids = 1;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.statistics.dimension, 2);
+    assert_int_equal(mcor_find_dimension(&input, dimension), 2);
+    mcor_free_surface(&surface);
+    input.ignore_solids = 0;
+  }
+  set.position[4] = 0.6;
+  expect_error(*state, &input, &options, "but solid particle 0 has 0.5");
+  options.dimension = 0;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.statistics.dimension, 3);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
 }
 
 /* Exact for what is linear; the reading of a gauge is where the weight is 0.5. */
@@ -517,11 +407,10 @@ int main(int argc, char** argv)
     cmocka_set_test_filter(argv[1]);
   }
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
-    cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_lines_are_those_of_the_field),
-    cmocka_unit_test(test_random_lines), cmocka_unit_test(test_adaptive_lines),
-    cmocka_unit_test(test_circle), cmocka_unit_test(test_trimming),
-    cmocka_unit_test(test_what_is_no_plane), cmocka_unit_test(test_points_and_rows),
-    cmocka_unit_test(test_derivatives_and_gauges), cmocka_unit_test(test_pairs_and_reuse),
-    cmocka_unit_test(test_bits), cmocka_unit_test(test_boxes_and_periods) };
+    cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_circle),
+    cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
+    cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
+    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
+    cmocka_unit_test(test_boxes_and_periods) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -311,6 +311,7 @@ static mcor_status mcor_run_derive(
 {
   const mcor_derive_call* call = data;
   mcor_free_derivatives(call->derivatives); /* of an attempt before */
+  call->derivatives->statistics.dimension = options->dimension;
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_TRY(mcor_make_derivatives(context, input, call->derivatives));
   if (context->attributes.varying_count == 0 || input->count == 0)

@@ -201,7 +201,7 @@ static mcor_status mcor_gauge_input(
   return mcor_finish_statistics(context);
 }
 
-/* In two dimensions, lines in the plane are turned, and the places on them are turned back. */
+/* In two dimensions, lines in the plane and the box are turned, and the places on them are turned back. */
 static mcor_status mcor_run_gauge(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -233,6 +233,12 @@ static mcor_status mcor_run_gauge(
         "Gauge %lld leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
         (long long)i, 'x' + w, plane->at);
     }
+  }
+  double box[6];
+  if (call.box)
+  {
+    mcor_flatten_sides(plane, call.box, box);
+    call.box = box;
   }
   call.lines = lines;
   status = status == MCOR_OK ? mcor_gauge_input(context, input, options, &call) : status;

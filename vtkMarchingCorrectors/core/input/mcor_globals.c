@@ -4,6 +4,7 @@
 /* What is measured over all particles, handed out, and taken back where only some are at hand. */
 
 #include "mcor_input.h"
+#include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_tree.h"
 
@@ -101,7 +102,12 @@ static mcor_status mcor_measure_all(
     MCOR_TRY(mcor_find_median(context, input, &globals->scalar_shift));
   }
   MCOR_TRY(mcor_measure_splits(context, input, globals));
-  return mcor_measure_components(context, input, globals);
+  MCOR_TRY(mcor_measure_components(context, input, globals));
+  if (mcor_is_plane(context))
+  {
+    mcor_turn_measure(&globals->measured, true);
+  }
+  return MCOR_OK;
 }
 
 /* For a surface, or for what is evaluated without a scalar. */

@@ -24,113 +24,167 @@ double mcor_plane_factor(mcor_sph_kernel kernel)
 
 /* ---- The plane ---- */
 
-/* What of a coordinate is the same for all: [low, high], everything where some differ, nothing where there
- * are no particles. */
-static void mcor_find_constant(
-  const mcor_array* positions, int64_t count, int axis, double* low, double* high)
+/* How far particles go along x, y, z: the fluid, and behind it the solids that play a part. Nothing where there
+ * are none. */
+typedef struct mcor_spread
 {
-  const double first = count > 0 ? mcor_array_at(positions, 0, axis) : 0;
-  const bool constant = count > 0 && isfinite(first) &&
-    mcor_array_at(positions, count - 1, axis) == first && mcor_is_constant(positions, count, axis);
-  *low = constant ? first : count > 0 ? -DBL_MAX : DBL_MAX;
-  *high = constant ? first : -*low;
+  double low[6], high[6];
+} mcor_spread;
+
+typedef struct mcor_spread_job
+{
+  const mcor_input* input;
+  mcor_spread slices[MCOR_SLICES];
+} mcor_spread_job;
+
+static void mcor_widen(mcor_spread* spread, int i, double low, double high)
+{
+  spread->low[i] = low < spread->low[i] ? low : spread->low[i];
+  spread->high[i] = high > spread->high[i] ? high : spread->high[i];
 }
 
-/* Whether positions can be looked at; what is wrong otherwise is for mcor_check_input to say. */
+/* Ends where the fluid is in no plane: how far it goes then does not matter. */
+static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_spread_job* job = data;
+  const mcor_input* input = job->input;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  mcor_spread spread = job->slices[slice];
+  bool everywhere = false;
+  for (int64_t begin = first; begin < last && !everywhere; begin += MCOR_CHUNK)
+  {
+    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    double x[MCOR_CHUNK];
+    everywhere = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_read_array(&positions, begin, count, a, x);
+      for (int i = 0; i < count; ++i)
+      {
+        const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
+        if (!solid || !input->ignore_solids)
+        {
+          mcor_widen(&spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
+        }
+      }
+      everywhere = everywhere && spread.low[a] < spread.high[a];
+    }
+  }
+  job->slices[slice] = spread;
+}
+
+/* Whether there are positions that can be looked at; what is wrong otherwise is for mcor_check_input to say. */
 static bool mcor_has_positions(const mcor_input* input)
 {
-  const mcor_array* positions = &input->positions;
-  return input->count == 0 ||
-    (input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && positions->data &&
-      (unsigned)positions->type <= MCOR_FLOAT64);
+  return input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && input->positions.data &&
+    (unsigned)input->positions.type <= MCOR_FLOAT64;
+}
+
+static mcor_spread mcor_spread_of(const mcor_input* input)
+{
+  mcor_spread_job job = { .input = input };
+  for (int i = 0; i < 6 * MCOR_SLICES; ++i)
+  {
+    job.slices[i / 6].low[i % 6] = DBL_MAX;
+    job.slices[i / 6].high[i % 6] = -DBL_MAX;
+  }
+  const int slices = mcor_has_positions(input)
+    ? mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_spread_slice, &job)
+    : 0;
+  for (int i = 0; i < 6 * slices; ++i)
+  {
+    const mcor_spread* slice = &job.slices[i / 6];
+    mcor_widen(&job.slices[0], i % 6, slice->low[i % 6], slice->high[i % 6]);
+  }
+  return job.slices[0];
+}
+
+/* A line or a point is not known to be in a plane; it is if the caller says so. */
+static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
+{
+  mcor_plane plane = { 0 };
+  int constant = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = fmin(spread->low[a], spread->low[3 + a]),
+                 high = fmax(spread->high[a], spread->high[3 + a]);
+    constant += low == high;
+    plane = low == high ? (mcor_plane){ a + 1, low } : plane;
+  }
+  return dimension == 2 || constant == 1 ? plane : (mcor_plane){ 0 };
 }
 
 int mcor_find_dimension(const mcor_input* input, int dimension)
 {
-  int constant = 0;
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  for (int a = 0; a < 3 && dimension != 3 && mcor_has_positions(input); ++a)
-  {
-    double low, high;
-    mcor_find_constant(&positions, input->count, a, &low, &high);
-    constant += low == high;
-  }
-  return dimension == 2 || constant == 1 ? 2 : 3;
+  const mcor_spread spread = mcor_spread_of(input);
+  return dimension == 2 || (dimension == 0 && mcor_plane_of(&spread, 0).axis > 0) ? 2 : 3;
 }
 
-/* Who is not in the plane of the others: a solid, if all fluid is in one. */
-static mcor_status mcor_refuse_plane(mcor_context* context, const mcor_input* input)
+/* Who is not in the plane of the others: solids, if all fluid is in one. */
+static mcor_status mcor_refuse_plane(
+  mcor_context* context, const mcor_input* input, const mcor_spread* spread)
 {
+  const char* const rule =
+    "in two dimensions all lie in one plane. Correct these positions, or use three dimensions";
   mcor_array positions = input->positions;
   positions.components = 3;
   if (mcor_find_not_finite(&positions, NULL, input->count) >= 0)
   {
     return MCOR_OK; /* for mcor_check_input to say */
   }
-  for (int a = 2; a >= 0 && input->solid; --a)
+  for (int a = 2; a >= 0; --a)
   {
-    int64_t fluid = 0, other = 0, solid = -1;
-    while (fluid < input->count && input->solid[fluid])
+    const double at = spread->low[a], solids = spread->low[3 + a];
+    const bool in_plane = at == spread->high[a];
+    MCOR_RETURN_IF(in_plane && solids == spread->high[3 + a], context, MCOR_INVALID_DATA,
+      "The fluid particles have %c = %.10g, but the solid ones have %.10g: %s.", "xyz"[a], at,
+      solids, rule);
+    int64_t i = 0;
+    while (in_plane && i < input->count && mcor_array_at(&positions, i, a) == at)
     {
-      ++fluid;
+      ++i;
     }
-    const double at = fluid < input->count ? mcor_array_at(&positions, fluid, a) : NAN;
-    for (int64_t i = 0; i < input->count; ++i)
-    {
-      const bool off = mcor_array_at(&positions, i, a) != at;
-      other += off && !input->solid[i];
-      solid = solid < 0 && off && input->solid[i] ? i : solid;
-    }
-    MCOR_RETURN_IF(other == 0 && solid >= 0, context, MCOR_INVALID_DATA,
-      "The fluid particles have %c = %g, but solid particle %lld has %g: in two dimensions all lie "
-      "in "
-      "one plane. Correct its position, or use three dimensions.",
-      "xyz"[a], at, (long long)solid, mcor_array_at(&positions, solid, a));
+    MCOR_RETURN_IF(in_plane && i < input->count, context, MCOR_INVALID_DATA,
+      "The fluid particles have %c = %.10g, but solid particle %lld has %.10g: %s.", "xyz"[a], at,
+      (long long)i, mcor_array_at(&positions, i, a), rule);
   }
   return mcor_fail(context, MCOR_INVALID_DATA,
     "The particles do not share one coordinate exactly, as two dimensions need: neither x, y nor z "
-    "is the "
-    "same for all. Turn or move them into a plane of constant x, y or z, or use three dimensions.");
+    "is the same for all. Turn or move them into a plane of constant x, y or z, or use three "
+    "dimensions.");
+}
+
+/* Fluid in one plane, solids in another one beside it: meant as two dimensions. */
+static bool mcor_is_apart(const mcor_spread* spread)
+{
+  int planes = 0;
+  bool apart = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool in_plane = spread->low[a] == spread->high[a];
+    planes += in_plane;
+    apart = apart || (in_plane && spread->low[3 + a] == spread->high[3 + a]);
+  }
+  return planes == 1 && apart;
 }
 
 /* In ranks and globals, the same for all. */
 static mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  mcor_plane* plane = &context->plane;
-  const mcor_globals* globals = options->globals;
-  *plane = (mcor_plane){ 0 };
-  if (options->dimension == 3 || globals || !mcor_has_positions(input))
+  context->plane = options->globals ? options->globals->measured.plane : (mcor_plane){ 0 };
+  if (options->dimension == 3 || options->globals)
   {
-    *plane = globals ? globals->measured.plane : *plane;
     return MCOR_OK;
   }
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  double low[3], high[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_find_constant(&positions, input->count, a, &low[a], &high[a]);
-  }
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 3));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, 3));
-  int constant = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    constant += low[a] == high[a];
-    plane->axis = low[a] == high[a] ? a + 1 : plane->axis;
-    plane->at = low[a] == high[a] ? low[a] : plane->at;
-  }
-  const bool some = low[0] <= high[0];
-  MCOR_TRY(
-    options->dimension == 2 && some && constant == 0 ? mcor_refuse_plane(context, input) : MCOR_OK);
-  if (options->dimension == 0 &&
-    constant != 1) /* a line or a point is not known to be in a plane */
-  {
-    *plane = (mcor_plane){ 0 };
-  }
-  return MCOR_OK;
+  mcor_spread spread = mcor_spread_of(input);
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.low, 6));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.high, 6));
+  context->plane = mcor_plane_of(&spread, options->dimension);
+  const bool some = spread.low[0] <= spread.high[0] || spread.low[3] <= spread.high[3];
+  const bool refused = options->dimension == 2 ? some : mcor_is_apart(&spread);
+  return refused && !mcor_is_plane(context) ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;
 }
 
 /* ---- Turning ---- */
@@ -179,8 +233,7 @@ static void mcor_flatten_doubles(void* data, int slice, int64_t first, int64_t l
   (void)slice;
 }
 
-/* Sides of a box: of a plane inside all, else nothing. */
-static void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6])
+void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6])
 {
   bool has = false;
   double sides[6];
@@ -256,6 +309,12 @@ mcor_status mcor_flatten(
   {
     o->periodic[i] = i < 4 ? options->periodic[2 * mcor_plane_axis(plane, i / 2) + i % 2] : 0;
   }
+  if (options->globals)
+  {
+    flat->globals = *options->globals;
+    mcor_turn_measure(&flat->globals.measured, false);
+    o->globals = &flat->globals;
+  }
   if (options->ranks)
   {
     flat->ranks = *options->ranks;
@@ -288,6 +347,22 @@ void mcor_unflatten_floats(const mcor_plane* plane, float* numbers, int64_t coun
     x[mcor_plane_axis(plane, 0)] = u;
     x[mcor_plane_axis(plane, 1)] = v;
     x[mcor_plane_axis(plane, 2)] = 0;
+  }
+}
+
+/* Beyond the plane all reaches as far as the largest support. */
+void mcor_turn_measure(mcor_measure* measure, bool back)
+{
+  const mcor_measure from = *measure;
+  const double at = back ? from.plane.at : 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int axis = mcor_plane_axis(&from.plane, a), f = back ? a : axis, t = back ? axis : a;
+    measure->low[t] = a < 2 ? from.low[f] : at - from.support_max;
+    measure->high[t] = a < 2 ? from.high[f] : at + from.support_max;
+    measure->x_low[t] = a < 2 ? from.x_low[f] : at;
+    measure->x_high[t] = a < 2 ? from.x_high[f] : at;
+    measure->edge[t] = from.edge[f];
   }
 }
 

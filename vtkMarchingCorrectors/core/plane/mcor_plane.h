@@ -17,6 +17,7 @@ typedef struct mcor_flat
 {
   mcor_input input;
   mcor_options options;
+  mcor_globals globals;
   mcor_ranks ranks;
   void* positions;
 } mcor_flat;
@@ -32,6 +33,10 @@ mcor_status mcor_flatten(
 /* Points turned likewise, in *flat, to be freed: those off the plane become NaN. */
 mcor_status mcor_flatten_points(mcor_context* context, const mcor_array* points, int64_t count,
   mcor_array* turned, double** flat);
+/* The sides of a box, turned: of a plane inside all, else nothing. */
+void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
+/* What is measured over all particles, turned or turned back. */
+void mcor_turn_measure(mcor_measure* measure, bool back);
 /* Turns the numbers of the lattice and the extent back. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
 

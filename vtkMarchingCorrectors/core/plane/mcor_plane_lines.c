@@ -118,8 +118,23 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   return true;
 }
 
-/* Length, and the area that lines enclose if all are closed, about one of the points. u, v: the axes of the
- * plane. */
+/* Of what is filled. */
+static double mcor_filled_area(const mcor_surface* surface, int u, int v)
+{
+  const double* x = surface->points;
+  double area = 0;
+  for (int64_t t = 0; t < surface->triangle_count; ++t)
+  {
+    const double *a = x + 3 * (int64_t)surface->triangles[3 * t],
+                 *b = x + 3 * (int64_t)surface->triangles[3 * t + 1],
+                 *c = x + 3 * (int64_t)surface->triangles[3 * t + 2];
+    area += 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (c[u] - a[u]) * (b[v] - a[v]));
+  }
+  return area;
+}
+
+/* Length, and the area of what is filled, or that lines enclose if all are closed, about one of the points.
+ * u, v: the axes of the plane. */
 static void mcor_measure_lines(mcor_surface* surface, int u, int v)
 {
   mcor_statistics* s = &surface->statistics;
@@ -140,7 +155,7 @@ static void mcor_measure_lines(mcor_surface* surface, int u, int v)
     }
   }
   s->is_closed = closed;
-  s->area = closed ? s->area : 0;
+  s->area = surface->band_value ? mcor_filled_area(surface, u, v) : closed ? s->area : 0;
 }
 
 mcor_status mcor_join_lines(
@@ -187,21 +202,6 @@ static void mcor_keep_filled(mcor_surface* surface)
     surface->triangle_keys = NULL;
   }
   surface->triangle_count = count;
-}
-
-/* Of what is filled, about one of the points. */
-static double mcor_filled_area(const mcor_surface* surface)
-{
-  const double* x = surface->points;
-  double area = 0;
-  for (int64_t t = 0; t < surface->triangle_count; ++t)
-  {
-    const double *a = x + 3 * (int64_t)surface->triangles[3 * t],
-                 *b = x + 3 * (int64_t)surface->triangles[3 * t + 1],
-                 *c = x + 3 * (int64_t)surface->triangles[3 * t + 2];
-    area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
-  }
-  return area;
 }
 
 /* Of triangles in the plane. */
@@ -251,12 +251,8 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   }
   mcor_free_joining(&joining);
   MCOR_TRY(status);
-  mcor_measure_lines(surface, 0, 1);
   mcor_keep_filled(surface);
-  if (surface->band_value)
-  {
-    surface->statistics.area = mcor_filled_area(surface);
-  }
+  mcor_measure_lines(surface, 0, 1);
   mcor_unflatten_doubles(plane, surface->points, surface->point_count, plane->at);
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
   mcor_unflatten_floats(plane, surface->normals, surface->point_count);

@@ -1,0 +1,323 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Lines of two dimensions against a reference of all squares. */
+
+#include "plane_reference.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of particles that the field's set stands for. */
+static int64_t compare(
+  mcor_context* context, const mcor_input* input, const plane_field* field, int closed)
+{
+  const double iso = field->options->iso_values[0];
+  mcor_surface surface = core_extract(context, input, field->options);
+  const int64_t edges = plane_compare(field, iso, &surface);
+  plane_check_lines(field, iso, &surface, closed);
+  mcor_free_surface(&surface);
+  return edges;
+}
+
+static int64_t compare_set(
+  mcor_context* context, const core_set* set, const mcor_options* options, int axis, int closed)
+{
+  const mcor_input input = core_input(set);
+  const plane_field field = { set, options, axis };
+  return compare(context, &input, &field, closed);
+}
+
+static void test_lines_are_those_of_the_field(void** state)
+{
+  const double isos[3] = { 0.5, 0.4, 0.45 };
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    for (int f = 0; f < 3; ++f)
+    {
+      const int axis = (k + f) % 3;
+      core_set set = plane_make(12, 0.3, 1.4, axis, 10.0 * axis - 7, (uint64_t)(5 + k));
+      for (int64_t i = 0; i < set.count; ++i)
+      {
+        set.scalar[i] = f == MCOR_SUM ? 1 + 0.05 * set.scalar[i] : set.scalar[i];
+      }
+      mcor_options options = plane_options(&isos[f]);
+      options.sph_kernel = (mcor_sph_kernel)k;
+      options.field = (mcor_field)f;
+      options.h_scale = k == 3 ? 0.75 : 1;
+      CORE_CHECK(compare_set(*state, &set, &options, axis, f == MCOR_WEIGHT_SUM) > 20, "few edges");
+      options.precision = MCOR_FLOAT64;
+      CORE_CHECK(compare_set(*state, &set, &options, axis, f == MCOR_WEIGHT_SUM) > 20, "few edges");
+      core_free_set(&set);
+    }
+  }
+}
+
+/* 1 / sum W, with own smoothing lengths before the h scale. */
+static void compute_volumes(core_set* set, mcor_sph_kernel kernel, int axis)
+{
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    const double h = set->smoothing_length[i];
+    double sum = 0;
+    for (int64_t j = 0; j < set->count; ++j)
+    {
+      const double *x = set->position + 3 * i, *y = set->position + 3 * j;
+      const double d[3] = { x[(axis + 1) % 3] - y[(axis + 1) % 3],
+        x[(axis + 2) % 3] - y[(axis + 2) % 3], 0 };
+      sum += plane_norm(kernel) * h * oracle_kernel_value((oracle_kernel)kernel, h, d, NULL);
+    }
+    set->volume[i] = 1 / sum;
+  }
+}
+
+static core_set copy_fluid(const core_set* set)
+{
+  core_set fluid = core_make_set(set->count);
+  fluid.count = 0;
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    memcpy(fluid.position + 3 * fluid.count, set->position + 3 * i, 3 * sizeof(double));
+    fluid.smoothing_length[fluid.count] = set->smoothing_length[i];
+    fluid.volume[fluid.count] = set->volume[i];
+    fluid.scalar[fluid.count] = set->scalar[i];
+    fluid.count += !set->solid[i];
+  }
+  return fluid;
+}
+
+/* Anything: noise, walls in all ways, computed volumes, all options that change where lines are. */
+static void test_random_lines(void** state)
+{
+  const double shares[3] = { 0, 0.5, 0.8 };
+  uint64_t seed = 11;
+  for (int round = 0; round < 60; ++round)
+  {
+    const int axis = (int)(random_bits(&seed) % 3);
+    core_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
+      axis, 3 * random_unit(&seed), seed);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.scalar[i] = 2 * random_unit(&seed) - 1;
+      set.solid[i] = random_bits(&seed) % 6 == 0;
+    }
+    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
+    mcor_options options = plane_options(&iso);
+    set.has_solids = round % 4 < 2;
+    options.sph_kernel = (mcor_sph_kernel)(random_bits(&seed) % MCOR_SPH_KERNEL_COUNT);
+    options.field = (mcor_field)(round % 3);
+    options.cube_size_factor = 0.3 + 0.5 * random_unit(&seed);
+    options.h_scale = round % 8 == 6 ? 0.8 : 1;
+    options.vertex_threshold = round & 1 ? 0.5 : 0;
+    options.topology = round & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    options.boundary_detection =
+      round % 5 == 3 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
+    options.wall_share = round % 3 != MCOR_WEIGHT_SUM ? shares[round / 4 % 3] : 0;
+    mcor_input input = core_input(&set);
+    core_set fluid = copy_fluid(&set);
+    if (round % 7 == 2)
+    {
+      compute_volumes(&set, options.sph_kernel, axis);
+      compute_volumes(&fluid, options.sph_kernel, axis);
+      input.volume = (mcor_array){ 0 };
+    }
+    input.ignore_solids = round % 8 == 1;
+    const bool fluid_alone =
+      set.has_solids && (input.ignore_solids || options.field == MCOR_WEIGHT_SUM);
+    const plane_field field = { fluid_alone ? &fluid : &set, &options, axis };
+    compare(*state, &input, &field, options.field == MCOR_WEIGHT_SUM);
+    core_free_set(&fluid);
+    core_free_set(&set);
+  }
+}
+
+/* A smoothing length that is estimated, of particles that are about one apart. */
+static void test_estimated_length(void** state)
+{
+  const double iso = 0.5;
+  core_set set = plane_make(16, 0.1, 1, 1, 2, 8);
+  mcor_options options = plane_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  mcor_input input = core_input(&set);
+  input.smoothing_length = (mcor_array){ 0 };
+  input.estimate_smoothing_length = 1;
+  mcor_surface surface = core_extract(*state, &input, &options);
+  const double h = surface.statistics.smoothing_length_min;
+  CORE_CHECK(fabs(h - 1.3) < 0.1, "smoothing length %g", h);
+  mcor_free_surface(&surface);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] = h;
+  }
+  const plane_field field = { &set, &options, 1 };
+  CORE_CHECK(compare(*state, &input, &field, 1) > 60, "few edges");
+  core_free_set(&set);
+}
+
+/* The set and its images around it. */
+static core_set with_images(const core_set* set, int axis, double period)
+{
+  core_set all = core_make_set(9 * set->count);
+  for (int64_t i = 0; i < all.count; ++i)
+  {
+    const int64_t from = i % set->count, image = i / set->count;
+    memcpy(all.position + 3 * i, set->position + 3 * from, 3 * sizeof(double));
+    all.position[3 * i + (axis + 1) % 3] += period * (double)(image % 3 - 1);
+    all.position[3 * i + (axis + 2) % 3] += period * (double)(image / 3 - 1);
+    all.smoothing_length[i] = set->smoothing_length[from];
+    all.volume[i] = set->volume[from];
+    all.scalar[i] = set->scalar[from];
+  }
+  return all;
+}
+
+static int compare_points(const void* x, const void* y)
+{
+  const double *a = x, *b = y;
+  for (int i = 0; i < 3; ++i)
+  {
+    if (fabs(a[i] - b[i]) > 1e-4)
+    {
+      return a[i] < b[i] ? -1 : 1;
+    }
+  }
+  return 0;
+}
+
+/* In a period the lines are those of all images there, which are those of the reference. */
+static void test_periods(void** state)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double period = 12, iso = axis == 2 ? 0.1 : 0.95;
+    core_set set = plane_make(12, 0.4, 1.2, axis, 1, (uint64_t)(3 + axis));
+    uint64_t seed = 4;
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.scalar[i] = 2 * random_unit(&seed) - 1;
+    }
+    core_set all = with_images(&set, axis, period);
+    mcor_options options = plane_options(&iso);
+    options.field = axis == 2 ? MCOR_SHEPARD : MCOR_WEIGHT_SUM;
+    options.sph_kernel = axis == 1 ? MCOR_M_PRIME_4 : MCOR_QUINTIC_SPLINE;
+    options.cube_size = 0.5;
+    mcor_input images = core_input(&all), input = core_input(&set);
+    const plane_field field = { &all, &options, axis };
+    compare(*state, &images, &field, 0);
+    mcor_surface surface[2];
+    for (int periodic = 0; periodic < 2; ++periodic)
+    {
+      double* sides = periodic ? options.periodic : options.box;
+      memset(options.box, 0, sizeof options.box);
+      for (int i = 0; i < 6; ++i)
+      {
+        sides[i] = i / 2 == axis ? (periodic ? 0 : i % 2 ? INFINITY : -INFINITY) : i % 2 ? 6 : -6;
+      }
+      surface[periodic] = core_extract(*state, periodic ? &input : &images, &options);
+      qsort(surface[periodic].points, (size_t)surface[periodic].point_count, 3 * sizeof(double),
+        compare_points);
+    }
+    assert_int_equal(surface[0].point_count, surface[1].point_count);
+    CORE_CHECK(surface[0].point_count > 20, "%lld points", (long long)surface[0].point_count);
+    for (int64_t p = 0; p < surface[0].point_count; ++p)
+    {
+      const double *a = surface[0].points + 3 * p, *b = surface[1].points + 3 * p;
+      CORE_CHECK(fabs(a[0] - b[0]) < 1e-4 && fabs(a[1] - b[1]) < 1e-4 && fabs(a[2] - b[2]) < 1e-4,
+        "point %lld: %g %g %g, not %g %g %g", (long long)p, b[0], b[1], b[2], a[0], a[1], a[2]);
+    }
+    CORE_CHECK(fabs(surface[0].statistics.length - surface[1].statistics.length) < 1e-3,
+      "length %g, not %g", surface[1].statistics.length, surface[0].statistics.length);
+    mcor_free_surface(&surface[0]);
+    mcor_free_surface(&surface[1]);
+    core_free_set(&all);
+    core_free_set(&set);
+  }
+}
+
+/* Squares of several sizes: particles whose smoothing lengths grow along u, or that are mixed. Free surfaces are
+ * closed across levels. */
+static void test_adaptive_lines(void** state)
+{
+  uint64_t seed = 21;
+  int deep = 0;
+  for (int round = 0; round < 30; ++round)
+  {
+    const int axis = round % 3, mixed = round % 2;
+    core_set set = core_make_set(220);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      double* x = set.position + 3 * i;
+      const double u = random_unit(&seed), v = random_unit(&seed);
+      const double h = pow(mixed ? 16 : 24, mixed ? random_unit(&seed) : u);
+      x[axis] = 3;
+      x[(axis + 1) % 3] = (mixed ? 40 : 30 * pow(24, u)) * (mixed ? u : 0.1);
+      x[(axis + 2) % 3] = 3 + 2.5 * (mixed ? 8 : h) * (v - 0.5);
+      set.smoothing_length[i] = h;
+      set.volume[i] = 0.6 * h * h;
+      set.scalar[i] = 2 * random_unit(&seed) - 1;
+      set.solid[i] = random_bits(&seed) % 6 == 0;
+    }
+    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
+    mcor_options options = plane_options(&iso);
+    options.level_limit = round % 5 == 4 ? 2 : MCOR_CUBE_LEVELS - 1;
+    set.has_solids = round % 4 == 1 && round % 3 != MCOR_WEIGHT_SUM;
+    options.sph_kernel = round % 7 == 6 ? MCOR_M_PRIME_4 : MCOR_CUBIC_SPLINE;
+    options.field = (mcor_field)(round % 3);
+    options.cube_size_factor = 0.4 + 0.4 * random_unit(&seed);
+    options.vertex_threshold = round & 1 ? 0.5 : 0;
+    options.topology = round & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    CORE_CHECK(compare_set(*state, &set, &options, axis, options.field == MCOR_WEIGHT_SUM) > 20,
+      "round %d: few edges", round);
+    mcor_input input = core_input(&set);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    int levels = 0;
+    for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
+    {
+      levels += surface.statistics.cells_of_level[l] > 2;
+    }
+    CORE_CHECK(levels > 1, "round %d: %d levels", round, levels);
+    deep += levels > 2;
+    mcor_free_surface(&surface);
+    core_free_set(&set);
+  }
+  assert_true(deep > 10);
+}
+
+/* A point, and particles on a line, are in a plane if the caller says so. */
+static void test_points_and_rows(void** state)
+{
+  const double iso = 0.1;
+  for (int count = 1; count < 12; count += 10)
+  {
+    core_set set = core_make_set(count);
+    for (int i = 0; i < count; ++i)
+    {
+      set.position[3 * i] = i;
+      set.smoothing_length[i] = 1.3;
+      set.volume[i] = 1;
+    }
+    mcor_options options = plane_options(&iso);
+    mcor_input input = core_input(&set);
+    options.field = MCOR_WEIGHT_SUM;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.statistics.dimension, 3);
+    mcor_free_surface(&surface);
+    options.dimension = 2;
+    compare_set(*state, &set, &options, 2, 1);
+    core_free_set(&set);
+  }
+}
+
+int main(int argc, char** argv)
+{
+  if (argc > 1)
+  {
+    cmocka_set_test_filter(argv[1]);
+  }
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_lines_are_those_of_the_field),
+    cmocka_unit_test(test_random_lines), cmocka_unit_test(test_estimated_length),
+    cmocka_unit_test(test_periods), cmocka_unit_test(test_adaptive_lines),
+    cmocka_unit_test(test_points_and_rows) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -8,6 +8,7 @@ at the Kth. A file that fails is the same in every run.
 import os
 import random
 import re
+import shutil
 import unittest
 
 import binary_files
@@ -139,6 +140,27 @@ class DamagedFiles(CommandLineTest):
                 result = self.extract("--free-surface", "--quiet", *options, env=environment)
                 self.refuse(result, 1, r"the run failed: the program crashed there \(Aborted\); the OpenCL driver may be at "
                                        rf"fault, {folder}or memory ran out$")
+
+    def test_damaged_kernels(self):
+        """Files that PoCL has kept are cut off, empty, or something else: its folder is named, whatever PoCL does."""
+        whole, kept = self.directory / "whole", self.directory / "kept"
+        whole.mkdir()
+        if self.extract("--free-surface", "--device", "pocl", env={**os.environ, "POCL_CACHE_DIR": str(whole)}).returncode:
+            self.skipTest("there is no PoCL")
+        for kind, damage in (("*.so", lambda data: data[:len(data) // 2]), ("*.so", lambda _: b""),
+                             ("*.so", lambda data: b"x" * len(data)), ("*.bc", lambda data: data[:len(data) // 2]),
+                             ("*.[bs][co]", lambda _: b"")):
+            shutil.rmtree(kept, ignore_errors=True)
+            shutil.copytree(whole, kept)
+            files = list(kept.rglob(kind))
+            self.assertTrue(files)
+            for file in files:
+                file.write_bytes(damage(file.read_bytes()))
+            with self.subTest(kind):
+                result = self.extract("--free-surface", "--device", "pocl", "--quiet",
+                                      env={**os.environ, "POCL_CACHE_DIR": str(kept)})
+                self.assertEqual(result.returncode, 1)
+                self.assertRegex(result.stderr.splitlines()[-1], rf"^marching-correctors: .*remove the folder {kept}")
 
     def test_wrong_sizes(self):
         """An array of fewer entries than points never reaches the filter."""

@@ -177,6 +177,12 @@ void PrepareForEnding()
 }
 
 //------------------------------------------------------------------------------
+void KeepWatchOfCrashes()
+{
+  SetHandlersOfCrashes();
+}
+
+//------------------------------------------------------------------------------
 int Finish(int status)
 {
   FinalStatus = status;

@@ -9,6 +9,9 @@
 /// temporary files where a crash, or a signal that people and batch systems send, ends it.
 void PrepareForEnding();
 
+/// Once more, after drivers were loaded: LLVM, which PoCL brings, has handlers of its own.
+void KeepWatchOfCrashes();
+
 /// All is done: a driver that crashes later, when it is unloaded, changes this status no more.
 int Finish(int status);
 

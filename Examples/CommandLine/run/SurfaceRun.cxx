@@ -3,6 +3,7 @@
 #include "SurfaceRun.h"
 
 #include "CollectionFile.h"
+#include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -175,12 +176,24 @@ std::string ReasonForNoSurface(vtkFieldData* statistics)
   return stream.str();
 }
 
-/// The words before it come from `data`, a std::string.
-void PrintProgress(vtkObject* caller, unsigned long, void* data, void*)
+/// What is said of a run's progress.
+struct Progress
 {
+  std::string Before; ///< the words before it
+  bool IsShown;
+};
+
+void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
+{
+  KeepWatchOfCrashes();
+  auto* progress = static_cast<Progress*>(data);
+  if (!progress->IsShown)
+  {
+    return;
+  }
   auto* filter = static_cast<vtkAlgorithm*>(caller);
   const char* phase = filter->GetProgressText();
-  std::fprintf(stderr, "\r\033[K%s%3.0f %% %s", static_cast<std::string*>(data)->c_str(),
+  std::fprintf(stderr, "\r\033[K%s%3.0f %% %s", progress->Before.c_str(),
     100.0 * filter->GetProgress(), Printable(phase ? phase : "").c_str());
   std::fflush(stderr);
 }
@@ -239,23 +252,19 @@ void SetUpSurface(const Job& job, vtkPointSet* input)
 double Update(
   vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages, const std::string& before)
 {
-  std::string words = before;
-  unsigned long observed = 0;
-  if (ShowsProgress(job))
-  {
-    vtkNew<vtkCallbackCommand> observer;
-    observer->SetCallback(PrintProgress);
-    observer->SetClientData(&words);
-    observed = filter->AddObserver(vtkCommand::ProgressEvent, observer);
-  }
+  Progress progress = { before, ShowsProgress(job) };
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback(TakeProgress);
+  observer->SetClientData(&progress);
+  const unsigned long observed = filter->AddObserver(vtkCommand::ProgressEvent, observer);
   messages->Clear();
   filter->Modified();
   const auto start = std::chrono::steady_clock::now();
   filter->Update();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (ShowsProgress(job))
+  filter->RemoveObserver(observed);
+  if (progress.IsShown)
   {
-    filter->RemoveObserver(observed);
     std::fputs("\r\033[K", stderr);
   }
   const std::string error = filter->GetErrorMessage();

@@ -25,6 +25,8 @@ const char* mcor_cl_error_name(cl_int error);
 bool mcor_is_no_memory(cl_int error);
 /* Sets the sentence about a call that failed. */
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
+/* Adds to the sentence of a failure, where the device is PoCL, which of its files may be the cause. */
+void mcor_blame_files(mcor_context* context);
 
 /* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"

@@ -3,7 +3,11 @@
 
 /* What OpenCL's errors mean. */
 
+#include "mcor_cache.h"
 #include "mcor_cl_call.h"
+
+#include <stdio.h>
+#include <string.h>
 
 const char* mcor_cl_error_name(cl_int error)
 {
@@ -63,14 +67,33 @@ bool mcor_is_no_memory(cl_int error)
     error == CL_OUT_OF_HOST_MEMORY;
 }
 
+void mcor_blame_files(mcor_context* context)
+{
+  char folder[1024];
+  const size_t length = strlen(context->error);
+  if (mcor_is_pocl(&context->cl))
+  {
+    mcor_pocl_folder(folder, sizeof folder);
+    snprintf(context->error + length, sizeof context->error - length,
+      " Where a process was ended while it compiled, files may be damaged: remove the folder %s, "
+      "and try again.",
+      folder);
+  }
+}
+
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what)
 {
   const char *device = context->cl.device_name, *name = mcor_cl_error_name(error);
-  return mcor_is_no_memory(error)
+  const mcor_status status = mcor_is_no_memory(error)
     ? mcor_fail(context, MCOR_OUT_OF_CAPACITY,
         "OpenCL device %s ran out of memory: %s failed with %s (%d). Use a larger cube size, or "
         "fewer particles.",
         device, what, name, (int)error)
     : mcor_fail(context, MCOR_DEVICE_ERROR, "OpenCL device %s: %s failed with %s (%d).", device,
         what, name, (int)error);
+  if (error == CL_INVALID_KERNEL_NAME) /* all names are right */
+  {
+    mcor_blame_files(context);
+  }
+  return status;
 }

@@ -75,16 +75,7 @@ static mcor_status mcor_fail_build(
     "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
     mcor_cl_error_name(error), options, log ? log : "");
   free(log);
-  if (mcor_is_pocl(cl))
-  {
-    char folder[1024];
-    const size_t length = strlen(context->error);
-    mcor_pocl_folder(folder, sizeof folder);
-    snprintf(context->error + length, sizeof context->error - length,
-      "\nWhere a process was ended while it compiled, files may be damaged: remove the folder %s, "
-      "and try again.",
-      folder);
-  }
+  mcor_blame_files(context);
   return status;
 }
 

@@ -33,6 +33,9 @@ unsigned fuzz_byte(fuzz_bytes* bytes);
 double fuzz_scale(fuzz_bytes* bytes);
 double fuzz_positive(fuzz_bytes* bytes);
 double fuzz_value(fuzz_bytes* bytes);
+double fuzz_side(fuzz_bytes* bytes);
+
+#define FUZZ_ARRAYS 8
 
 /* One call; every array is a heap block of exactly its size. */
 typedef struct fuzz_call
@@ -41,8 +44,10 @@ typedef struct fuzz_call
   mcor_options options;
   mcor_array attributes[2];
   double iso[2];
-  void* arrays[7];
+  void* arrays[FUZZ_ARRAYS];
 } fuzz_call;
+
+double* fuzz_array(fuzz_call* call, int slot, size_t count);
 
 mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
 int fuzz_finite(const double* values, int64_t count);
@@ -53,5 +58,10 @@ void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
  * call. */
 void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
+void fuzz_check_failure(const mcor_context* context, mcor_status status);
+
+/* fuzz_plane.c. Where lines cross the free surface; and a call whose particles share a coordinate. */
+void fuzz_gauge(fuzz_bytes* bytes, const fuzz_call* call);
+void fuzz_flatten(unsigned how, fuzz_bytes* bytes, fuzz_call* call);
 
 #endif

@@ -71,7 +71,7 @@ static double fuzz_threshold(fuzz_bytes* bytes)
   return b < 252 ? values[b % 8] : b == 252 ? -1 : b == 253 ? NAN : b == 254 ? 1e30 : INFINITY;
 }
 
-static double* fuzz_array(fuzz_call* call, int slot, size_t count)
+double* fuzz_array(fuzz_call* call, int slot, size_t count)
 {
   call->arrays[slot] = malloc(count * sizeof(double) + (count == 0));
   FUZZ_CHECK(call->arrays[slot]);
@@ -198,10 +198,26 @@ static int fuzz_finite_floats(const float* values, int64_t count)
   return 1;
 }
 
+static void fuzz_check_lines(const mcor_surface* s)
+{
+  const int64_t n = s->line_count;
+  FUZZ_CHECK(n >= 0 && s->line_offsets[0] == 0 && s->line_offsets[n] == s->line_point_count);
+  for (int64_t l = 0; l < n; ++l)
+  {
+    FUZZ_CHECK(s->line_offsets[l] + 2 <= s->line_offsets[l + 1]);
+  }
+  for (int64_t i = 0; i < s->line_point_count; ++i)
+  {
+    FUZZ_CHECK(s->line_points[i] >= 0 && s->line_points[i] < s->point_count);
+  }
+  FUZZ_CHECK(s->triangle_count == 0 || s->band_value);
+}
+
 static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
 {
   const int64_t n = s->point_count;
-  FUZZ_CHECK(n >= 0 && s->triangle_count >= 0 && n <= 3 * s->triangle_count);
+  FUZZ_CHECK(n >= 0 && s->triangle_count >= 0);
+  FUZZ_CHECK(s->line_offsets || n <= 3 * s->triangle_count);
   FUZZ_CHECK(fuzz_finite(s->points, 3 * n));
   FUZZ_CHECK(fuzz_finite(s->gradients, 3 * n));
   FUZZ_CHECK(fuzz_finite_floats(s->normals, 3 * n));
@@ -226,6 +242,10 @@ static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
   {
     FUZZ_CHECK(s->nearest_particle[i] >= 0 && s->nearest_particle[i] < in->count);
   }
+  if (s->line_offsets)
+  {
+    fuzz_check_lines(s);
+  }
 }
 
 void fuzz_check_bits(const void* a, const void* b, size_t bytes)
@@ -243,6 +263,10 @@ void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
   const size_t n = (size_t)a->point_count, t = (size_t)a->triangle_count;
   fuzz_check_bits(a->points, b->points, n * 3 * sizeof(double));
   fuzz_check_bits(a->triangles, b->triangles, t * 3 * sizeof(int32_t));
+  FUZZ_CHECK(a->line_count == b->line_count && a->line_point_count == b->line_point_count);
+  fuzz_check_bits(a->line_offsets, b->line_offsets, ((size_t)a->line_count + 1) * sizeof(int64_t));
+  fuzz_check_bits(a->line_points, b->line_points, (size_t)a->line_point_count * sizeof(int32_t));
+  fuzz_check_bits(a->band_value, b->band_value, t * sizeof(double));
   fuzz_check_bits(a->normals, b->normals, n * 3 * sizeof(float));
   fuzz_check_bits(a->gradients, b->gradients, n * 3 * sizeof(double));
   fuzz_check_bits(a->weight_sum, b->weight_sum, n * sizeof(float));
@@ -433,9 +457,37 @@ static void fuzz_fail_first(const fuzz_call* call)
   mcor_free_surface(&surface);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+/* The call, one that differs in one thing, and the call again. */
+static void fuzz_calls(fuzz_call* call, unsigned change, size_t size)
 {
   static uint64_t version = 0;
+  call->input.particles_version = call->input.scalar_version = version += 2;
+  fuzz_compare(call);
+  if (size % 4 == 1)
+  {
+    mcor_release_memory(fuzz_context(call, 0));
+  }
+  fuzz_call changed = *call;
+  changed.options.iso_values = changed.iso;
+  changed.input.attributes = changed.attributes;
+  fuzz_change(change, &changed);
+  if (size % 4 == 2)
+  {
+    fuzz_fail_first(&changed);
+  }
+  fuzz_compare(&changed);
+  fuzz_compare(call);
+  for (size_t i = 0; i < FUZZ_ARRAYS; ++i)
+  {
+    if (changed.arrays[i] != call->arrays[i])
+    {
+      free(changed.arrays[i]);
+    }
+  }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
   fuzz_bytes bytes = fuzz_input = (fuzz_bytes){ data, size };
   fuzz_call call = { .iso = { 0, 0 } };
   fuzz_options(&bytes, &call);
@@ -445,26 +497,21 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   const unsigned change = fuzz_byte(&bytes) + (unsigned)size;
   const unsigned rooms = fuzz_byte(&bytes);
   fuzz_regions(rooms, &bytes, &call);
-  call.input.particles_version = call.input.scalar_version = version += 2;
-  fuzz_compare(&call);
-  if (size % 4 == 1)
-  {
-    mcor_release_memory(fuzz_context(&call, 0));
-  }
-  fuzz_call changed = call;
-  changed.options.iso_values = changed.iso;
-  changed.input.attributes = changed.attributes;
-  fuzz_change(change, &changed);
-  if (size % 4 == 2)
-  {
-    fuzz_fail_first(&changed);
-  }
-  fuzz_compare(&changed);
-  fuzz_compare(&call);
+  fuzz_calls(&call, change, size);
   fuzz_other_calls(rooms, &bytes, &call);
-  for (size_t i = 0; i < sizeof changed.arrays / sizeof changed.arrays[0]; ++i)
+  const unsigned more = fuzz_byte(&bytes);
+  if (more & 1)
   {
-    free(changed.arrays[i]);
+    fuzz_gauge(&bytes, &call);
+  }
+  if (more & 2)
+  {
+    fuzz_flatten(more >> 2, &bytes, &call);
+    fuzz_calls(&call, change, size);
+  }
+  for (size_t i = 0; i < FUZZ_ARRAYS; ++i)
+  {
+    free(call.arrays[i]);
   }
   return 0;
 }

@@ -11,7 +11,7 @@
 
 #define FUZZ_POINTS 24
 
-static double fuzz_side(fuzz_bytes* bytes)
+double fuzz_side(fuzz_bytes* bytes)
 {
   static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 1e300, -1e300 };
   const unsigned b = fuzz_byte(bytes);
@@ -44,7 +44,7 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
   }
 }
 
-static void fuzz_check_failure(const mcor_context* context, mcor_status status)
+void fuzz_check_failure(const mcor_context* context, mcor_status status)
 {
   FUZZ_CHECK(status > MCOR_OK && status < MCOR_CANCELLED && status != MCOR_DEVICE_ERROR);
   FUZZ_CHECK(mcor_last_error(context)[0] != '\0');

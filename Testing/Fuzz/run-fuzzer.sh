@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the core and the fuzz target with clang's fuzzer, address and undefined behavior sanitizers,
-# and runs them. New findings are written to BUILD_DIR/found; a finding is worth keeping in corpus/found/.
+# Builds the core, the kernels of the built-in device and the fuzz target with clang's fuzzer, address and
+# undefined behavior sanitizers, and runs them. New findings are written to BUILD_DIR/found; a finding is worth keeping in corpus/found/.
 #
 #   Testing/Fuzz/run-fuzzer.sh [SECONDS] [BUILD_DIR] [CLANG]       (60, build-fuzz, clang)
 #
@@ -27,7 +27,8 @@ fi
 
 flags="-fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer"
 cmake -S "$here/../.." -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER="$clang" \
-  -DCMAKE_C_FLAGS="$flags" -DMCOR_BUILD_VTK=OFF -DMCOR_BUILD_EXAMPLES=OFF -DMCOR_BUILD_TESTING=ON \
+  -DCMAKE_C_FLAGS="$flags" -DMCOR_AHEAD_USUAL="cubic;mprime4" -DMCOR_AHEAD_INSTRUCTIONS="V3;BASE" \
+  -DMCOR_AHEAD_FLAGS="-O1 -g -fsanitize=address,undefined -fno-omit-frame-pointer" -DMCOR_BUILD_VTK=OFF -DMCOR_BUILD_EXAMPLES=OFF -DMCOR_BUILD_TESTING=ON \
   -DMCOR_BUILD_FUZZER=ON > "$build/configure.log" || { cat "$build/configure.log"; exit 1; }
 cmake --build "$build" --target fuzz_extract > "$build/build.log" || { cat "$build/build.log"; exit 1; }
 

@@ -280,15 +280,13 @@ mcor_status mcor_read_lines(
   {
     mcor_gauge_reading* reading = &gauges->readings[l];
     bool full = false;
-    *reading = (mcor_gauge_reading){ .outside = 1 };
+    *reading = (mcor_gauge_reading){ .outside = 1, .first_crossing = gauges->crossing_count };
     for (; i < count && sorted[i].line == l; ++i)
     {
       full = full || sorted[i].place == MCOR_GAUGE_ENDS_IN;
       reading->outside = reading->outside && sorted[i].place != MCOR_GAUGE_REACHED;
       if (sorted[i].place >= 0)
       {
-        reading->first_crossing =
-          reading->crossing_count == 0 ? gauges->crossing_count : reading->first_crossing;
         reading->crossing_count++;
         gauges->crossings[gauges->crossing_count++] = sorted[i].place;
       }

@@ -494,6 +494,17 @@ class Formats(CommandLineTest):
         found = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
         self.assertEqual(found, expected)
 
+    def test_range_that_vtk_cannot_read(self):
+        """VTK writes inf as an array's range, if it is, and cannot read it; the numbers count."""
+        files.write_vtp(self.input, *files.drop_at(0))
+        text = self.input.read_text()
+        key = ('<InformationKey name="L2_NORM_RANGE" location="vtkDataArray" length="2"><Value index="0">0</Value>'
+               '<Value index="1">inf</Value></InformationKey></DataArray>')
+        self.assertIn("</DataArray>", text)
+        expected = self.succeed("--free-surface")["statistics"]["triangles"]
+        self.input.write_text(text.replace("</DataArray>", key))
+        self.assertEqual(self.succeed("--free-surface")["statistics"]["triangles"], expected)
+
     def test_damaged_pieces(self):
         path, pieces = self.write_pieces("vtp", files.write_vtp)
         pieces[1].write_text(pieces[1].read_text()[:2000])

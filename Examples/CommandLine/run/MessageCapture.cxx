@@ -49,7 +49,12 @@ void MessageCapture::DisplayText(const char* text)
 
 void MessageCapture::DisplayErrorText(const char* text)
 {
-  this->Errors.push_back(Sentence(text));
+  const std::string sentence = Sentence(text);
+  // Of an array's range, in which VTK writes inf, and cannot read it: arrays are checked when they are used.
+  if (sentence.find("reading InformationKey element") == std::string::npos)
+  {
+    this->Errors.push_back(sentence);
+  }
 }
 
 void MessageCapture::DisplayWarningText(const char* text)

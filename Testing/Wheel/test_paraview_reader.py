@@ -65,7 +65,7 @@ lowest = []
 for time in times:
     reader.UpdatePipeline(time)
     data = servermanager.Fetch(reader)
-    assert data.GetNumberOfPoints() > 1000, data
+    assert data.GetNumberOfVerts() == data.GetNumberOfPoints() > 1000, data  # bare points would not be drawn
     assert data.GetFieldData().GetArray("TimeValue").GetValue(0) == time
     lowest.append(data.GetBounds()[4])
 assert len(set(lowest)) == len(times), lowest

@@ -11,11 +11,12 @@ from ._particles import support_factor
 
 
 def to_vtk(particles):
-    """Arrays as in the file; beside them SmoothingLength as this package means it (half of the support radius, of the
-    quintic spline a third, of the quartic 2/5), Mass and ParticleType (0 fluid, 1 wall) where the file tells them in another way."""
+    """A vertex of each, as ParaView draws no bare points, and arrays as in the file; beside them SmoothingLength as this
+    package means it (half of the support radius, of the quintic spline a third, of the quartic 2/5), Mass and ParticleType
+    (0 fluid, 1 wall) where the file tells them in another way."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
     def array(values, name):
         values = np.ascontiguousarray(values)
@@ -28,6 +29,9 @@ def to_vtk(particles):
     data, points = vtkPolyData(), vtkPoints()
     points.SetData(array(positions if positions.dtype.kind == "f" else positions.astype(float), "Points"))
     data.SetPoints(points)
+    vertices, numbers = vtkCellArray(), np.arange(len(positions) + 1)
+    vertices.SetData(array(numbers, "Offsets"), array(numbers[:-1], "Numbers"))
+    data.SetVerts(vertices)
     arrays = {name: particles.arrays[name] for name in particles.arrays}
     h = particles.quantity("smoothing_length")
     if h is not None:

@@ -16,21 +16,10 @@
  *     sum                 sum_j V_j A_j W(x - x_j, s h_j)       (ShepardNormalizationOff)
  *     weight sum          sum_j V_j     W(x - x_j, s h_j)       (FreeSurfaceOn)
  *
- * where s is HScaleFactor. The algorithm has seven phases:
- *
- * -# Input. The arrays are found (see below), checked for NaN, infinite and illegal values, and sent
- *    to the OpenCL device.
- * -# Search grid. The particles are sorted into a regular grid, which is kept for other scalars and
- *    iso values of the same particles. Volumes are computed if no array gives them.
- * -# Seeds. Cells through which the surface may pass are selected, see SeedMode.
- * -# Extraction. Marching Cubes on the seed cells, continued through intersected faces until no new
- *    cell appears. Each node is evaluated once; each intersected lattice edge gets one vertex.
- * -# Correction. Newton's method along the lattice edge, safeguarded by the edge's bracket, until the
- *    field is within Tolerance of the iso value. Normals and all other point arrays are evaluated at
- *    the vertices.
- * -# Trimming. Cells with a node below NodeThreshold are discarded, and triangles are trimmed where the
- *    weight sum, or the boundary eigenvalue (see BoundaryDetection), is VertexThreshold.
- * -# Output. The surface is downloaded once, and becomes a vtkPolyData.
+ * where s is HScaleFactor. Cells through which the surface may pass are found (see SeedMode), Marching Cubes makes
+ * triangles there, Newton's method along each lattice edge moves the vertices until the field is within
+ * Tolerance of the iso value, and what is beyond the fluid is trimmed (see NodeThreshold, VertexThreshold and
+ * BoundaryDetection). All other point arrays are evaluated at the vertices.
  *
  * See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH Data" by
  * Schindler, Fuchs, Waser, Peikert. 6th International SPHERIC Workshop, Hamburg, 2011.
@@ -48,22 +37,10 @@
  * velocities, the first vector, or the first scalar of the particles that varies; with several iso
  * values, the iso value. The output field data holds "IsoValues" and the arrays of the input's.
  *
- * GetRunStatistics() holds one array for each statistic of the run: "Device", "Platform",
- * "FluidParticles", "SolidParticles", "VirtualCells", "SeedCells", "SeedCellsNotIntersected",
- * "LatticeOrigin" (in cubes), "LatticeCells", "CellsUsed", "AmbiguousFaces", "JoinedFaces",
- * "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area" and, of a closed surface, "Volume",
- * "CapTriangles" (with Capping), "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax",
- * "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean",
- * "IterationsMax", "NewtonEvaluations", "ResidualMax" (unit of the scalar, at positions that the device
- * has rounded by up to "PositionError"), "TrimVertices", "TrimVerticesLinear", "SmoothingLengthRange",
- * "ScalarRange" (not for the free surface), and for each parameter: "IsoValues", "Field", "Scalar",
- * "SmoothingLengthArray", "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength", "VolumeArray",
- * "MassArray" or "Mass", "DensityArray" or "Density", "FluidArray", "FluidValue", "IgnoreSolids",
- * "WallShare", "Kernel", "SeedMode", "Topology", "Precision", "CubeSize", "Box", "PeriodicBounds" and
- * "Capping" (if used), "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection",
- * "VertexThreshold", "Tolerance", "IterationLimit", "Preview". See mcor_statistics in mcor.h. The output
- * and these statistics depend only on the input and the properties, except for the costs of the run, and
- * for the seed cells, which include cells that KeepDeviceData has kept.
+ * GetRunStatistics() holds an array for each statistic of the run that mcor_statistics in mcor.h describes
+ * ("SeedCells", "Triangles", "Area", "CorrectionMax", ...), "Device" and "Platform", and for each parameter the
+ * value in use. The output and these statistics depend only on the input and the properties, except for the
+ * costs of the run, and for the seed cells, which include cells that KeepDeviceData has kept.
  *
  * With MPI, if the Controller has more than one process, the processes share the surface. All of them
  * update, each with some of the particles (without those that vtkGhostType marks as duplicates) or none.

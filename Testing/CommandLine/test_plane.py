@@ -1,8 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Two dimensions by the program marching-correctors: test_plane.py PROGRAM PRELOAD."""
+import base64
+import csv
 import math
 import re
+import struct
+import zlib
 
 import particle_files as files
 from command_line_test import ISO, CommandLineTest, main
@@ -102,6 +106,64 @@ class Plane(CommandLineTest):
         self.assertRegex(result.stdout, r"points +31, (1[89]|2[0-5]) of them valid")
         away = self.run_program(self.input, self.output, "--line=-1.5,0.5,0,1.5,0.5,0", "--resolution", "31")
         self.assertRegex(away.stdout, r"points +31, 0 of them valid")
+
+    def point_values(self, name):
+        """Of an array, which is compressed behind a header of 16 bytes."""
+        kind, text = re.search(f'type="Float(32|64)" Name="{name}"[^>]*>\\s*([^<\\s]*)', self.output.read_text()).groups()
+        data = zlib.decompress(base64.b64decode(text[24:]))
+        return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", data)]
+
+    def test_values_on_a_line(self):
+        """Means of the distance from the middle are it."""
+        result = self.run_program(self.input, self.output, "--line=0.2,0.25,0.1,0.8,0.25,0.1", "--resolution", "7", "--gradients")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for i, (radius, weight) in enumerate(zip(self.point_values("Radius"), self.point_values("WeightSum"))):
+            self.assertAlmostEqual(radius, math.hypot(0.2 + 0.1 * i, 0.1), delta=0.02)
+            self.assertAlmostEqual(weight, 1, delta=0.02)
+        slopes = self.point_values("Radius_Gradient")
+        self.assertEqual(set(slopes[1::3]), {0.0})
+        self.assertGreater(min(slopes[0::3]), 0.7)
+
+    def test_tables(self):
+        """Of a film's lines, and of gauges in their plane."""
+        files.write_pvd(self.directory / "steps.pvd", [("0", "particles.vtp"), ("1", "particles.vtp")])
+        table = self.directory / "numbers.csv"
+        result = self.run_program("steps.pvd", "film_%d.vtp", "--free-surface", "--numbers", table)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with open(table, encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        self.assertEqual(len(rows), 2)
+        for row in rows:
+            self.assertAlmostEqual(float(row["area"]), 4, delta=0.1)
+        result = self.run_program(self.input, table, "--gauge", "up=0,0.25,-2:0,0.25,2")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with open(table, encoding="utf-8", newline="") as stream:
+            row, = csv.DictReader(stream)
+        self.assertEqual((row["gauge"], row["state"]), ("up", "wet"))
+        self.assertAlmostEqual(float(row["last"]), 3, delta=0.05)
+
+    def test_adaptive(self):
+        """Particles twice as far apart in a square beside: lines that are as long, on squares of two sizes."""
+        step, lengths = 4 * files.SPACING, self.arrays["SmoothingLength"]
+        coarse = [(4 + i * step, 0.25, k * step) for k in range(-4, 5) for i in range(9)]
+        self.points = self.points + coarse
+        self.arrays = {"SmoothingLength": lengths + [1.3 * step] * len(coarse),
+                       "Volume": [files.SPACING ** 2] * len(lengths) + [step ** 2] * len(coarse)}
+        files.write_vtp(self.input, self.points, self.arrays)
+        fine = self.succeed("--free-surface", "--cubes", "uniform")["statistics"]
+        run = self.succeed("--free-surface")["statistics"]
+        self.assertEqual((run["lines"], len(run["cells_of_level"]), fine["lines"]), (2, 3, 2))
+        self.assertGreater(min(run["cells_of_level"][0::2]), 50)
+        self.assertLess(2 * run["cells_of_level"][2], fine["cells_used"] - run["cells_of_level"][0])
+        self.assertAlmostEqual(run["length"], fine["length"], delta=0.1)
+        self.assertAlmostEqual(run["area"], fine["area"], delta=0.2)
+
+    def test_walls_in_another_plane(self):
+        self.arrays["Kind"] = [int(z < -0.8) for _, _, z in self.points]
+        self.points = [(x, 0.5 if z < -0.8 else y, z) for x, y, z in self.points]
+        files.write_vtp(self.input, self.points, self.arrays)
+        self.refuse(self.extract("--free-surface", "--fluid", "Kind=0"), 1,
+                    "fluid particles have y = 0.25, but the solid ones have 0.5")
 
     def test_filled_in_space(self):
         files.write_vtp(self.input, *files.lattice())

@@ -143,7 +143,7 @@ class Plane(CommandLineTest):
         self.assertAlmostEqual(float(row["last"]), 3, delta=0.05)
 
     def test_adaptive(self):
-        """Particles twice as far apart in a square beside: lines that are as long, on squares of two sizes."""
+        """Particles four times as far apart in a square beside: lines that are as long, on squares of two sizes."""
         step, lengths = 4 * files.SPACING, self.arrays["SmoothingLength"]
         coarse = [(4 + i * step, 0.25, k * step) for k in range(-4, 5) for i in range(9)]
         self.points = self.points + coarse

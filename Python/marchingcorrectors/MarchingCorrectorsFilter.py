@@ -395,7 +395,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
                       "minutes and much memory. A larger cube size takes less; the run can be cancelled.", "Warning")
         try:
             self._call_core(particles, arguments, surface)
-            self.summarize(arguments, surface)
+            self.summarize(arguments, particles.iso_value_name, surface)
             for sentence in left_out(surface, particles):
                 self._say(sentence, "Warning")
             for kind, sentence in describe_warnings(arguments, surface).items():

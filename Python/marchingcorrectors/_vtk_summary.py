@@ -81,16 +81,17 @@ class Summary:
     """Of the last run; the part of the filter that tells about it."""
 
     def clear_summary(self):
-        self.FluidScalarRange, self.UsedIsoValues = (0.0, 0.0), ""
+        self.FluidScalarRange, self.UsedIsoValues, self.IsoValueArrayName = (0.0, 0.0), "", ""
         self.UsedSmoothingLength, self.UsedVolume = "", ""
         self.UsedCubeSize = self.EstimatedCells = 0.0
         self.SurfaceMeasures = ""
 
-    def summarize(self, arguments, surface):
+    def summarize(self, arguments, iso_value_name, surface):
         given, options, statistics = arguments.input, arguments.options, surface.statistics
         if options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
             self.FluidScalarRange = (statistics.scalar_min, statistics.scalar_max)
         self.UsedIsoValues = ", ".join(f"{options.iso_values[i]:g}" for i in range(options.iso_count))
+        self.IsoValueArrayName = iso_value_name if options.iso_value else ""
         self.UsedSmoothingLength = describe_smoothing_length(given, statistics)
         self.UsedVolume, self.UsedCubeSize = describe_volume(given), statistics.cube_size
         self.SurfaceMeasures = describe_measures(statistics)
@@ -100,6 +101,9 @@ class Summary:
 
     def GetUsedIsoValues(self):
         return self.UsedIsoValues
+
+    def GetIsoValueArrayName(self):
+        return self.IsoValueArrayName
 
     def GetUsedSmoothingLength(self):
         return self.UsedSmoothingLength

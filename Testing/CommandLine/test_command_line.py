@@ -253,7 +253,7 @@ class BadData(CommandLineTest):
         temporary = self.directory / "temporary"
         temporary.mkdir()
         environment = {k: v for k, v in os.environ.items()
-                       if k not in ("POCL_CACHE_DIR", "XDG_CACHE_HOME")}
+                       if k not in ("POCL_CACHE_DIR", "XDG_CACHE_HOME", "MCOR_DEVICE")}
         environment.update({"HOME": str(self.input), "TMPDIR": str(temporary)})
         result = self.run_program("--list-devices", env=environment)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
@@ -264,6 +264,7 @@ class BadData(CommandLineTest):
     def test_no_driver(self):
         """The ICD loader of Debian then finds no driver at all: the built-in device needs none, nor a home."""
         environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere"), "HOME": "/nonexistent"}
+        environment.pop("MCOR_DEVICE", None)
         self.refuse_with("were not compiled", *ISO, "--precision", "double", env=environment)
         listed = self.run_program("--list-devices", env=environment)
         self.assertRegex(listed.stdout, r"^0: built in: this CPU.*\n$")

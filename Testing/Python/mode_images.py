@@ -46,6 +46,7 @@ def write_square():
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(os.path.join(OUTPUT, "square.vtp"))
     writer.SetInputData(square)
+    writer.SetDataModeToBinary()
     writer.Write()
     return writer.GetFileName()
 

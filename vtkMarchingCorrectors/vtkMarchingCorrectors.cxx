@@ -25,10 +25,8 @@
 static_assert(static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) == MCOR_MAGNITUDE,
   "the filter's numbers are the core's");
 
-//------------------------------------------------------------------------------
 vtkStandardNewMacro(vtkMarchingCorrectors);
 
-//------------------------------------------------------------------------------
 vtkMarchingCorrectors::vtkMarchingCorrectors()
 {
   this->SharesRuns = true;
@@ -40,21 +38,18 @@ vtkMarchingCorrectors::vtkMarchingCorrectors()
 
 vtkMarchingCorrectors::~vtkMarchingCorrectors() = default;
 
-//------------------------------------------------------------------------------
 vtkMTimeType vtkMarchingCorrectors::GetMTime()
 {
   return std::max({ this->Superclass::GetMTime(), this->ContourValues->GetMTime(),
     this->FreeSurfaceValues->GetMTime() });
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::SetFreeSurfaceValue(double value)
 {
   this->FreeSurfaceValues->SetNumberOfContours(1);
   this->FreeSurfaceValues->SetValue(0, value);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::SetSolids(int solids)
 {
   const int legal = std::min(std::max<int>(solids, SOLIDS_WEIGHT), static_cast<int>(SOLIDS_AUTO));
@@ -66,7 +61,6 @@ void vtkMarchingCorrectors::SetSolids(int solids)
   }
 }
 
-//------------------------------------------------------------------------------
 // What is not a number, as an empty row of a panel's list, is none.
 std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrectorsInput& input)
 {
@@ -89,27 +83,23 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrec
   return list;
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::SetPanelBoxPosition(double x, double y, double z)
 {
   const double* b = this->Box;
   this->SetBox(x, x + b[1] - b[0], y, y + b[3] - b[2], z, z + b[5] - b[4]);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::SetPanelBoxLength(double x, double y, double z)
 {
   const double* b = this->Box;
   this->SetBox(b[0], b[0] + x, b[2], b[2] + y, b[4], b[4] + z);
 }
 
-//------------------------------------------------------------------------------
 const char* vtkMarchingCorrectors::GetOutputClassName(const char*)
 {
   return "vtkPolyData";
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 {
   this->Superclass::FillOptions(options);
@@ -150,7 +140,6 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.iso_value = this->ComputeScalars;
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
 {
   this->Superclass::FillChoice(choice);
@@ -161,7 +150,6 @@ void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkP
   choice.ComputeScalars = this->ComputeScalars != 0;
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::FillRequests(
   vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
 {
@@ -169,7 +157,6 @@ void vtkMarchingCorrectors::FillRequests(
   choice.ScalarDot = this->FindRequest(1, particles);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 {
   this->ClearSummary();
@@ -220,7 +207,6 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   }
 }
 
-//------------------------------------------------------------------------------
 // What an observer of the progress may change is read before the run.
 void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
@@ -250,7 +236,6 @@ void vtkMarchingCorrectors::Extract(
   mcor_free_surface(&surface);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
   const mcor_surface& surface, const mcor_input& core, const mcor_options& options)
 {
@@ -266,7 +251,6 @@ void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::ClearSummary()
 {
   std::fill_n(this->FluidScalarRange, 2, 0.0);
@@ -279,7 +263,6 @@ void vtkMarchingCorrectors::ClearSummary()
   this->EstimatedCells = 0.0;
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::WarnOfHugeRun()
 {
   if (this->EstimatedCells >= vtkMarchingCorrectorsHugeCells)
@@ -290,7 +273,6 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
   }
 }
 
-//------------------------------------------------------------------------------
 vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
 {
   if (this->IsShared())
@@ -334,7 +316,6 @@ vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
   return *this;
 }
 
-//------------------------------------------------------------------------------
 // What is known does not wait for the rest: the range needs no smoothing length, the number of cells
 // no scalar. Of several blocks the first one's iso value.
 void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
@@ -365,7 +346,6 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
   const mcor_options& options, const mcor_statistics& statistics)
 {
@@ -382,7 +362,6 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
   this->SurfaceMeasures = vtkMarchingCorrectorsDescribeMeasures(statistics);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -131,7 +131,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
 
-    # -- as every poly data algorithm ---------------------------------------------------------------
+    # -- as every poly data algorithm --
 
     def SetInputData(self, *arguments):
         self.SetInputDataObject(*arguments)
@@ -157,7 +157,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             info.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance() if blocks else vtkPolyData())
         return 1
 
-    # -- properties that are more than a value ------------------------------------------------------
+    # -- properties that are more than a value --
 
     def SetValue(self, i, value):
         self._contours(self.ContourValues.SetValue, i, value)
@@ -266,7 +266,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         lines.append(f"  Solids: {self.GetSolids()}")
         return "\n".join(lines) + "\n"
 
-    # -- a run --------------------------------------------------------------------------------------
+    # -- a run --
 
     def RequestData(self, request, inInfo, outInfo):
         data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)

@@ -163,7 +163,7 @@ class Particles:
         if self.choice.InterpolateAttributes:
             self.collect_attributes(taken + [self.iso_value_name] * bool(self.choice.ComputeScalars))
 
-    # -- arrays -------------------------------------------------------------------------------------
+    # -- arrays --
 
     def list_point_arrays(self):
         names = [name_of(self.data.GetAbstractArray(i)) for i in range(self.data.GetNumberOfArrays())]
@@ -274,7 +274,7 @@ class Particles:
         found = None if self.fluid is not None else describe_unused_types(self.data)
         return found[0] if found else ""
 
-    # -- for the core -------------------------------------------------------------------------------
+    # -- for the core --
 
     def arguments(self):
         result = Arguments(to_numpy(self.positions))

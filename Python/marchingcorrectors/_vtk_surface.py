@@ -116,7 +116,7 @@ def left_out(surface, particles):
                    "out of the surface. Correct its values, or exclude it.")
 
 
-# -- field data -------------------------------------------------------------------------------------
+# -- field data --
 
 def add_real(data, name, *values):
     array = vtkDoubleArray()

@@ -29,7 +29,7 @@ static int node_kind(int node)
   return (p.at[0] == 1) + (p.at[1] == 1) + (p.at[2] == 1);
 }
 
-/* ---- sets of split faces and edges ----------------------------------------------------------- */
+/* ---- sets of split faces and edges ---- */
 
 /* Node under one of the 48 symmetries of the cube. */
 static int turned(int node, int symmetry)
@@ -124,7 +124,7 @@ int core_list_splits(uint32_t splits[CORE_SPLIT_CLASSES])
   return count;
 }
 
-/* ---- what a cell's surface must look like ----------------------------------------------------- */
+/* ---- what a cell's surface must look like ---- */
 
 static int is_node(uint32_t split, int node)
 {

@@ -208,7 +208,7 @@ int CheckPart(const Case& tried, int part, vtkPolyData* particles, const Result&
   return problem.empty() ? 0 : 1;
 }
 
-// ---- shifts --------------------------------------------------------------------------------------
+// ---- shifts ----
 
 constexpr double Cube = 0.05, Period[6] = { -1.0, 1.0, 0.0, 0.0, -1.0, 0.5 };
 

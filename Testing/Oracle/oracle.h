@@ -120,7 +120,7 @@ extern "C"
    * point: relative errors of a few units in W and in the offset to each particle. */
   double oracle_rounding(const oracle_field* field, const double point[3], double unit);
 
-  /* ---- the lattice ------------------------------------------------------------------------- */
+  /* ---- the lattice ---- */
 
   enum
   {

@@ -14,7 +14,7 @@ static int adaptive_above(const oracle_adaptive* adaptive, int64_t node)
   return adaptive->nodes.flags[node] & ORACLE_NODE_ABOVE;
 }
 
-/* ---- edges ------------------------------------------------------------------------------------ */
+/* ---- edges ---- */
 
 /* Of the four quarters around an edge, which ones a cell takes: its middle, but a cell whose face the
  * edge runs across takes two. */
@@ -68,7 +68,7 @@ static int64_t adaptive_edge_between(
   return *index;
 }
 
-/* ---- faces ------------------------------------------------------------------------------------ */
+/* ---- faces ---- */
 
 /* Nodes of a cell around a square of its face: towards -axis or +axis, with the lowest corner at (u,
  * v) and 1 or 2 half-edges wide; counter-clockwise seen from outside. Returns how many. */
@@ -286,7 +286,7 @@ static void adaptive_close_loops(
   adaptive->triangle_count += cell->triangles;
 }
 
-/* ---- cells ------------------------------------------------------------------------------------ */
+/* ---- cells ---- */
 
 /* Fills in what the nodes say; 0 where the surface does not cross the cell, or cannot. */
 static int adaptive_judge(const oracle_adaptive* adaptive, adaptive_cell* cell)

@@ -15,7 +15,7 @@ static int64_t adaptive_brick_size(int level)
   return (int64_t)ADAPTIVE_BRICK << level;
 }
 
-/* ---- levels from particles ------------------------------------------------------------------- */
+/* ---- levels from particles ---- */
 
 /* One descent from a box around everything: with all particles that reach the brick. */
 typedef struct adaptive_descent
@@ -82,7 +82,7 @@ static void adaptive_split(oracle_adaptive* adaptive, const adaptive_brick* bric
   *adaptive_map_find(&adaptive->split, brick->at, brick->level, 1) = 1;
 }
 
-/* ---- nodes ------------------------------------------------------------------------------------ */
+/* ---- nodes ---- */
 
 static int64_t adaptive_node(oracle_adaptive* adaptive, const int64_t at[3], int add)
 {
@@ -229,7 +229,7 @@ static void adaptive_add_brick(
   }
 }
 
-/* ---- the descent ------------------------------------------------------------------------------ */
+/* ---- the descent ---- */
 
 static void adaptive_descend(
   adaptive_descent* descent, const adaptive_brick* brick, const int64_t* above, int64_t count)

@@ -87,7 +87,7 @@ mcor_options oracle_case_options(const double* iso)
   return options;
 }
 
-/* ---- one extraction ------------------------------------------------------------------------- */
+/* ---- one extraction ---- */
 
 typedef struct case_run
 {
@@ -345,7 +345,7 @@ static void case_release(case_run* run)
   mcor_free_surface(&run->surface);
 }
 
-/* ---- one case ------------------------------------------------------------------------------- */
+/* ---- one case ---- */
 
 /* Counts may differ from the table only where rounding decides, so that another device passes. */
 static int case_check_row(

@@ -63,7 +63,7 @@ double oracle_smallest_h(const oracle_particles* particles)
   return smallest;
 }
 
-/* ---- kd-tree: particles [begin,end) of `order`, split at the middle, leaves of a few -------- */
+/* ---- kd-tree: particles [begin,end) of `order`, split at the middle, leaves of a few ---- */
 
 enum
 {
@@ -234,7 +234,7 @@ static void oracle_visit(const oracle_field* field, const double point[3], doubl
   oracle_visit(field, point, radius, visitor, user, 2 * n + 2, middle, end);
 }
 
-/* ---- sums ----------------------------------------------------------------------------------- */
+/* ---- sums ---- */
 
 typedef struct oracle_sums
 {
@@ -324,7 +324,7 @@ double oracle_side(const oracle_field* field, const oracle_sample* sample, doubl
   return field->kind == ORACLE_SHEPARD && sample->weight < 0.0 ? -difference : difference;
 }
 
-/* ---- the boundary eigenvalue ----------------------------------------------------------------- */
+/* ---- the boundary eigenvalue ---- */
 
 typedef struct oracle_matrix
 {
@@ -423,7 +423,7 @@ double oracle_rounding(const oracle_field* field, const double point[3], double 
   return sums.w != 0.0 ? sums.error / fabs(sums.w) : INFINITY;
 }
 
-/* ---- volumes -------------------------------------------------------------------------------- */
+/* ---- volumes ---- */
 
 typedef struct oracle_volume_sum
 {

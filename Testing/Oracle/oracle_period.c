@@ -17,7 +17,7 @@ int oracle_is_periodic(const mcor_options* options)
     period_length(options, 2) > 0.0;
 }
 
-/* ---- the cube size --------------------------------------------------------------------------- */
+/* ---- the cube size ---- */
 
 static int period_fits(const mcor_options* options, double cube)
 {
@@ -68,7 +68,7 @@ void oracle_fit_edges(const mcor_options* options, double cube, double edge[3])
   }
 }
 
-/* ---- particles ------------------------------------------------------------------------------- */
+/* ---- particles ---- */
 
 /* Whether something of this reach at x matters along the axis. */
 static int period_reaches(
@@ -177,7 +177,7 @@ void oracle_own_period(oracle_lattice* lattice, const mcor_options* options)
   }
 }
 
-/* ---- the surface against itself -------------------------------------------------------------- */
+/* ---- the surface against itself ---- */
 
 /* A point of the border within the first period, in fractions of a cube too small to matter and
  * large enough for rounding. */

@@ -21,7 +21,7 @@ static void expect(oracle_suite* suite, int condition, const char* name, const c
   }
 }
 
-/* ---- the oracle itself ------------------------------------------------------------------------- */
+/* ---- the oracle itself ---- */
 
 static int64_t size_of(const adaptive_brick* brick)
 {
@@ -150,7 +150,7 @@ static void test_oracle(oracle_suite* suite)
   particle_set_free(&set);
 }
 
-/* ---- the library ------------------------------------------------------------------------------- */
+/* ---- the library ---- */
 
 /* What solids do, as the program's --solids. */
 typedef enum adaptive_solids

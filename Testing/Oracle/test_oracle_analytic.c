@@ -87,7 +87,7 @@ static void run_variant(oracle_suite* suite, const variant* v,
   particle_set_free(&set);
 }
 
-/* ---- every combination of kernel, field, cube factor and h scale ---------------------------- */
+/* ---- every combination of kernel, field, cube factor and h scale ---- */
 
 static void run_matrix(oracle_suite* suite)
 {
@@ -107,7 +107,7 @@ static void run_matrix(oracle_suite* suite)
   }
 }
 
-/* ---- every set ------------------------------------------------------------------------------ */
+/* ---- every set ---- */
 
 static const variant set_variants[] = {
   { .set = "sphere", .has_euler = 1, .euler = 2 },
@@ -175,7 +175,7 @@ static const variant set_variants[] = {
   { .set = "plateau", .rough = 1, .at_iso = 1, .skip_pairs = 1 },
 };
 
-/* ---- trimmed by the boundary eigenvalue ------------------------------------------------------ */
+/* ---- trimmed by the boundary eigenvalue ---- */
 
 static const variant eigenvalue_variants[] = {
   { .set = "puddle" },
@@ -204,7 +204,7 @@ static void run_eigenvalues(oracle_suite* suite)
   }
 }
 
-/* ---- how data are given --------------------------------------------------------------------- */
+/* ---- how data are given ---- */
 
 static void ignore_solids(particle_set* set, oracle_case* at, double* iso)
 {

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- against the oracle ----------------------------------------------------------------------- */
+/* ---- against the oracle ---- */
 
 typedef struct period_case
 {
@@ -68,7 +68,7 @@ static void run_case(oracle_suite* suite, const period_case* one, int unequal)
   oracle_free_particles(&particles);
 }
 
-/* ---- the density ------------------------------------------------------------------------------ */
+/* ---- the density ---- */
 
 static void expect(oracle_suite* suite, int condition, const char* what, double figure)
 {
@@ -116,7 +116,7 @@ static void check_density(oracle_suite* suite, const oracle_particles* particles
   mcor_free_surface(&surface);
 }
 
-/* ---- shifts ----------------------------------------------------------------------------------- */
+/* ---- shifts ---- */
 
 /* A point by the place of its edge within the period, with all it carries. */
 typedef struct shifted_point

@@ -15,7 +15,7 @@
 static const char* const kernel_names[ORACLE_KERNEL_COUNT] = { "cubic", "quadratic", "M'4",
   "quintic", "Wendland C2", "quartic", "Wendland C4", "Wendland C6", "sinc^6" };
 
-/* ---- kernels -------------------------------------------------------------------------------- */
+/* ---- kernels ---- */
 
 /* Midpoint rule on a grid; h other than 1 so that its powers are tested. */
 static void test_kernel_integrals(void)
@@ -91,7 +91,7 @@ static void test_kernel_values(void)
   }
 }
 
-/* ---- fields --------------------------------------------------------------------------------- */
+/* ---- fields ---- */
 
 static int load_set(const char* name, particle_set* set)
 {
@@ -297,7 +297,7 @@ static void test_volumes(void)
   particle_set_free(&set);
 }
 
-/* ---- a known surface ------------------------------------------------------------------------ */
+/* ---- a known surface ---- */
 
 /* One particle: w = iso on a sphere whose radius can be computed from the kernel alone. */
 static void test_known_sphere(void)
@@ -361,7 +361,7 @@ static void test_known_sphere(void)
   particle_set_free(&set);
 }
 
-/* ---- the mesh checker finds planted faults -------------------------------------------------- */
+/* ---- the mesh checker finds planted faults ---- */
 
 typedef struct planted
 {

@@ -40,7 +40,6 @@ struct vtkMarchingCorrectorsRun
   const mcor_plane& Plane;
 };
 
-//------------------------------------------------------------------------------
 std::vector<double> vtkMarchingCorrectors::ListIsoValuesDistributed(
   vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input)
 {
@@ -54,7 +53,6 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValuesDistributed(
   return { value };
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
 {
@@ -68,7 +66,6 @@ void vtkMarchingCorrectors::EstimateDistributed(
   }
 }
 
-//------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyData* output)
 {
@@ -120,7 +117,6 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   this->ExtractDistributed(ranks, choice, own, route, options, counts[0], output);
 }
 
-//------------------------------------------------------------------------------
 // Of the particles that this rank has, `count` on all, to those that are near its box.
 void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanks& ranks,
   vtkMarchingCorrectorsChoice& choice, vtkPolyData* own, const vtkSPHRanksRoute& route,
@@ -163,7 +159,6 @@ void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanks& ranks,
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectors::FinishDistributed(
   vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output)
 {

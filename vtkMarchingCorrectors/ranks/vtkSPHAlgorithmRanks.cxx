@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
   mcor_options& options, const std::function<int(mcor_context*)>& call,
   const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
@@ -40,7 +39,6 @@ bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& p
   return good && cancelled == 0;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
 {
   const bool good = ranks.Agree(problem);
@@ -51,7 +49,6 @@ bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
   return good;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
   vtkSPHParticles& particles, const std::string& consequence)
 {
@@ -65,7 +62,6 @@ bool vtkSPHAlgorithm::HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHPartic
   return fluid > 0;
 }
 
-//------------------------------------------------------------------------------
 bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
   mcor_options& options, bool forSamples, mcor_globals& globals)
 {
@@ -85,7 +81,6 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
   return true;
 }
 
-//------------------------------------------------------------------------------
 // All have the same arrays; what varies on one of them varies.
 vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
   vtkSPHRanks& ranks, vtkPointSet* particles)
@@ -136,7 +131,6 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
   return request;
 }
 
-//------------------------------------------------------------------------------
 // All have the same arrays, or no particles.
 void vtkSPHAlgorithm::FindFluidDistributed(
   vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles)

@@ -51,7 +51,6 @@ void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& glob
 }
 }
 
-//------------------------------------------------------------------------------
 // Those of all processes, each once.
 std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   vtkSPHRanks& ranks, const std::vector<Gauge>& mine)
@@ -86,7 +85,6 @@ std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   return all;
 }
 
-//------------------------------------------------------------------------------
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
 {
@@ -123,7 +121,6 @@ void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHGauge::MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
   const std::vector<Gauge>& gauges, vtkTable* output)
 {

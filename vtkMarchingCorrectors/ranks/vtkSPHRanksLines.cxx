@@ -124,7 +124,6 @@ vtkSmartPointer<vtkIdTypeArray> CountUp(const char* name, vtkIdType count)
 }
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   const vtkSPHRanksNumbers& numbers, const mcor_plane& plane, bool isFilled)
 {
@@ -157,7 +156,6 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   surface.statistics.is_closed = measures[2] > 0.0;
 }
 
-//------------------------------------------------------------------------------
 // What all ranks have sent, on the first one.
 void vtkSPHRanksLines::Take(
   const std::vector<vtkSPHRanks::Bytes>& received, const mcor_plane& plane)
@@ -171,13 +169,11 @@ void vtkSPHRanksLines::Take(
                    static_cast<std::int64_t>(pieces.size()), &this->Whole) != MCOR_OK;
 }
 
-//------------------------------------------------------------------------------
 vtkSPHRanksLines::~vtkSPHRanksLines()
 {
   mcor_free_surface(&this->Whole);
 }
 
-//------------------------------------------------------------------------------
 void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output)
 {
   vtkPointData* arrays = output->GetPointData();

@@ -44,7 +44,6 @@ void AddQuantity(vtkFieldData* data, const std::string& name, const mcor_array& 
 }
 }
 
-//------------------------------------------------------------------------------
 vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
   const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface)
   : Input(input)
@@ -53,7 +52,6 @@ vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
 {
 }
 
-//------------------------------------------------------------------------------
 std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_options& options)
 {
   const std::pair<int, const char*> arrays[] = { { options.normals, "Normals" },
@@ -72,7 +70,6 @@ std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_
   return names;
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildMesh(
   vtkPolyData* output, int precision, const std::function<void(std::vector<double>&)>& merge)
 {
@@ -154,7 +151,6 @@ void BuildBands(const mcor_surface& s, vtkPolyData* output)
 }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& surface, vtkPolyData* output)
 {
   BuildTriangles(surface, output);
@@ -162,7 +158,6 @@ void vtkMarchingCorrectorsOutput::BuildCells(mcor_surface& surface, vtkPolyData*
   BuildBands(surface, output);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 {
   const vtkIdType count = this->Surface.point_count;
@@ -200,7 +195,6 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
 {
   vtkPointData* pointData = output->GetPointData();
@@ -240,7 +234,6 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
 {
   if (!this->Surface.iso_value)
@@ -253,7 +246,6 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
     vtkSPHAdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
 }
 
-//------------------------------------------------------------------------------
 // Of what the particles carry, or the iso value where there are several; which is on all surfaces, too.
 void vtkMarchingCorrectorsOutput::ChooseActive(
   vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const
@@ -299,7 +291,6 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
 {
   vtkSPHAddText(run, "Device", this->Surface.statistics.device);
@@ -310,7 +301,6 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
   vtkSPHAddRunStatistics(run, this->Surface.statistics);
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
 {
   auto isoValues = vtkSmartPointer<vtkDoubleArray>::New();
@@ -321,7 +311,6 @@ void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
   vtkSPHAddArray(fieldData, "IsoValues", isoValues);
 }
 
-//------------------------------------------------------------------------------
 namespace
 {
 /// Counts of adaptive cubes, up to the last level that has any.
@@ -341,7 +330,6 @@ void AddLevels(vtkFieldData* fieldData, const char* name, const int64_t counts[M
 }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 {
   const mcor_statistics& s = this->Surface.statistics;
@@ -399,7 +387,6 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "TrimVerticesLinear", { s.trim_vertices_linear });
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddMeasures(vtkFieldData* fieldData) const
 {
   const mcor_statistics& s = this->Surface.statistics;
@@ -417,7 +404,6 @@ void vtkMarchingCorrectorsOutput::AddMeasures(vtkFieldData* fieldData) const
   }
 }
 
-//------------------------------------------------------------------------------
 void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
 {
   const mcor_options& o = this->Options;

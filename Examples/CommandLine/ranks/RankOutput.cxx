@@ -160,13 +160,11 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
 
 }
 
-//------------------------------------------------------------------------------
 bool IsInPieces(const std::string& file)
 {
   return fs::path(file).extension() == ".pvtp";
 }
 
-//------------------------------------------------------------------------------
 std::string PieceName(const std::string& file, int rank)
 {
   const fs::path path(file);
@@ -174,7 +172,6 @@ std::string PieceName(const std::string& file, int rank)
     .string();
 }
 
-//------------------------------------------------------------------------------
 std::string ListPieces(const std::string& file, int count, vtkPolyData* piece)
 {
   std::ostringstream text;
@@ -197,7 +194,6 @@ std::string ListPieces(const std::string& file, int count, vtkPolyData* piece)
   return text.str();
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> MergeOnFirst(vtkMultiProcessController* controller, vtkPolyData* part)
 {
   constexpr int tag = 1717;

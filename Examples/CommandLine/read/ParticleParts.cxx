@@ -78,7 +78,6 @@ void MakeTypesAlike(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
 
 }
 
-//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> own(parts.size());

@@ -338,7 +338,6 @@ private:
 
 }
 
-//------------------------------------------------------------------------------
 bool MakeFilm(const Job& job, MessageCapture* messages, const StepSharing& sharing)
 {
   job.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one

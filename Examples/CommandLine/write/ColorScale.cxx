@@ -27,7 +27,6 @@ const double Stops[StopCount][3] = { { 0.267, 0.005, 0.329 }, { 0.279, 0.175, 0.
 
 }
 
-//------------------------------------------------------------------------------
 ColorScale::ColorScale(const PictureOptions& options)
   : Name(options.ColorBy)
   , IsGiven(!options.ColorRange.empty())
@@ -54,7 +53,6 @@ ColorScale::ColorScale(const PictureOptions& options)
   }
 }
 
-//------------------------------------------------------------------------------
 void ColorScale::Include(vtkDataSet* data)
 {
   vtkDataArray* array = this->ArrayOf(data) ? this->ArrayOf(data) : this->CellArrayOf(data);
@@ -85,19 +83,16 @@ void ColorScale::Include(vtkDataSet* data)
   this->HasRange = true;
 }
 
-//------------------------------------------------------------------------------
 vtkDataArray* ColorScale::ArrayOf(vtkDataSet* data) const
 {
   return this->Name.empty() ? nullptr : data->GetPointData()->GetArray(this->Name.c_str());
 }
 
-//------------------------------------------------------------------------------
 vtkDataArray* ColorScale::CellArrayOf(vtkDataSet* data) const
 {
   return this->Name.empty() ? nullptr : data->GetCellData()->GetArray(this->Name.c_str());
 }
 
-//------------------------------------------------------------------------------
 void ColorScale::Suggest(vtkDataSet* surface, const std::string& isoValueArray)
 {
   vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");
@@ -107,7 +102,6 @@ void ColorScale::Suggest(vtkDataSet* surface, const std::string& isoValueArray)
   }
 }
 
-//------------------------------------------------------------------------------
 std::vector<unsigned char> ColorScale::Map(vtkDataArray* array) const
 {
   const auto count = static_cast<std::size_t>(array->GetNumberOfTuples());

@@ -374,7 +374,6 @@ private:
   bool HasBar = false;
 };
 
-//------------------------------------------------------------------------------
 Picture::Picture(const PictureOptions& options)
   : Options(options)
 {
@@ -385,7 +384,6 @@ Picture::Picture(const PictureOptions& options)
 
 Picture::~Picture() = default;
 
-//------------------------------------------------------------------------------
 std::string Picture::Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
   const ColorScale& colors, MessageCapture* messages, int sliceAxis)
 {

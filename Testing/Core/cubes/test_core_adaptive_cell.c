@@ -72,7 +72,7 @@ static void trace_loops(const core_shape* cell, uint32_t above,
   totals->cell_loops = all > totals->cell_loops ? all : totals->cell_loops;
 }
 
-/* ---- what it does look like ------------------------------------------------------------------- */
+/* ---- what it does look like ---- */
 
 /* Triangle whose side goes from slot a to b, from 1 on. */
 typedef uint8_t side_owners[MCOR_ADAPTIVE_SLOTS][MCOR_ADAPTIVE_SLOTS];
@@ -195,7 +195,7 @@ static void check_pattern(const core_shape* cell, uint32_t index, cell_totals* t
   totals->triangles = count > totals->triangles ? count : totals->triangles;
 }
 
-/* ---- tests ------------------------------------------------------------------------------------ */
+/* ---- tests ---- */
 
 static void check_totals(const cell_totals* totals, int all)
 {
@@ -258,7 +258,7 @@ static void test_turned_cells(void** state)
   }
 }
 
-/* ---- which diagonals --------------------------------------------------------------------------- */
+/* ---- which diagonals ---- */
 
 /* Where slots' vertices are, in quarters of the cell's edge. */
 typedef int slot_places[MCOR_ADAPTIVE_SLOTS][3];

@@ -33,7 +33,7 @@ static mcor_options pair_options(const double* iso)
   return options;
 }
 
-/* ---- marked cells ---------------------------------------------------------------------------- */
+/* ---- marked cells ---- */
 
 /* Leaves where there may be surface, after a call: bricks and levels, ascending as below, and masks. */
 typedef struct leaf_cells
@@ -270,7 +270,7 @@ static void lines_are_marked(void** state)
   core_free_set(&set);
 }
 
-/* ---- growth ---------------------------------------------------------------------------------- */
+/* ---- growth ---- */
 
 static int compare_places(const void* a, const void* b)
 {
@@ -375,7 +375,7 @@ static void components_are_whole(void** state)
   }
 }
 
-/* ---- what must not matter -------------------------------------------------------------------- */
+/* ---- what must not matter ---- */
 
 static void order_form_and_reuse(void** state)
 {

@@ -37,7 +37,7 @@ static double next_uniform(uint32_t* random)
   return next_random(random) / 16777216.0;
 }
 
-/* ---- the tree --------------------------------------------------------------------------------- */
+/* ---- the tree ---- */
 
 static void set_level(adaptive_tree* tree, const int at[3], int size, int level)
 {
@@ -144,7 +144,7 @@ static void make_tree(adaptive_tree* tree, uint32_t* random)
   }
 }
 
-/* ---- signs ------------------------------------------------------------------------------------ */
+/* ---- signs ---- */
 
 /* kind 0: noise; 1: noise, mostly below; 2: noise on a coarse lattice of nodes; 3: waves; 4: waves
  * with a little noise. */
@@ -187,7 +187,7 @@ static void make_signs(adaptive_tree* tree, int kind, uint32_t* random)
   }
 }
 
-/* ---- the surface ------------------------------------------------------------------------------ */
+/* ---- the surface ---- */
 
 /* Whether a finer cell touches a point. */
 static int touches_finer(const adaptive_tree* tree, const int at[3], int level)

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- known shapes --------------------------------------------------------------------------- */
+/* ---- known shapes ---- */
 
 /* Particles around the origin, closer together than the cubes, whose scalar is given by `value`. */
 static core_set make_particles(double (*value)(const double x[3], const double end[3], double sign),
@@ -127,7 +127,7 @@ static void test_balls(void** state)
   }
 }
 
-/* ---- noise ---------------------------------------------------------------------------------- */
+/* ---- noise ---- */
 
 static double noise(const double x[3])
 {

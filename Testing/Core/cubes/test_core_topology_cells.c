@@ -15,7 +15,7 @@ static int set_up(void** state)
   return 0;
 }
 
-/* ---- two cells ------------------------------------------------------------------------------ */
+/* ---- two cells ---- */
 
 /* Cases of the cells (x, y, z), each 0 or 1, from the nodes above in 3 x 3 x 3. */
 static int case_at(uint32_t above, const int cell[3])
@@ -108,7 +108,7 @@ static void test_two_cells(void** state)
   }
 }
 
-/* ---- four cells around an edge -------------------------------------------------------------- */
+/* ---- four cells around an edge ---- */
 
 /* What all rows of a case put around the vertex of an edge. A decision matters here only if it
  * concerns one of the edge's two faces; all others, and tunnels, are taken together. */

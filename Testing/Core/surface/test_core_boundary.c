@@ -122,7 +122,7 @@ static void load(
   mcor_free_surface(&surface);
 }
 
-/* ---- value and gradient --------------------------------------------------------------------- */
+/* ---- value and gradient ---- */
 
 static void check_gradient(const oracle_field* field, const double x[3], const double* found)
 {
@@ -201,7 +201,7 @@ static void test_values(void** state)
   check_values(*state, MCOR_M_PRIME_4, MCOR_FLOAT32);
 }
 
-/* ---- known values --------------------------------------------------------------------------- */
+/* ---- known values ---- */
 
 /* About 1 in a lattice, half of that where the lattice is cut in two, 0 outside. */
 static void test_lattice(void** state)
@@ -269,7 +269,7 @@ static void test_half_space(void** state)
   core_free_set(&set);
 }
 
-/* ---- eigenvalues ---------------------------------------------------------------------------- */
+/* ---- eigenvalues ---- */
 
 /* xx yy zz xy yz zx */
 static const double matrices[][6] = { { 0, 0, 0, 0, 0, 0 }, { 1, 1, 1, 0, 0, 0 },
@@ -337,7 +337,7 @@ static void test_eigenvalues(void** state)
   }
 }
 
-/* ---- trimming ------------------------------------------------------------------------------- */
+/* ---- trimming ---- */
 
 typedef struct trim_case
 {

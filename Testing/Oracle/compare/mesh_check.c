@@ -35,7 +35,7 @@ void mesh_free_report(mesh_report* report)
   memset(report, 0, sizeof(*report));
 }
 
-/* ---- triangles one by one ------------------------------------------------------------------- */
+/* ---- triangles one by one ---- */
 
 static int mesh_check_ranges(const double* points, const int32_t* triangles, mesh_report* report)
 {
@@ -102,7 +102,7 @@ static void mesh_measure_triangle(
   }
 }
 
-/* ---- sides ---------------------------------------------------------------------------------- */
+/* ---- sides ---- */
 
 static int mesh_compare_sides(const void* x, const void* y)
 {
@@ -172,7 +172,7 @@ int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b)
   return count;
 }
 
-/* ---- union of corners (fans) and triangles (components) ------------------------------------- */
+/* ---- union of corners (fans) and triangles (components) ---- */
 
 static int64_t mesh_root(int64_t* parent, int64_t n)
 {
@@ -277,7 +277,7 @@ static void mesh_number_components(mesh_report* report)
   }
 }
 
-/* ---- duplicates ----------------------------------------------------------------------------- */
+/* ---- duplicates ---- */
 
 static int mesh_compare_triples(const void* x, const void* y)
 {

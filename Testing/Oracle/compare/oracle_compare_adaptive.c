@@ -35,7 +35,7 @@ static void adaptive_note(compare_state* state, const char* what, const adaptive
     nodes->trim_weight[edge->node[1]], edge->quadrants);
 }
 
-/* ---- vertices ---------------------------------------------------------------------------------- */
+/* ---- vertices ---- */
 
 static int adaptive_open(const compare_state* state, int64_t e)
 {
@@ -205,7 +205,7 @@ static void adaptive_assign(compare_state* state)
   }
 }
 
-/* ---- missing edges ----------------------------------------------------------------------------- */
+/* ---- missing edges ---- */
 
 static void adaptive_point(
   const compare_state* state, const adaptive_edge* edge, double t, double point[3])
@@ -310,7 +310,7 @@ static void adaptive_missing(compare_state* state, int64_t* present, int64_t* ab
   }
 }
 
-/* ---- faces ------------------------------------------------------------------------------------- */
+/* ---- faces ---- */
 
 /* Segments or sides of triangles, counted by the edges that they lead from and to. */
 static int64_t adaptive_count(adaptive_map* map, int64_t from, int64_t to, int more)

@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-/* ---- which lattice edge does a vertex lie on? ----------------------------------------------- */
+/* ---- which lattice edge does a vertex lie on? ---- */
 
 /* The position alone decides: on an edge, two coordinates are integer multiples of the edges. */
 static int64_t compare_locate(const oracle_lattice* lattice, const double point[3])
@@ -170,7 +170,7 @@ void compare_assign(compare_state* state)
   compare_assign_on_nodes(state);
 }
 
-/* ---- missing and extra edges ---------------------------------------------------------------- */
+/* ---- missing and extra edges ---- */
 
 static int compare_any_cell(const oracle_lattice* lattice, int64_t edge,
   int (*test)(const oracle_lattice*, int64_t, int64_t, int64_t))

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- orientation ---------------------------------------------------------------------------- */
+/* ---- orientation ---- */
 
 /* Corner of a cell (0..7) at the lower or upper end of an edge; -1 if it is none of the cell's. */
 static int compare_corner(
@@ -122,7 +122,7 @@ void compare_inverted(compare_state* state)
   }
 }
 
-/* ---- faces ---------------------------------------------------------------------------------- */
+/* ---- faces ---- */
 
 /* The 4 edges of the face of `cell` towards -axis, in cyclic order. */
 static void compare_face_edges(

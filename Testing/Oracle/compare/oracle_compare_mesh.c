@@ -8,7 +8,7 @@
 
 #define COMPARE_PI 3.14159265358979323846
 
-/* ---- vertices ------------------------------------------------------------------------------- */
+/* ---- vertices ---- */
 
 /* Distance to the surface f = iso, in cubes: by the gradient, or, where that is small, the smallest
  * step along the edge that brackets a crossing. */
@@ -276,7 +276,7 @@ void compare_vertices(compare_state* state)
   }
 }
 
-/* ---- triangles ------------------------------------------------------------------------------ */
+/* ---- triangles ---- */
 
 int compare_orientation(compare_state* state)
 {

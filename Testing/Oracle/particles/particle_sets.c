@@ -103,7 +103,7 @@ static int set_fill(particle_set* set, const set_block* block)
   return 1;
 }
 
-/* ---- shapes and scalars --------------------------------------------------------------------- */
+/* ---- shapes and scalars ---- */
 
 static double radius(const double x[3])
 {
@@ -173,7 +173,7 @@ static int in_puddle(const double x[3])
   return x[2] > 0.0 && x[2] < 0.18 + 0.08 * sin(5.0 * x[0]) * cos(4.0 * x[1]);
 }
 
-/* ---- the sets ------------------------------------------------------------------------------- */
+/* ---- the sets ---- */
 
 static int fill_ball(particle_set* set, double (*scalar)(const double x[3]))
 {

@@ -207,7 +207,7 @@ void mcor_make_case_table(uint8_t table[256][16])
   }
 }
 
-/* ---- tunnels -------------------------------------------------------------------------------- */
+/* ---- tunnels ---- */
 
 /* region[corner]: the same number for corners that the cell's surface connects on their side. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])

@@ -125,10 +125,9 @@ mcor_status mcor_take_splits(
     const mcor_rung* rung = &tree->rungs[level];
     int b[3];
     mcor_brick_of_key(rung, keys[i], b);
-    MCOR_RETURN_IF(!mcor_set_add(&tree->split[level], mcor_cluster_key(rung, b),
-                     UINT64_C(1) << mcor_cluster_bit(b)),
-      context, MCOR_OUT_OF_CAPACITY, "Host memory for %lld bricks of adaptive cubes ran out.",
-      (long long)count);
+    const bool added = mcor_set_add(
+      &tree->split[level], mcor_cluster_key(rung, b), UINT64_C(1) << mcor_cluster_bit(b));
+    MCOR_TRY(added ? MCOR_OK : mcor_fail_leaves(context));
     MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
   }
   return MCOR_OK;

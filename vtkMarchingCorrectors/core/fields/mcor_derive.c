@@ -45,7 +45,7 @@ static void mcor_release_derive(mcor_derive_run* run)
   free(run->particles);
 }
 
-/* ---- arrays ------------------------------------------------------------------------------- */
+/* ---- arrays ---- */
 
 /* The components that vary as fixed-point numbers, which their scales are those of from then on. */
 static mcor_status mcor_load_arrays(mcor_derive_run* run)
@@ -68,7 +68,7 @@ static mcor_status mcor_load_arrays(mcor_derive_run* run)
   return mcor_read(context, &context->grid.order, 0, run->particles, count * sizeof(cl_int));
 }
 
-/* ---- evaluation --------------------------------------------------------------------------- */
+/* ---- evaluation ---- */
 
 /* The cells of the particles whose gradients are wanted; false: of all. Of a particle's images those in the
  * period alone, or on its upper side where the lower one is not in the box. */

@@ -79,7 +79,7 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
   return MCOR_OK;
 }
 
-/* ---- the call ----------------------------------------------------------------------------- */
+/* ---- the call ---- */
 
 typedef struct mcor_gauge_call
 {

@@ -19,7 +19,7 @@
 /* Samples of one line at most. */
 #define MCOR_GAUGE_MOST (1 << 26)
 
-/* ---- lines -------------------------------------------------------------------------------- */
+/* ---- lines ---- */
 
 /* hypot has not the same bits everywhere. */
 double mcor_gauge_length(const mcor_gauge_line* line)
@@ -87,7 +87,7 @@ static void mcor_clip_line(const mcor_context* context, const mcor_gauge_line* l
   }
 }
 
-/* ---- samples ------------------------------------------------------------------------------ */
+/* ---- samples ---- */
 
 double mcor_gauge_step(double h_scale, double smoothing_length_min)
 {
@@ -196,7 +196,7 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
                   : mcor_append_samples(job, &whole, whole.first, whole.last);
 }
 
-/* ---- readings ----------------------------------------------------------------------------- */
+/* ---- readings ---- */
 
 /* From its crossings, still places on the line, what a line reads. */
 static void mcor_read_line(

@@ -29,7 +29,7 @@ void mcor_release_probe(mcor_probe_run* run)
   MCOR_RELEASE(run->context, &run->weight, &run->sums, &run->weight_gradient, &run->gradients);
 }
 
-/* ---- evaluation --------------------------------------------------------------------------- */
+/* ---- evaluation ---- */
 
 /* What the device made of a batch. */
 typedef struct mcor_probe_views

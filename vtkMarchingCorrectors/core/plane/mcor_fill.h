@@ -84,12 +84,6 @@ mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill);
 mcor_status mcor_append_fill(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface);
 
-static inline mcor_status mcor_no_fill_memory(mcor_context* context)
-{
-  return mcor_fail(
-    context, MCOR_OUT_OF_CAPACITY, "Host memory for filling could not be allocated.");
-}
-
 /* Of a lattice edge by its lower node, and of a node or square (axis 0): not 0. */
 static inline uint64_t mcor_fill_key(cl_int u, cl_int v, int axis)
 {

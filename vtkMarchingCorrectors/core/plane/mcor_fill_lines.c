@@ -36,26 +36,18 @@ mcor_status mcor_begin_fill(mcor_context* context)
     context->run.fill->levels = malloc((size_t)count * sizeof *context->run.fill->levels);
     context->run.fill->line_count = context->run.fill->lines ? count : 0;
   }
-  if (!context->run.fill || !context->run.fill->lines || !context->run.fill->levels)
-  {
-    return mcor_no_fill_memory(context);
-  }
+  MCOR_TRY(mcor_allocated(
+    context, context->run.fill && context->run.fill->lines && context->run.fill->levels));
   mcor_set_fill_extent(context, &context->run.fill->face);
   return mcor_note_cap_tiles(context, 1, &context->run.fill->face);
 }
 
-/* Views of vertices, and of bricks. */
+/* Views of vertices. */
 enum
 {
   MCOR_FILL_NODE,
   MCOR_FILL_OFFSET,
-  MCOR_FILL_QUANTITY,
-  MCOR_FILL_BRICKS = 0,
-  MCOR_FILL_KNOWN,
-  MCOR_FILL_ABOVE,
-  MCOR_FILL_VALID,
-  MCOR_FILL_DECISIONS,
-  MCOR_FILL_VIEWS
+  MCOR_FILL_QUANTITY
 };
 
 static mcor_status mcor_take_fill_vertices(
@@ -70,10 +62,8 @@ static mcor_status mcor_take_fill_vertices(
     line->margin[v] = mcor_is_trimmed(context)
       ? mcor_get_real(context, views[MCOR_FILL_QUANTITY], v) - threshold
       : INFINITY;
-    if (mcor_table_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) < 0)
-    {
-      return mcor_no_fill_memory(context);
-    }
+    MCOR_TRY(mcor_allocated(context,
+      mcor_table_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) >= 0));
   }
   return MCOR_OK;
 }
@@ -87,10 +77,8 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   line->margin = malloc(n * sizeof *line->margin);
   line->cuts = malloc(cuts * sizeof *line->cuts + 1);
   line->number = malloc((n + cuts) * sizeof *line->number);
-  if (!line->offset || !line->margin || !line->cuts || !line->number)
-  {
-    return mcor_no_fill_memory(context);
-  }
+  MCOR_TRY(
+    mcor_allocated(context, line->offset && line->margin && line->cuts && line->number));
   memset(line->number, 0xff, (n + cuts) * sizeof *line->number);
   line->vertex_count = (int)n;
   line->cut_count = (int)cuts;
@@ -110,12 +98,16 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
 
 /* Of the lowest layer of bricks. */
 static mcor_status mcor_take_fill_bricks(
-  mcor_context* context, void* const views[], mcor_fill_line* line)
+  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
 {
+  mcor_fill_line* line = data;
+  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
+                 *valid = views[MCOR_VIEW_VALID], *decisions = views[MCOR_VIEW_DECISIONS];
+  line->bricks = malloc((size_t)context->bricks.now.count * sizeof *line->bricks);
+  MCOR_TRY(mcor_allocated(context, line->bricks));
   for (int slot = 0; slot < context->bricks.now.count; ++slot)
   {
-    const cl_int* at = (const cl_int*)views[MCOR_FILL_BRICKS] + 4 * (size_t)slot;
-    const cl_ulong* decisions = views[MCOR_FILL_DECISIONS];
+    const cl_int* at = (const cl_int*)views[MCOR_VIEW_BRICKS] + 4 * (size_t)slot;
     const cl_ulong joined =
       decisions ? decisions[(size_t)slot * MCOR_DECISION_MASKS + 2] & 0xffff : 0;
     if (at[2] != 0)
@@ -124,44 +116,18 @@ static mcor_status mcor_take_fill_bricks(
     }
     line->bricks[line->brick_count++] = (mcor_fill_brick){ .x = at[0],
       .y = at[1],
-      .known = (uint16_t)((const cl_ulong*)views[MCOR_FILL_KNOWN])[slot],
-      .above = (uint16_t)((const cl_ulong*)views[MCOR_FILL_ABOVE])[slot],
-      .valid = (uint16_t)((const cl_ulong*)views[MCOR_FILL_VALID])[slot] };
+      .known = (uint16_t)known[slot],
+      .above = (uint16_t)above[slot],
+      .valid = (uint16_t)valid[slot] };
     for (int n = 0; n < 16; ++n)
     {
       const uint64_t key =
         mcor_fill_key(at[0] * MCOR_BRICK + (n & 3), at[1] * MCOR_BRICK + (n >> 2), 0);
-      if (joined >> n & 1 && mcor_table_number(&line->joined, key, 0) < 0)
-      {
-        return mcor_no_fill_memory(context);
-      }
+      MCOR_TRY(mcor_allocated(
+        context, !(joined >> n & 1) || mcor_table_number(&line->joined, key, 0) >= 0));
     }
   }
   return MCOR_OK;
-}
-
-static mcor_status mcor_take_bricks(mcor_context* context, mcor_fill_line* line)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
-  line->bricks = malloc(n * sizeof *line->bricks);
-  if (!line->bricks)
-  {
-    return mcor_no_fill_memory(context);
-  }
-  void* views[MCOR_FILL_VIEWS] = { NULL };
-  const mcor_mapping mappings[MCOR_FILL_VIEWS] = {
-    [MCOR_FILL_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_FILL_BRICKS] },
-    [MCOR_FILL_KNOWN] = { &now->known, mask, &views[MCOR_FILL_KNOWN] },
-    [MCOR_FILL_ABOVE] = { &now->above, mask, &views[MCOR_FILL_ABOVE] },
-    [MCOR_FILL_VALID] = { &now->valid, mask, &views[MCOR_FILL_VALID] },
-    [MCOR_FILL_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
-      &views[MCOR_FILL_DECISIONS] }
-  };
-  const int count = mcor_is_resolved(context) ? MCOR_FILL_VIEWS : MCOR_FILL_DECISIONS;
-  mcor_status status = mcor_map_all(context, mappings, count);
-  status = status == MCOR_OK ? mcor_take_fill_bricks(context, views, line) : status;
-  return mcor_unmap_all(context, mappings, count, status);
 }
 
 mcor_status mcor_take_lines(mcor_context* context, double iso)
@@ -174,7 +140,7 @@ mcor_status mcor_take_lines(mcor_context* context, double iso)
   line->iso = mcor_real_of(context, iso);
   line->value = context->run.options->iso_values[context->run.iso_number];
   MCOR_TRY(context->mesh.march_count > 0 ? mcor_take_vertices(context, line) : MCOR_OK);
-  return context->bricks.now.count > 0 ? mcor_take_bricks(context, line) : MCOR_OK;
+  return mcor_see_bricks(context, mcor_take_fill_bricks, line);
 }
 
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base)

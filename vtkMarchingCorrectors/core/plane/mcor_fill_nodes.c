@@ -70,7 +70,7 @@ static mcor_status mcor_evaluate_tiles(mcor_context* context, double* values, mc
     (most < MCOR_FILL_BATCH ? most : MCOR_FILL_BATCH) + MCOR_CAP_TILE * MCOR_CAP_TILE;
   mcor_fill_batch batch = { .nodes = malloc(room * 4 * sizeof(cl_int)),
     .to = malloc(room * sizeof(int64_t)) };
-  mcor_status status = batch.nodes && batch.to ? MCOR_OK : mcor_no_fill_memory(context);
+  mcor_status status = mcor_allocated(context, batch.nodes && batch.to);
   for (int t = 1; t <= face->tile_count && status == MCOR_OK; ++t)
   {
     mcor_add_tile(face, t, &batch);
@@ -131,7 +131,7 @@ mcor_status mcor_find_bands(mcor_context* context, mcor_filling* fill)
   fill->node_count = (int64_t)nodes;
   fill->band = calloc(nodes, sizeof *fill->band);
   double* values = malloc(nodes * sizeof *values);
-  mcor_status status = fill->band && values ? MCOR_OK : mcor_no_fill_memory(context);
+  mcor_status status = mcor_allocated(context, fill->band && values);
   status = status == MCOR_OK ? mcor_evaluate_tiles(context, values, face) : status;
   if (status == MCOR_OK)
   {

@@ -130,8 +130,7 @@ static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fil
   mcor_fill_places places = { NULL };
   mcor_cap_points points = { .node = { 0 } };
   int* sides = malloc(n * sizeof *sides);
-  mcor_status status =
-    mcor_make_places(context, n, &places) && sides ? MCOR_OK : mcor_no_fill_memory(context);
+  mcor_status status = mcor_allocated(context, mcor_make_places(context, n, &places) && sides);
   for (size_t i = 0; i < n && sides; ++i)
   {
     sides[i] = -1;
@@ -189,10 +188,7 @@ static mcor_status mcor_number_fill(mcor_context* context, mcor_filling* fill, i
 {
   fill->number = malloc((size_t)fill->node_count * sizeof *fill->number);
   fill->cut_number = malloc((size_t)fill->cut_count * sizeof *fill->cut_number + 1);
-  if (!fill->number || !fill->cut_number)
-  {
-    return mcor_no_fill_memory(context);
-  }
+  MCOR_TRY(mcor_allocated(context, fill->number && fill->cut_number));
   memset(fill->number, 0xff, (size_t)fill->node_count * sizeof *fill->number);
   *nodes = mcor_number_nodes(fill);
   MCOR_RETURN_IF(*nodes + fill->cut_count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
@@ -283,7 +279,7 @@ static mcor_status mcor_make_list(
     mcor_list_nodes(context, fill, list);
     mcor_list_cuts(context, fill, nodes, list);
   }
-  return good ? MCOR_OK : mcor_no_fill_memory(context);
+  return mcor_allocated(context, good);
 }
 
 /* As a mesh that has these points only, all like those of caps. */
@@ -366,10 +362,7 @@ static mcor_status mcor_append_fill_triangles(
   int32_t* triangles = realloc(surface->triangles, all * 3 * sizeof *triangles + 1);
   surface->triangles = triangles ? triangles : surface->triangles;
   surface->band_value = malloc((size_t)count * sizeof *surface->band_value + 1);
-  if (!triangles || !surface->band_value)
-  {
-    return mcor_no_fill_memory(context);
-  }
+  MCOR_TRY(mcor_allocated(context, triangles && surface->band_value));
   MCOR_TRY(mcor_extend_kept(context, count, surface));
   for (int64_t t = 0; t < count; ++t)
   {

@@ -44,19 +44,6 @@ typedef struct mcor_fill_job
   cl_int u, v;
 } mcor_fill_job;
 
-static bool mcor_fill_room(void** array, int64_t count, int64_t* room, size_t width)
-{
-  if (count < *room)
-  {
-    return true;
-  }
-  const int64_t more = 2 * *room + 4096;
-  void* grown = realloc(*array, (size_t)more * width);
-  *array = grown ? grown : *array;
-  *room = grown ? more : *room;
-  return grown != NULL;
-}
-
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
 {
   return mcor_fail(context, MCOR_DEVICE_ERROR,
@@ -138,11 +125,8 @@ static mcor_status mcor_add_fan(mcor_fill_job* job, const int32_t* refs, int cou
   mcor_filling* fill = job->fill;
   for (int i = 1; i + 1 < count; ++i)
   {
-    if (!mcor_fill_room((void**)&fill->triangles, fill->triangle_count, &fill->triangle_room,
-          sizeof *fill->triangles))
-    {
-      return mcor_no_fill_memory(job->context);
-    }
+    MCOR_TRY(mcor_make_room(job->context, (void**)&fill->triangles, fill->triangle_count,
+      &fill->triangle_room, sizeof *fill->triangles));
     fill->triangles[fill->triangle_count++] = (mcor_fill_triangle){
       .corner = { refs[0], refs[i], refs[i + 1] }, .band = band, .square = job->square
     };
@@ -181,11 +165,9 @@ static mcor_status mcor_find_cut(
   /* Keys of a map are one number: parts are told apart above those of edges. */
   const uint64_t key = edge ^ (uint64_t)p->part << 44;
   const int32_t index = mcor_table_number(&fill->cut_of, key, (int32_t)fill->cut_count);
-  if (index < 0 ||
-    !mcor_fill_room((void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts))
-  {
-    return mcor_no_fill_memory(job->context);
-  }
+  MCOR_TRY(mcor_allocated(job->context, index >= 0));
+  MCOR_TRY(mcor_make_room(
+    job->context, (void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts));
   *ref = (int32_t)(fill->node_count + index);
   if (index == fill->cut_count)
   {
@@ -310,9 +292,9 @@ mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
 {
   mcor_fill_job job = { .context = context, .fill = fill };
   job.border = malloc((4 + 4 * (size_t)fill->level_count) * sizeof *job.border);
-  const mcor_status status = job.border
-    ? mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job)
-    : mcor_no_fill_memory(context);
+  MCOR_TRY(mcor_allocated(context, job.border));
+  const mcor_status status =
+    mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job);
   free(job.border);
   return status;
 }

@@ -49,12 +49,6 @@ static void mcor_add_line(mcor_joining* j, int32_t from, int32_t to)
   j->last[to] = from;
 }
 
-static mcor_status mcor_fail_lines(mcor_context* context, int64_t lines)
-{
-  return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld lines could not be allocated.", (long long)lines);
-}
-
 /* Lines are triangles of which two corners are one. */
 static bool mcor_is_line(const int32_t* t)
 {
@@ -65,10 +59,7 @@ static bool mcor_is_line(const int32_t* t)
 static mcor_status mcor_read_lines(
   mcor_context* context, const mcor_surface* surface, mcor_joining* j)
 {
-  if (!mcor_create_joining(surface->point_count, j))
-  {
-    return mcor_fail_lines(context, surface->triangle_count);
-  }
+  MCOR_TRY(mcor_allocated(context, mcor_create_joining(surface->point_count, j)));
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
@@ -245,10 +236,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   const mcor_plane* plane = &context->plane;
   mcor_joining joining;
   mcor_status status = mcor_read_lines(context, surface, &joining);
-  if (status == MCOR_OK && !mcor_join(&joining, surface))
-  {
-    status = mcor_fail_lines(context, joining.count);
-  }
+  status = status == MCOR_OK ? mcor_allocated(context, mcor_join(&joining, surface)) : status;
   mcor_free_joining(&joining);
   MCOR_TRY(status);
   mcor_keep_filled(surface);

@@ -17,7 +17,7 @@
 
 #include <stdlib.h>
 
-/* ---- the mesh -------------------------------------------------------------------------------- */
+/* ---- the mesh ---- */
 
 /* The surface's vertices on the sides. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)

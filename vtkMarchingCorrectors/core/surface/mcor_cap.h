@@ -28,7 +28,7 @@ void mcor_end_caps(mcor_context* context);
 bool mcor_is_cap(const mcor_context* context, int64_t v);
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3]);
 
-/* ---- mcor_cap_face.c: nodes of one side of the period ------------------------------------------ */
+/* ---- mcor_cap_face.c: nodes of one side of the period ---- */
 
 enum
 {
@@ -115,9 +115,9 @@ enum
   MCOR_VIEW_DECISIONS,
   MCOR_BRICK_VIEWS
 };
-typedef void (*mcor_look)(
-  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data);
-/* Calls `look` with them, if there are any. */
+typedef mcor_status (*mcor_look)(
+  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data);
+/* Calls `look` with them, if there are any; returns what it does. */
 mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data);
 
 /* Axis a's lower or upper side; opposite: the other one, where that is known. */

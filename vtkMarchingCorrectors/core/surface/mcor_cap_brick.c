@@ -30,7 +30,7 @@ const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[
   return number < 0 ? NULL : &wall->bricks[number];
 }
 
-/* ---- which bricks ------------------------------------------------------------------------------ */
+/* ---- which bricks ---- */
 
 /* The nodes of caps: of the box and its ring. */
 static void mcor_set_wall_extent(const mcor_context* context, mcor_wall* wall)
@@ -157,10 +157,10 @@ static mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall)
   return status == MCOR_OK ? mcor_sort_wall(context, wall) : status;
 }
 
-/* ---- what marching knows ------------------------------------------------------------------------ */
+/* ---- what marching knows ---- */
 
-static void mcor_take_wall_masks(
-  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+static mcor_status mcor_take_wall_masks(
+  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
 {
   const mcor_wall* wall = data;
   const cl_int* bricks = views[MCOR_VIEW_BRICKS];
@@ -181,9 +181,10 @@ static void mcor_take_wall_masks(
       }
     }
   }
+  return MCOR_OK;
 }
 
-/* ---- what it does not know ---------------------------------------------------------------------- */
+/* ---- what it does not know ---- */
 
 /* Evaluates nodes that are needed, of bricks [first, last): those above, and where it is not known which are. */
 static mcor_status mcor_fill_wall_nodes(mcor_context* context, mcor_wall* wall, int64_t first,

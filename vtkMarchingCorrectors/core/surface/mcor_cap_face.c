@@ -16,7 +16,7 @@
 /* Points evaluated at a time. */
 #define MCOR_CAP_BATCH (1 << 18)
 
-/* ---- what marching knows ------------------------------------------------------------------- */
+/* ---- what marching knows ---- */
 
 /* Sets `to` at those nodes of a brick that lie in a plane of the face, where their bits in a mask are
  * set. */
@@ -42,8 +42,8 @@ static void mcor_mark_plane(
   }
 }
 
-static void mcor_take_masks(
-  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+static mcor_status mcor_take_masks(
+  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
 {
   mcor_cap_face* face = data;
   const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
@@ -66,6 +66,7 @@ static void mcor_take_masks(
         face->state);
     }
   }
+  return MCOR_OK;
 }
 
 mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data)
@@ -83,15 +84,12 @@ mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data)
     [MCOR_VIEW_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
       &views[MCOR_VIEW_DECISIONS] }
   };
-  const mcor_status status = mcor_map_all(context, mappings, count);
-  if (status == MCOR_OK && count > 0)
-  {
-    look(context, views, data);
-  }
+  mcor_status status = mcor_map_all(context, mappings, count);
+  status = status == MCOR_OK && count > 0 ? look(context, views, data) : status;
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* ---- what it does not know --------------------------------------------------------------------- */
+/* ---- what it does not know ---- */
 
 void mcor_release_cap_points(mcor_context* context, mcor_cap_points* p)
 {

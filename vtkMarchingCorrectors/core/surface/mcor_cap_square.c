@@ -17,7 +17,7 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-/* ---- vertices ---------------------------------------------------------------------------------- */
+/* ---- vertices ---- */
 
 static mcor_status mcor_add_cap_vertex(mcor_cap_job* job, const double at[3], bool is_cut)
 {
@@ -137,7 +137,7 @@ static mcor_status mcor_cap_cut(
   return MCOR_OK;
 }
 
-/* ---- polygons ---------------------------------------------------------------------------------- */
+/* ---- polygons ---- */
 
 mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3])
 {

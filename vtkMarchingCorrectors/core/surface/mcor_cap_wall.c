@@ -46,7 +46,7 @@ typedef struct mcor_wall_cell
   double margin[8];
 } mcor_wall_cell;
 
-/* ---- edges that trimming has made ---------------------------------------------------------------- */
+/* ---- edges that trimming has made ---- */
 
 static int mcor_compare_wall_edges(const void* x, const void* y)
 {
@@ -112,7 +112,7 @@ static int64_t mcor_find_wall_edge(const mcor_wall_job* job, cl_ulong cell)
   return low;
 }
 
-/* ---- cells ---------------------------------------------------------------------------------------- */
+/* ---- cells ---- */
 
 /* False where a corner is not near both fluid and solids, or the cell is none of those that are marched. */
 static bool mcor_load_wall_cell(
@@ -222,7 +222,7 @@ static mcor_status mcor_cut_wall_face(
   return mcor_cap_square(cap, &face, 0, 0);
 }
 
-/* ---- loops ---------------------------------------------------------------------------------------- */
+/* ---- loops ---- */
 
 static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
 {

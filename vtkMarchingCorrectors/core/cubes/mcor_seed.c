@@ -6,9 +6,6 @@
 #include "mcor_box.h"
 #include "mcor_plane.h"
 
-#include <float.h>
-#include <math.h>
-
 /* Requests bricks beside those with `fresh` nodes, which these show to be needed. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
@@ -109,32 +106,6 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_request_beside(context, &bricks->now.known));
   return mcor_place_bricks(context);
-}
-
-/* How far rounding may move a Shepard mean of values that are all on one side: of n particles that
- * reach a point, the two sums are off by (n + 3) and (n + 1) unit roundoffs of their absolute terms
- * at most, the quotient by another one. A point is reached from 27 cells of each level. */
-double mcor_side_margin(const mcor_context* context)
-{
-  const mcor_grid* grid = &context->grid;
-  const double reaching = fmin(27.0 * grid->level_count * grid->most_in_cell, grid->count);
-  const double share =
-    (2 * reaching + 16) * (context->cl.real_size == sizeof(float) ? FLT_EPSILON : DBL_EPSILON) / 2;
-  return share < 0.5 ? share / (1 - share) : 1e30;
-}
-
-/* The sides of the iso value on which particles are, where the field has values at particles. */
-mcor_status mcor_find_side_flags(mcor_context* context, double iso)
-{
-  mcor_grid* grid = &context->grid;
-  const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
-  MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
-  return context->run.options->field == MCOR_WEIGHT_SUM
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
-        MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-        MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)), MCOR_REAL(iso),
-        MCOR_BUFFER(&grid->side_flags));
 }
 
 /* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */

@@ -183,6 +183,8 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input);
 
 /* mcor_scan.c */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total);
+mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks,
+  const mcor_buffer* within, int count, int* total);
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit);
 void mcor_release_sort(mcor_context* context);
@@ -222,8 +224,6 @@ mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
-mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks,
-  const mcor_buffer* within, int count, int* total);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);

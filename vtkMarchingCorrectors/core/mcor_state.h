@@ -97,7 +97,7 @@ typedef struct mcor_mesh
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
   int cap_first;
-  uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap.c */
+  uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer means; /* real [vertex_count][attributes.count] */
@@ -131,7 +131,7 @@ typedef struct mcor_tree
   int region_count, first_region[MCOR_TREE_LEVEL_LIMIT + 2];
 } mcor_tree;
 
-/* Marching of leaves; see mcor_adaptive.c. Slots are those of mcor_brick_data. */
+/* Marching of leaves; see mcor_adaptive_march.c. Slots are those of mcor_brick_data. */
 typedef struct mcor_adaptive
 {
   int count;                                 /* leaves where there may be surface */

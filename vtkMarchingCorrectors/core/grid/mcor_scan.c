@@ -53,6 +53,17 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
   return MCOR_OK;
 }
 
+/* Number of bits set in both of two arrays of masks. */
+mcor_status mcor_count_bits(
+  mcor_context* context, const mcor_buffer* masks, const mcor_buffer* within, int count, int* total)
+{
+  mcor_buffer* counts = &context->bricks.bit_counts;
+  MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_bits", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(masks), MCOR_BUFFER(within), MCOR_BUFFER(counts)));
+  return mcor_scan(context, counts, count, total);
+}
+
 static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
 {
   const mcor_buffer c = *a;

@@ -4,7 +4,7 @@
 #define mcor_fill_h
 
 /* Filling: in two dimensions, triangles of the region above the least iso value, divided by the lines of the
- * others. See mcor_fill.c. */
+ * others. See mcor_fill_region.c. */
 
 #include "mcor_cap.h"
 #include "mcor_table.h"

@@ -3,7 +3,7 @@
 #ifndef mcor_cap_h
 #define mcor_cap_h
 
-/* Caps: what closes the surface at the sides of a period or a box. See mcor_cap.c. */
+/* Caps: what closes the surface at the sides of a period or a box. See mcor_cap_make.c. */
 
 #include "mcor_internal.h"
 

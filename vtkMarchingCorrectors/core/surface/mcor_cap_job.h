@@ -3,7 +3,7 @@
 #ifndef mcor_cap_job_h
 #define mcor_cap_job_h
 
-/* Private to the caps: what is made on the host (mcor_cap.c) before the mesh gets it
+/* Private to the caps: what is made on the host (mcor_cap_make.c) before the mesh gets it
  * (mcor_cap_mesh.c). */
 
 #include "mcor_cap.h"

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Squares of caps: cut along the lines between the surface's own vertices, and by what trims the surface. See
- * mcor_cap.c. */
+ * mcor_cap_make.c. */
 
 #include "mcor_cap_job.h"
 

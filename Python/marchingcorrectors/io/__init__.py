@@ -59,8 +59,8 @@ def _read(paths, types, walls):
     with open(path, "rb") as file:
         head = file.read(64)
     if head.startswith(b"\x89HDF\r\n\x1a\n"):
-        from .hdf5 import read_hdf5
-        return read_hdf5(path, types)
+        from .snapshot import read_snapshot
+        return read_snapshot(path, types)
     if head.startswith(b"#File "):
         from .bi4 import read_bi4
         return read_bi4(path)

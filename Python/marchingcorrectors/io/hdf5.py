@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""HDF5 by h5py: which layout it is, and data sets of this file alone."""
+"""HDF5 by h5py: data sets of this file alone."""
 import os
 from typing import NamedTuple, Optional
 
@@ -85,22 +85,3 @@ def load(parts, name):
 def names_of(group, count):
     """Arrays of numbers with so many rows."""
     return [name for name in group if is_numbers(get(group, name)) and get(group, name).shape[:1] == (count,)]
-
-
-def read_hdf5(path, types):
-    import h5py
-
-    from . import gadget, phantom, pysph
-
-    with h5py.File(path, "r") as file:
-        names = set(file)
-    if any(name.startswith("PartType") for name in names):
-        return gadget.read_gadget(path, types)
-    if types is not None:
-        raise FileError(f"{path.name} is no snapshot of GADGET's layout: it has no types to choose.")
-    if {"header", "particles"} <= names:
-        return phantom.read_hdf5_dump(path)
-    if {"solver_data", "particles"} <= names:
-        return pysph.read_pysph(path)
-    raise FileError(f"{path.name} is HDF5, but no layout that is known here: GADGET, GIZMO, AREPO and SWIFT have "
-                    "PartType0, Phantom has header and particles, PySPH has solver_data and particles.")

@@ -62,8 +62,8 @@ static mcor_status mcor_take_fill_vertices(
     line->margin[v] = mcor_is_trimmed(context)
       ? mcor_get_real(context, views[MCOR_FILL_QUANTITY], v) - threshold
       : INFINITY;
-    MCOR_TRY(mcor_allocated(context,
-      mcor_table_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) >= 0));
+    MCOR_TRY(mcor_allocated(
+      context, mcor_table_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) >= 0));
   }
   return MCOR_OK;
 }
@@ -77,8 +77,7 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   line->margin = malloc(n * sizeof *line->margin);
   line->cuts = malloc(cuts * sizeof *line->cuts + 1);
   line->number = malloc((n + cuts) * sizeof *line->number);
-  MCOR_TRY(
-    mcor_allocated(context, line->offset && line->margin && line->cuts && line->number));
+  MCOR_TRY(mcor_allocated(context, line->offset && line->margin && line->cuts && line->number));
   memset(line->number, 0xff, (n + cuts) * sizeof *line->number);
   line->vertex_count = (int)n;
   line->cut_count = (int)cuts;

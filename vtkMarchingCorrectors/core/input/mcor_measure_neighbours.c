@@ -15,13 +15,13 @@
 #include <string.h>
 
 #define MCOR_PI 3.14159265358979323846
-#define MCOR_WATCHED 32 /* fluid particles, bits of a mask */
-#define MCOR_WATCH_CELLS                                                                           \
-  64 /* along each axis of a coarse grid, bits of a row; the outermost are in no reach */
+#define MCOR_WATCHED 32     /* fluid particles, bits of a mask */
+#define MCOR_WATCH_CELLS 64 /* at most, along each axis of a coarse grid; bits of a row */
 
 /* Fluid particles, and whether any cell is in reach of each. */
 struct mcor_watch
 {
+  int cells; /* along each axis; the outermost are in no reach */
   double low[3], cells_per_length[3];
   uint32_t* reached; /* [cells], bit s: of watched particle s */
   uint64_t
@@ -37,7 +37,7 @@ static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
 {
   const double cell = (x - watch->low[axis]) * watch->cells_per_length[axis];
   const double above = cell > 0 ? cell : 0;
-  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
+  return (int)(above < watch->cells - 1 ? above : watch->cells - 1);
 }
 
 static mcor_status mcor_choose_watched(
@@ -56,9 +56,15 @@ static mcor_status mcor_choose_watched(
   return MCOR_OK;
 }
 
-/* Lays the grid over what is in reach of the watched. */
-static void mcor_place_watch(mcor_watch* watch)
+/* Lays the grid over what is in reach of the watched: no more cells than particles look them up. */
+static void mcor_place_watch(mcor_watch* watch, int64_t particles)
 {
+  watch->cells = 4;
+  while (watch->cells < MCOR_WATCH_CELLS &&
+    (int64_t)watch->cells * watch->cells * watch->cells < particles)
+  {
+    ++watch->cells;
+  }
   for (int a = 0; a < 3; ++a)
   {
     double low = DBL_MAX, high = -DBL_MAX;
@@ -68,7 +74,7 @@ static void mcor_place_watch(mcor_watch* watch)
       low = fmin(low, watch->x[s][a] - reach);
       high = fmax(high, watch->x[s][a] + reach);
     }
-    const double cell = (high - low) / (MCOR_WATCH_CELLS - 3);
+    const double cell = (high - low) / (watch->cells - 3);
     watch->low[a] = low - cell;
     watch->cells_per_length[a] = cell > 0 ? 1 / cell : 0;
   }
@@ -190,7 +196,7 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
   watch->reached = reached;
   watch->support = mcor_support_factor(context->run.options->sph_kernel);
   MCOR_TRY(mcor_choose_watched(context, input, watch));
-  mcor_place_watch(watch);
+  mcor_place_watch(watch, input->count);
   for (int s = 0; s < watch->count; ++s)
   {
     mcor_mark_reached(watch, s);

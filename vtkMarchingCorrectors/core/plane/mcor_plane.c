@@ -296,8 +296,9 @@ mcor_status mcor_flatten(
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(options->capping, context, MCOR_INVALID_ARGUMENT,
-    "Capping closes surfaces in three dimensions; these particles lie in a plane. Turn it off.");
+  MCOR_RETURN_IF(options->capping && options->filled, context, MCOR_INVALID_ARGUMENT,
+    "Capping cannot be combined with filling, which ends at the sides of a period or a box. Turn "
+    "one of them off.");
   if (options->filled) /* pairs may miss lines that a region ends at */
   {
     o->seeds = MCOR_COMPLETE;

@@ -512,9 +512,10 @@ public:
    * What the last update used, for a panel; of composite data, for the last block. Empty, or 0, if nothing
    * was drawn. The range is that of the contoured component, magnitude or dot product at the fluid
    * particles, 0 to 0 for the free surface. SurfaceMeasures: the area of the surface and, if it is closed,
-   * its volume, in words. IsoValueArrayName: the point array that says which iso value each point has, if
-   * ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid the fluid fills, known
-   * before an update begins, which warns from a billion on; 0: not known.
+   * its volume, in words; or that there are two dimensions, the length of the lines, and the area that closed
+   * ones enclose or that is filled. IsoValueArrayName: the point array that says which iso value each point
+   * has, if ComputeScalars is on. EstimatedCells: about how many cubes, in two dimensions squares, of the
+   * virtual grid the fluid fills, known before an update begins, which warns from a billion on; 0: not known.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkGetCharFromStdStringMacro(UsedIsoValues);

@@ -136,6 +136,12 @@ std::string vtkMarchingCorrectorsDescribeIsoValues(const mcor_options& options)
 
 std::string vtkMarchingCorrectorsDescribeMeasures(const mcor_statistics& statistics)
 {
+  if (statistics.dimension == 2 && statistics.length > 0.0)
+  {
+    return "two dimensions: length " + Text(statistics.length) +
+      (statistics.area > 0.0 ? ", area " + Text(statistics.area)
+                             : "; open, so that it has no area");
+  }
   return statistics.area <= 0.0 ? ""
                                 : "area " + Text(statistics.area) +
       (statistics.is_closed ? ", volume " + Text(statistics.volume)

@@ -128,7 +128,7 @@ static void test_trimming(void** state)
     }
     CORE_CHECK(2 * inside > surface.point_count, "%d of %lld near 1", inside,
       (long long)surface.point_count);
-    const plane_field field = { &set, &options, 0 };
+    const plane_field field = { &set, &options, 0, NULL };
     plane_check_lines(&field, iso, &surface, 0);
     mcor_free_surface(&surface);
   }
@@ -253,7 +253,7 @@ static void test_derivatives_and_gauges(void** state)
     line.to[(axis + 1) % 3] = 12;
     mcor_gauges gauges;
     CORE_OK(context, mcor_gauge(context, &input, &options, &line, 1, &gauges));
-    const plane_field field = { &set, &options, axis };
+    const plane_field field = { &set, &options, axis, NULL };
     const double at = gauges.readings[0].place[(axis + 1) % 3];
     CORE_CHECK(gauges.readings[0].state == MCOR_GAUGE_WET && gauges.readings[0].place[axis] == 5 &&
         fabs(plane_evaluate(&field, at, 0).fluid - 0.5) < 1e-4,

@@ -303,7 +303,8 @@ public:
   /**
    * Close the surface at the sides of the period and of the box's cells, by flat triangles where values are
    * above the iso value; they share the points of the surface's border. With SOLIDS_WALL the free surface is
-   * closed at walls, too. Trimming may still leave the surface open. Off by default. An error with PAIRS.
+   * closed at walls, too. Trimming may still leave the surface open. Off by default. An error with PAIRS. In two
+   * dimensions by lines along these sides, not at walls; an error with Filled.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);

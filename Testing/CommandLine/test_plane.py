@@ -72,6 +72,19 @@ class Plane(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
+    def test_capped(self):
+        """In a box the lines are closed around what is filled there."""
+        box = ["--free-surface", "--box=-0.35,0.4,-inf,inf,-inf,0.2"]
+        open_ = self.succeed(*box, "--cubes", "uniform")["statistics"]
+        capped = self.succeed(*box, "--capping")["statistics"]
+        filled = self.succeed(*box, "--filled")["statistics"]
+        self.assertNotIn("area", open_)
+        self.assertEqual(capped["lines"], 1)
+        self.assertAlmostEqual(capped["area"], filled["area"], delta=1e-9)
+        self.assertAlmostEqual(capped["length"] - open_["length"], 0.75 + 2 * 1.2, delta=0.1)
+        self.output.unlink()
+        self.refuse(self.extract(*box, "--capping", "--filled"), 1, "cannot be combined with filling")
+
     def test_too_many_squares_to_fill(self):
         """Said before lines are made: a few particles with a small smoothing length make squares small everywhere."""
         self.arrays["SmoothingLength"] = self.arrays["SmoothingLength"][:]

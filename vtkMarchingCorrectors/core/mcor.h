@@ -265,7 +265,8 @@ extern "C"
      * with either value close that border, by points on lattice edges with the normals of triangles. All
      * cubes then have the smallest size. With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie
      * on a periodic side. A box that no particle reaches gets no caps, even where the iso value of a sum is
-     * 0. Not with MCOR_PAIRS; no effect without a period, box or walls. */
+     * 0. Not with MCOR_PAIRS; no effect without a period, box or walls. Two dimensions: lines along these sides
+     * close the lines, and their cuts are exact; not at walls, and not with `filled`. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, of

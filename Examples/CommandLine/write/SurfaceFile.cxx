@@ -8,14 +8,18 @@
 #include "Job.h"
 #include "MessageCapture.h"
 #include "SafeText.h"
+#include "TableText.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 #include "vtkTriangle.h"
 #include "vtkXMLPolyDataWriter.h"
 
@@ -220,10 +224,59 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   return true;
 }
 
+/// Of two dimensions: a row for each point of each line, a column for each component.
+bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
+{
+  vtkNew<vtkTable> table;
+  vtkNew<vtkIdList> line, points;
+  const auto add = [&](const std::string& name)
+  {
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(name.c_str());
+    table->AddColumn(column);
+    return vtkSmartPointer<vtkDoubleArray>(column);
+  };
+  const vtkSmartPointer<vtkDoubleArray> numbers = add("Line");
+  for (vtkIdType l = 0; l < surface->GetNumberOfLines(); ++l)
+  {
+    surface->GetLines()->GetCellAtId(l, line);
+    for (const vtkIdType point : *line)
+    {
+      numbers->InsertNextValue(static_cast<double>(l));
+      points->InsertNextId(point);
+    }
+  }
+  const auto addAll = [&](vtkDataArray* array, const std::vector<std::string>& names)
+  {
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
+    {
+      const vtkSmartPointer<vtkDoubleArray> column = add(names[static_cast<std::size_t>(c)]);
+      for (const vtkIdType point : *points)
+      {
+        column->InsertNextValue(array->GetComponent(point, c));
+      }
+    }
+  };
+  addAll(surface->GetPoints()->GetData(), { "X", "Y", "Z" });
+  for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = surface->GetPointData()->GetArray(i);
+    std::vector<std::string> names;
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
+    {
+      names.push_back(
+        array->GetName() + (array->GetNumberOfComponents() > 1 ? ":" + std::to_string(c) : ""));
+    }
+    addAll(array, names);
+  }
+  bytes = TableHeader(table) + TableRows(table);
+  return true;
+}
+
 /// Every format that is written; all that is known of one stands here.
 using Writer = std::function<bool(vtkPolyData*, const ColorScale&, std::string& bytes)>;
 const std::vector<FileFormat<Writer>> Formats = { { ".vtp", WriteXml }, { ".stl", WriteStl },
-  { ".ply", WritePly }, { ".obj", WriteObj } };
+  { ".ply", WritePly }, { ".obj", WriteObj }, { ".csv", WriteCsv } };
 
 const char* const FilmMark = "<!-- a step of a film by marching-correctors -->";
 
@@ -245,12 +298,19 @@ std::string SurfaceBytes(
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
   std::string bytes;
-  if (surface->GetNumberOfLines() > 0 && surface->GetNumberOfPolys() == 0 &&
-    !EndsWith(file, ".vtp"))
+  const bool isTable = EndsWith(file, ".csv");
+  const vtkIdType lines = surface->GetNumberOfLines(), triangles = surface->GetNumberOfPolys();
+  if (lines > 0 && triangles == 0 && !isTable && !EndsWith(file, ".vtp"))
   {
     throw std::runtime_error(file +
       " could not be written: such a file cannot hold lines, which two dimensions give. "
-      "Write a .vtp file");
+      "Write a .vtp file, or a .csv file of their points");
+  }
+  if (isTable && lines == 0 && triangles > 0)
+  {
+    throw std::runtime_error(file +
+      " could not be written: such a file holds the points of lines, which two dimensions give, but "
+      "this is a surface. Write a .vtp file");
   }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
   {
@@ -288,7 +348,7 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
       std::string(array->GetName()) == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
   }
-  if (EndsWith(file, ".vtp") || names.empty() || (isPly && !colors.GetName().empty()))
+  if (EndsWith(file, ".vtp") || EndsWith(file, ".csv") || names.empty() || (isPly && !colors.GetName().empty()))
   {
     return "";
   }

@@ -314,7 +314,7 @@ static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
     low = before ? t : low;
     high = before ? high : t;
   }
-  return o->field != MCOR_WEIGHT_SUM && (p.fluid < least + 1e-5 || p.margin < 1e-4);
+  return p.margin < 1e-4 || (o->field != MCOR_WEIGHT_SUM && p.fluid < least + 1e-5);
 }
 
 /* The number of the edge that a point is on; -1: of none. */

@@ -94,7 +94,7 @@ class Plane(CommandLineTest):
             rows = list(csv.DictReader(stream))
         self.assertEqual({row["Line"] for row in rows}, {"0", "1"})
         for row in rows:
-            self.assertAlmostEqual(math.hypot(float(row["X"]), float(row["Z"])), float(row["IsoValue"]), delta=0.02)
+            self.assertAlmostEqual(math.hypot(float(row["X"]), float(row["Z"])), float(row["Radius"]), delta=0.02)
             self.assertEqual(float(row["Y"]), 0.25)
             self.assertAlmostEqual(float(row["Velocity:2"]), float(row["Z"]), delta=0.02)
         for line in "0", "1":

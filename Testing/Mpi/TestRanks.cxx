@@ -62,6 +62,7 @@ void ContourInPlane(vtkMarchingCorrectors* filter)
   filter->SetValue(1, 1.0);
   filter->SetSmoothingLengthArrayName("h");
   filter->SetVolumeArrayName("area");
+  filter->SetCubeSizeFactor(0.2);
   filter->ComputeBoundaryFlagOn();
   filter->SetCubeSizeModeToAdaptive();
 }

@@ -17,7 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-STATISTICS = ("Points", "Triangles", "VirtualCells", "SeedCells", "CellsUsed", "FluidParticles", "PeriodicBounds",
+STATISTICS = ("Points", "Triangles", "Lines", "Length", "Area", "VirtualCells", "SeedCells", "CellsUsed", "FluidParticles", "PeriodicBounds",
               "CubeSize", "ScalarRange", "SmoothingLengthRange", "IsoValues")
 
 

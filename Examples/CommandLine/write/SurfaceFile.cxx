@@ -228,46 +228,39 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   vtkNew<vtkTable> table;
-  vtkNew<vtkIdList> line, points;
-  const auto add = [&](const std::string& name)
-  {
-    vtkNew<vtkDoubleArray> column;
-    column->SetName(name.c_str());
-    table->AddColumn(column);
-    return vtkSmartPointer<vtkDoubleArray>(column);
-  };
-  const vtkSmartPointer<vtkDoubleArray> numbers = add("Line");
+  vtkNew<vtkIdList> line;
+  std::vector<vtkIdType> lines, points;
   for (vtkIdType l = 0; l < surface->GetNumberOfLines(); ++l)
   {
     surface->GetLines()->GetCellAtId(l, line);
-    for (const vtkIdType point : *line)
-    {
-      numbers->InsertNextValue(static_cast<double>(l));
-      points->InsertNextId(point);
-    }
+    lines.insert(lines.end(), static_cast<std::size_t>(line->GetNumberOfIds()), l);
+    points.insert(points.end(), line->begin(), line->end());
   }
-  const auto addAll = [&](vtkDataArray* array, const std::vector<std::string>& names)
+  const auto add = [&](const std::string& name, const std::function<double(std::size_t)>& value)
   {
-    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(name.c_str());
+    for (std::size_t i = 0; i < points.size(); ++i)
     {
-      const vtkSmartPointer<vtkDoubleArray> column = add(names[static_cast<std::size_t>(c)]);
-      for (const vtkIdType point : *points)
-      {
-        column->InsertNextValue(array->GetComponent(point, c));
-      }
+      column->InsertNextValue(value(i));
     }
+    table->AddColumn(column);
   };
-  addAll(surface->GetPoints()->GetData(), { "X", "Y", "Z" });
+  const auto addArray = [&](vtkDataArray* array, int c, const std::string& name)
+  { add(name, [&](std::size_t i) { return array->GetComponent(points[i], c); }); };
+  add("Line", [&](std::size_t i) { return static_cast<double>(lines[i]); });
+  for (int c = 0; c < 3; ++c)
+  {
+    addArray(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
+  }
   for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = surface->GetPointData()->GetArray(i);
-    std::vector<std::string> names;
     for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
     {
-      names.push_back(
-        array->GetName() + (array->GetNumberOfComponents() > 1 ? ":" + std::to_string(c) : ""));
+      const bool isOne = array->GetNumberOfComponents() == 1;
+      addArray(array, c, array->GetName() + (isOne ? "" : ":" + std::to_string(c)));
     }
-    addAll(array, names);
   }
   bytes = TableHeader(table) + TableRows(table);
   return true;

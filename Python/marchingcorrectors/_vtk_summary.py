@@ -37,7 +37,7 @@ def estimate_cells(particles, given, options):
 def is_drawn(positions, options):
     """Which particles are where cells are drawn."""
     low, high = np.array(options.box[:]).reshape(3, 2).T
-    return ((positions >= low) & (positions < high)).all(1) | (not any(options.box))
+    return ((positions >= low) & ((positions < high) | (positions == low))).all(1) | (not any(options.box))
 
 
 def is_given(array):

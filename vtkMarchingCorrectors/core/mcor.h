@@ -248,7 +248,7 @@ extern "C"
      * the box are evaluated. With MCOR_PAIRS and no ranks, the whole surface is evaluated up to the
      * correction, because cells grow from wherever pairs are. mcor_probe and mcor_derive read the box only
      * with globals. */
-    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
+    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L; flat (y0 = y1) only around particles in that plane */
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
      * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that of

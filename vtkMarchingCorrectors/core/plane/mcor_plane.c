@@ -242,9 +242,10 @@ void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to
     has = has || from[i] != 0;
     sides[i] = from[2 * mcor_plane_axis(plane, i / 2) + i % 2];
   }
-  if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] < sides[5])
+  if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] <= sides[5])
   {
-    const bool inside = sides[4] <= plane->at && plane->at < sides[5];
+    /* A flat box, around the particles, too. */
+    const bool inside = sides[4] <= plane->at && (plane->at < sides[5] || plane->at == sides[4]);
     sides[4] = inside ? -INFINITY : DBL_MAX;
     sides[5] = INFINITY;
   }

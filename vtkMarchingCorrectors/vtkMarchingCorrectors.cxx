@@ -268,7 +268,7 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
   if (this->EstimatedCells >= vtkMarchingCorrectorsHugeCells)
   {
     vtkWarningMacro(<< this->BlockName << "The fluid fills about " << this->EstimatedCells
-                    << " cubes of the virtual grid, so this may take minutes and much memory. "
+                    << " cells of the virtual grid, so this may take minutes and much memory. "
                     << "A larger cube size takes less; the run can be cancelled.");
   }
 }

@@ -301,9 +301,9 @@ public:
 
   ///@{
   /**
-   * Close the surface at the sides of the period and of the box's cells, by flat triangles where values are
-   * above the iso value; they share the points of the surface's border. With SOLIDS_WALL the free surface is
-   * closed at walls, too. Trimming may still leave the surface open. Off by default. An error with PAIRS.
+   * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines: by lines) where
+   * values are above the iso value; they share the points of its border. With SOLIDS_WALL the free surface is
+   * closed at walls, too; lines are not. Trimming may leave it open. Off by default. An error with PAIRS or Filled.
    */
   vtkSetMacro(Capping, vtkTypeBool);
   vtkGetMacro(Capping, vtkTypeBool);
@@ -512,9 +512,9 @@ public:
    * What the last update used, for a panel; of composite data, for the last block. Empty, or 0, if nothing
    * was drawn. The range is that of the contoured component, magnitude or dot product at the fluid
    * particles, 0 to 0 for the free surface. SurfaceMeasures: the area of the surface and, if it is closed,
-   * its volume, in words. IsoValueArrayName: the point array that says which iso value each point has, if
-   * ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid the fluid fills, known
-   * before an update begins, which warns from a billion on; 0: not known.
+   * its volume, in words; of lines, their length and area. IsoValueArrayName: the point array that says which iso
+   * value each point has, if ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid (squares,
+   * of lines) the fluid fills, known before an update begins, which warns from a billion on; 0: not known.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkGetCharFromStdStringMacro(UsedIsoValues);

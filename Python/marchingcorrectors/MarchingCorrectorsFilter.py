@@ -389,9 +389,9 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             iso = [0.5 if choice.FreeSurface else found[1] if found else 0.0]
         arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
-        self.EstimatedCells = estimate_cells(particles, options)
+        self.EstimatedCells = estimate_cells(particles, arguments, options)
         if self.EstimatedCells >= HUGE_CELLS:
-            self._say(f"The fluid fills about {self.EstimatedCells:g} cubes of the virtual grid, so this may take "
+            self._say(f"The fluid fills about {self.EstimatedCells:g} cells of the virtual grid, so this may take "
                       "minutes and much memory. A larger cube size takes less; the run can be cancelled.", "Warning")
         try:
             self._call_core(particles, arguments, surface)

@@ -121,7 +121,7 @@ class Surface(Result):
             mesh.cell_data["TriangleKeys"] = self.triangle_keys
         if self.band_value is not None:
             mesh.cell_data["BandValue"] = np.concatenate([self.line_values(), self.band_value])
-        if self.normals is not None:
+        if self.normals is not None and (self.line_offsets is None or self.band_value is not None):  # lines were dark
             mesh.point_data.active_normals_name = "Normals"
         mesh.set_active_scalars(None)  # colours are for the user to choose
         return mesh

@@ -82,6 +82,6 @@ class Ahead:
         particles = Particles(choice, points)
         try:
             particles.collect((None, None), [])
-            ahead["cells"] += estimate_cells(particles, self._options(choice))
+            ahead["cells"] += estimate_cells(particles, particles.arguments(), self._options(choice))
         except Unusable:
             pass

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """What a run of the VTK filter found and used, in words for a panel, and what a run may take."""
+import ctypes
+
 import numpy as np
 
 from . import _structs as c
@@ -10,9 +12,9 @@ from ._vtk_particles import to_numpy
 HUGE_CELLS = 1e9
 
 
-def estimate_cells(particles, options):
-    """About how many cubes of the virtual grid the fluid (in the box, if there is one) fills: a particle takes
-    (h / 1.3)^3."""
+def estimate_cells(particles, given, options):
+    """About how many cubes, in a plane squares, of the virtual grid the fluid (in the box, if there is one) fills: a particle takes
+    (h / 1.3)^3. given: what they are for the core."""
     choice = particles.choice
     estimated = bool(choice.EstimateSmoothingLength)
     fluid = np.ones(particles.count, bool) if particles.solid is None else ~particles.solid
@@ -22,8 +24,8 @@ def estimate_cells(particles, options):
     h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
     h = h[fluid].astype(np.float64)
     drawn = is_drawn(to_numpy(particles.positions), options)[fluid]
-    plane = is_plane(to_numpy(particles.positions), options.dimension)
-    if options.level_limit and not plane:  # cubes are larger where particles are
+    plane = lib.mcor_find_dimension(ctypes.byref(given.input), options.dimension) == 2
+    if options.level_limit:  # cubes are larger where particles are
         h /= 2 ** np.minimum(np.floor(np.log2(h / h.min())), options.level_limit)
     radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated
     per_length = 1 / lib.mcor_support_factor(options.sph_kernel) if radius else 1.0
@@ -32,16 +34,10 @@ def estimate_cells(particles, options):
     return float((h[drawn] ** power).sum()) * (per_length / 1.3) ** power / size ** power if size > 0 else 0.0
 
 
-def is_plane(positions, dimension):
-    """As mcor_find_dimension of mcor.h."""
-    constant = (positions == positions[:1]).all(0).sum() if dimension == 0 and len(positions) else 0
-    return dimension == 2 or constant == 1
-
-
 def is_drawn(positions, options):
     """Which particles are where cells are drawn."""
     low, high = np.array(options.box[:]).reshape(3, 2).T
-    return ((positions >= low) & (positions < high)).all(1) | (not any(options.box))
+    return ((positions >= low) & ((positions < high) | (positions == low))).all(1) | (not any(options.box))
 
 
 def is_given(array):
@@ -71,6 +67,9 @@ def describe_volume(given):
 
 
 def describe_measures(statistics):
+    if statistics.dimension == 2 and statistics.length > 0:
+        return f"two dimensions: length {statistics.length:g}" + (
+            f", area {statistics.area:g}" if statistics.area > 0 else "; open, so that it has no area")
     if statistics.area <= 0:
         return ""
     return f"area {statistics.area:g}" + (f", volume {statistics.volume:g}" if statistics.is_closed

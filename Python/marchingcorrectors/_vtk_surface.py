@@ -47,7 +47,7 @@ def build_mesh(surface, particles, output, as_float):
     for option, name in COMPUTED.items():
         if arrays[option] is not None:
             add(data, name, arrays[option])
-    if arrays["normals"] is not None:
+    if arrays["normals"] is not None and (surface.statistics.dimension != 2 or surface.band_value):  # lines were dark
         data.SetActiveNormals("Normals")
     if arrays["iso_value"] is not None:
         single = particles.scalar is not None and particles.scalar.GetDataTypeAsString() == "float"

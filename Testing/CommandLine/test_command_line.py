@@ -77,7 +77,7 @@ class Usage(CommandLineTest):
             ([self.input], "needs INPUT and OUTPUT"),
             ([*good, "third", *ISO], "output of several steps is a .pvd file, or .* not 'third'"),
             ([self.input, "surface.png", *ISO],
-             "output is a .vtp, .stl, .ply or .obj file, or .pvd for a film, not 'surface.png'"),
+             "output is a .vtp, .stl, .ply, .obj or .csv file, or .pvd for a film, not 'surface.png'"),
             ([self.input, self.input, *ISO], "would overwrite the input"),
             ([*good, *ISO, "--stats", self.input], "would overwrite the input"),
             ([*good, *ISO, "--stats", "../" + self.directory.name + "/surface.vtp"], "written twice"),

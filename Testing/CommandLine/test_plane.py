@@ -72,6 +72,38 @@ class Plane(CommandLineTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
+    def test_capped(self):
+        """In a box the lines are closed around what is filled there."""
+        box = ["--free-surface", "--box=-0.35,0.4,-inf,inf,-inf,0.2"]
+        open_ = self.succeed(*box, "--cubes", "uniform")["statistics"]
+        capped = self.succeed(*box, "--capping")["statistics"]
+        filled = self.succeed(*box, "--filled")["statistics"]
+        self.assertNotIn("area", open_)
+        self.assertEqual(capped["lines"], 1)
+        self.assertAlmostEqual(capped["area"], filled["area"], delta=1e-9)
+        self.assertAlmostEqual(capped["length"] - open_["length"], 0.75 + 2 * 1.2, delta=0.1)
+        self.output.unlink()
+        self.refuse(self.extract(*box, "--capping", "--filled"), 1, "cannot be combined with filling")
+
+    def test_points_as_a_table(self):
+        """Of two lines, one after the other; a closed one ends with its first point."""
+        table = self.directory / "surface.csv"
+        result = self.run_program(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with open(table, encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        self.assertEqual({row["Line"] for row in rows}, {"0", "1"})
+        for row in rows:
+            self.assertAlmostEqual(math.hypot(float(row["X"]), float(row["Z"])), float(row["Radius"]), delta=0.02)
+            self.assertEqual(float(row["Y"]), 0.25)
+            self.assertAlmostEqual(float(row["Velocity:2"]), float(row["Z"]), delta=0.02)
+        for line in "0", "1":
+            of_line = [row for row in rows if row["Line"] == line]
+            self.assertEqual(of_line[0], of_line[-1])
+        table.unlink()
+        files.write_vtp(self.input, *files.lattice())
+        self.refuse(self.run_program(self.input, table, *ISO), 1, "holds the points of lines")
+
     def test_too_many_squares_to_fill(self):
         """Said before lines are made: a few particles with a small smoothing length make squares small everywhere."""
         self.arrays["SmoothingLength"] = self.arrays["SmoothingLength"][:]

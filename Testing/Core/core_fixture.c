@@ -301,6 +301,7 @@ uint64_t core_hash(const mcor_surface* s)
   uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, &s->point_count, sizeof s->point_count);
   hash = core_hash_bytes(hash, s->points, n * 3 * sizeof(double));
   hash = core_hash_bytes(hash, s->triangles, (size_t)s->triangle_count * 3 * sizeof(int32_t));
+  hash = core_hash_bytes(hash, s->line_points, (size_t)s->line_point_count * sizeof(int32_t));
   hash = core_hash_bytes(hash, s->normals, n * 3 * sizeof(float));
   hash = core_hash_bytes(hash, s->gradients, n * 3 * sizeof(double));
   hash = core_hash_bytes(hash, s->weight_sum, n * sizeof(float));

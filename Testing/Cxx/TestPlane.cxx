@@ -20,6 +20,8 @@ void TestBands()
   filter->Update();
   CHECK(filter->GetOutput()->GetNumberOfPolys() == 0);
   CHECK(!filter->GetOutput()->GetCellData()->HasArray("BandValue"));
+  CHECK(filter->GetOutput()->GetPointData()->HasArray("Normals"));
+  CHECK(!filter->GetOutput()->GetPointData()->GetNormals()); // lines would be lit by them
   filter->FilledOn();
   filter->Update();
   vtkPolyData* output = filter->GetOutput();

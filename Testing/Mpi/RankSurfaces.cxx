@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankSurfaces.h"
 
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
@@ -13,7 +12,6 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <vector>
 
@@ -30,26 +28,23 @@ bool IsSameTuple(vtkDataArray* a, vtkIdType i, vtkDataArray* b, vtkIdType j)
 namespace
 {
 
-using Triangle = std::array<vtkIdType, 3>;
-
-/** A triangle of points' numbers. */
-Triangle Corners(vtkPolyData* surface, vtkDataArray* numbers, vtkIdType i)
+/** A triangle or line, by points' numbers. */
+std::vector<vtkIdType> Corners(vtkPolyData* surface, vtkDataArray* numbers, vtkIdType i)
 {
   vtkNew<vtkIdList> corners;
-  surface->GetPolys()->GetCellAtId(i, corners);
-  Triangle triangle;
-  for (std::size_t c = 0; c < 3; ++c)
+  surface->GetCellPoints(i, corners);
+  std::vector<vtkIdType> found(corners->begin(), corners->end());
+  for (vtkIdType& id : found)
   {
-    const vtkIdType id = corners->GetId(static_cast<vtkIdType>(c));
-    triangle[c] = numbers ? static_cast<vtkIdType>(numbers->GetComponent(id, 0)) : id;
+    id = numbers ? static_cast<vtkIdType>(numbers->GetComponent(id, 0)) : id;
   }
-  return triangle;
+  return found;
 }
 
-/** Each triangle has a number, and is the one that has it in the whole surface. */
-std::string CompareTriangles(vtkPolyData* part, vtkPolyData* whole, std::vector<bool>& seen)
+/** Each triangle and line has a number, and is the one that has it in the whole surface. */
+std::string CompareCells(vtkPolyData* part, vtkPolyData* whole, std::vector<bool>& seen)
 {
-  const vtkIdType count = part->GetNumberOfPolys();
+  const vtkIdType count = part->GetNumberOfCells();
   if (count == 0)
   {
     return "";
@@ -63,14 +58,14 @@ std::string CompareTriangles(vtkPolyData* part, vtkPolyData* whole, std::vector<
   for (vtkIdType i = 0; i < count; ++i)
   {
     const auto number = static_cast<vtkIdType>(numbers->GetComponent(i, 0));
-    if (number < 0 || number >= whole->GetNumberOfPolys() || seen[static_cast<std::size_t>(number)])
+    if (number < 0 || number >= whole->GetNumberOfCells() || seen[static_cast<std::size_t>(number)])
     {
-      return "a triangle has number " + std::to_string(number);
+      return "a cell has number " + std::to_string(number);
     }
     seen[static_cast<std::size_t>(number)] = true;
     if (Corners(part, part->GetPointData()->GetGlobalIds(), i) != Corners(whole, nullptr, number))
     {
-      return "triangle " + std::to_string(number) + " has other corners";
+      return "cell " + std::to_string(number) + " has other corners";
     }
   }
   return "";
@@ -119,24 +114,24 @@ std::string ComparePoints(vtkPolyData* part, vtkPolyData* whole, std::vector<boo
 std::string Compare(const std::vector<vtkSmartPointer<vtkPolyData>>& parts, vtkPolyData* whole)
 {
   std::vector<bool> seen(static_cast<std::size_t>(whole->GetNumberOfPoints()), false);
-  std::vector<bool> seenTriangles(static_cast<std::size_t>(whole->GetNumberOfPolys()), false);
-  if (whole->GetNumberOfPolys() < 200)
+  std::vector<bool> seenCells(static_cast<std::size_t>(whole->GetNumberOfCells()), false);
+  if (whole->GetNumberOfPoints() < 200)
   {
-    return "only " + std::to_string(whole->GetNumberOfPolys()) + " triangles to compare with";
+    return "only " + std::to_string(whole->GetNumberOfPoints()) + " points to compare with";
   }
   for (std::size_t rank = 0; rank < parts.size(); ++rank)
   {
     std::string problem = ComparePoints(parts[rank], whole, seen);
-    problem = problem.empty() ? CompareTriangles(parts[rank], whole, seenTriangles) : problem;
+    problem = problem.empty() ? CompareCells(parts[rank], whole, seenCells) : problem;
     if (!problem.empty())
     {
       return "rank " + std::to_string(rank) + ": " + problem;
     }
   }
-  const auto lost = std::count(seenTriangles.begin(), seenTriangles.end(), false);
+  const auto lost = std::count(seenCells.begin(), seenCells.end(), false);
   if (lost > 0)
   {
-    return std::to_string(lost) + " triangles are missing";
+    return std::to_string(lost) + " cells are missing";
   }
   const auto missing = std::count(seen.begin(), seen.end(), false);
   return missing == 0 ? "" : std::to_string(missing) + " points are missing";

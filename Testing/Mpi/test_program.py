@@ -141,6 +141,22 @@ class Program(unittest.TestCase):
         np.testing.assert_array_equal(vtk_to_numpy(ranks.GetCellData().GetArray("BandValue")),
                                       vtk_to_numpy(alone.GetCellData().GetArray("BandValue")))
 
+    def test_capped_lines(self):
+        """Along the sides of a box and a period: the file is that of one process, byte for byte."""
+        plane = self.write_plane()
+        pieces = write_pieces(plane, self.folder.name, 3)
+        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea", "--capping", "--quiet"]
+        for how in (["--free-surface", "--box=-1,0.6,-inf,0.3,-inf,inf", "--weight-sum"],
+                    ["--scalar", "Speed", "--iso", "1,2", "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0"]):
+            done = self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False), how)
+            self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
+        with open(self.path("s.json"), encoding="utf-8") as stream:
+            self.assertGreater(json.load(stream)["statistics"]["cap_triangles"], 20)
+
     def test_fields_in_a_plane(self):
         """Points on a line, what is derived, gauges: the files are those of one process, byte for byte."""
         plane = self.write_plane()

@@ -17,7 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-STATISTICS = ("Points", "Triangles", "VirtualCells", "SeedCells", "CellsUsed", "FluidParticles", "PeriodicBounds",
+STATISTICS = ("Points", "Triangles", "Lines", "Length", "Area", "VirtualCells", "SeedCells", "CellsUsed", "FluidParticles", "PeriodicBounds",
               "CubeSize", "ScalarRange", "SmoothingLengthRange", "IsoValues")
 
 
@@ -48,12 +48,15 @@ def report(file, scalar, value, properties):
     arrays = {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
     found = {"warnings": said, "error": extract.GetErrorMessage(), "arrays": arrays,
              "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
+             "measures": extract.GetSurfaceMeasures(), "cells": f"{extract.GetEstimatedCells():.9g}",
              "fields": {name: vtk_to_numpy(data.GetArray(name)).tolist() for name in STATISTICS
                         for data in (fields, extract.GetRunStatistics()) if data.HasArray(name)}}
     if surface.GetNumberOfPoints():
         found["points"] = hash_of(surface.GetPoints().GetData())
         found["triangles"] = hashlib.sha256(vtk_to_numpy(
             surface.GetPolys().GetConnectivityArray()).astype("i8").tobytes()).hexdigest()[:16]
+        found["lines"] = hashlib.sha256(vtk_to_numpy(
+            surface.GetLines().GetConnectivityArray()).astype("i8").tobytes()).hexdigest()[:16]
     return found
 
 

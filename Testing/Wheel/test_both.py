@@ -49,6 +49,8 @@ PARTS = {"vx": component(0), "vy": component(1), "vz": component(2)}
 
 def make_cases(folder):
     plane = np.stack(np.meshgrid(np.arange(40.0), np.arange(40.0), [0.0], indexing="ij"), -1).reshape(-1, 3) * 0.1
+    sizes = np.concatenate([plane, 4 * plane + [4.2, 0.0, 0.0]])
+    two = {"R": distance, "wide": lambda x: np.where(x[:, 0] < 4.0, 0.13, 0.52)}
     dam, small = str(DATA / "dam_break_45k.vtp"), str(DATA / "double_dam_break_small.vtp")
     fluid = {"FluidArrayName": "ParticleType"}
     r = {"R": distance}
@@ -77,6 +79,16 @@ def make_cases(folder):
                                                            "boundaryType": [1, 0, 1]}),
                               "R", 0.6, {"DetectPeriod": 1, "Capping": 1}],
         "no period": [lattice(folder, "o.vtp", r, {"BoxSize": [-1.0]}), "R", 0.4, {"DetectPeriod": 1}],
+        "lines": [lattice(folder, "p.vtp", r, positions=plane), "R", 1.0, {}],
+        "lines of two sizes": [lattice(folder, "q.vtp", two, positions=sizes), "R", 4.5,
+                               {"SmoothingLengthArrayName": "wide", "CubeSizeMode": 1}],
+        "lines in a box, capped": [lattice(folder, "t.vtp", two, positions=sizes), "R", 4.5,
+                                   {"SmoothingLengthArrayName": "wide", "CubeSizeMode": 1, "UseBox": 1, "Capping": 1,
+                                    "Box": [-1.0, 5.1, -1.0, 3.0, -1.0, 1.0]}],
+        "filled": [lattice(folder, "r.vtp", r, positions=plane), "R", 1.0, {"Filled": 1, "CubeSizeMode": 1}],
+        "walls in another plane, ignored": [lattice(folder, "s.vtp", {**r, "Wall": lambda x: x[:, 0] < 0.25},
+                                                    positions=plane + [0.0, 0.0, 1.0] * (plane[:, :1] < 0.25)),
+                                            "R", 1.0, {"FluidArrayName": "Wall", "Solids": 1}],
     }
 
 
@@ -140,7 +152,7 @@ class Test(unittest.TestCase):
             words = {}
             for key, setting in properties.items():
                 words.update(words_of.get(key, lambda setting: {})(setting))
-            if "FreeSurface" in properties:
+            if {"FreeSurface", "Box", "Solids", "Filled"} & {*properties}:
                 continue
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
@@ -161,7 +173,8 @@ class Test(unittest.TestCase):
                 else:
                     self.assertEqual(mine, its.replace(f"range of {scalar}", "range of the scalar"))
             self.assertEqual(surface.n_points, found["fields"]["Points"][0], name)
-            self.assertEqual(surface.n_cells, found["fields"]["Triangles"][0], name)
+            lines = found["fields"].get("Lines", [0])[0]
+            self.assertEqual(surface.n_cells, found["fields"]["Triangles"][0] + lines, name)
             computed = {scalar, scalar + "_Magnitude", "Normals"}  # the filter's iso value
             self.assertEqual(set(surface.point_data.keys()) | computed, set(found["arrays"]) | computed, name)
             compared += 1

@@ -248,7 +248,7 @@ extern "C"
      * the box are evaluated. With MCOR_PAIRS and no ranks, the whole surface is evaluated up to the
      * correction, because cells grow from wherever pairs are. mcor_probe and mcor_derive read the box only
      * with globals. */
-    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L */
+    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L; flat (y0 = y1) only around particles in that plane */
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
      * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that of
@@ -259,13 +259,13 @@ extern "C"
     double periodic[6];
     /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are above the
      * iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of whole_box). These caps
-     * share the points of the surface's border; their other points are nodes of the virtual grid, with
-     * normals pointing out of the period, boundary flag 8, and a meaningless residual. Trimming also cuts
-     * caps, and leaves its own border open. But where MCOR_WEIGHT_SUM ends at solids, see wall_share, caps
-     * with either value close that border, by points on lattice edges with the normals of triangles. All
-     * cubes then have the smallest size. With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie
-     * on a periodic side. A box that no particle reaches gets no caps, even where the iso value of a sum is
-     * 0. Not with MCOR_PAIRS; no effect without a period, box or walls. */
+     * share the points of the surface's border; their other points are nodes, with normals pointing out of the
+     * period, boundary flag 8, and a meaningless residual. Trimming also cuts caps, and leaves its own border
+     * open. But where MCOR_WEIGHT_SUM ends at solids, see wall_share, caps with either value close that border,
+     * by points on lattice edges with the normals of triangles. All cubes then have the smallest size. With a
+     * box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box that no particle
+     * reaches gets no caps, even where the iso value of a sum is 0. Not with MCOR_PAIRS. In two dimensions lines
+     * along these sides, with exact cuts, close lines; not at walls, and not with `filled`. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, of

@@ -203,7 +203,10 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   if (s.normals)
   {
     vtkSPHAddArray(pointData, "Normals", vtkSPHAdopt<vtkFloatArray>(s.normals, 3, count));
-    pointData->SetActiveNormals("Normals");
+    if (s.statistics.dimension != 2 || this->Options.filled) // VTK would draw lines dark by them
+    {
+      pointData->SetActiveNormals("Normals");
+    }
   }
   if (s.gradients)
   {

@@ -27,7 +27,8 @@ bool IsDrawn(const mcor_input& input, const mcor_options& options, std::int64_t 
   for (int a = 0; mcor_has_box(&options) && a < 3; ++a)
   {
     const double x = ValueOf(input.positions, 3 * i + a);
-    isIn = isIn && x >= options.box[2 * a] && x < options.box[2 * a + 1];
+    const double low = options.box[2 * a], high = options.box[2 * a + 1];
+    isIn = isIn && x >= low && (x < high || x == low); // a flat box is around flat particles
   }
   return isIn;
 }
@@ -136,6 +137,12 @@ std::string vtkMarchingCorrectorsDescribeIsoValues(const mcor_options& options)
 
 std::string vtkMarchingCorrectorsDescribeMeasures(const mcor_statistics& statistics)
 {
+  if (statistics.dimension == 2 && statistics.length > 0.0)
+  {
+    return "two dimensions: length " + Text(statistics.length) +
+      (statistics.area > 0.0 ? ", area " + Text(statistics.area)
+                             : "; open, so that it has no area");
+  }
   return statistics.area <= 0.0 ? ""
                                 : "area " + Text(statistics.area) +
       (statistics.is_closed ? ", volume " + Text(statistics.volume)

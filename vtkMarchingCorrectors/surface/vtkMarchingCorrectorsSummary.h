@@ -24,10 +24,9 @@ constexpr double vtkMarchingCorrectorsHugeCells = 1e9;
 double vtkMarchingCorrectorsLeastLength(const mcor_input& input);
 
 /**
- * About how many cubes of the virtual grid the fluid (in the box, if there is one) fills: a particle
- * takes (h / 1.3)^3. 0 where
- * the smoothing length is estimated in the run and the cube size does not follow from it. least: of
- * vtkMarchingCorrectorsLeastLength, over all processes that share the run.
+ * About how many cubes (in a plane squares) of the virtual grid the fluid, in the box if there is one, fills:
+ * a particle takes (h / 1.3)^3. 0 where the smoothing length is estimated in the run and the cube size does not
+ * follow from it. least: of vtkMarchingCorrectorsLeastLength, over all processes that share the run.
  */
 double vtkMarchingCorrectorsEstimateCells(
   const mcor_input& input, const mcor_options& options, double least);

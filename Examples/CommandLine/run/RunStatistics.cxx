@@ -154,7 +154,8 @@ std::string DescribeTrimming(vtkFieldData* run)
   }
   if (caps > 0.0)
   {
-    text += (text.empty() ? "" : "; ") + Format(run, "CapTriangles") + " of them in caps";
+    text += (text.empty() ? "" : "; ") + Format(run, "CapTriangles") +
+      (run->HasArray("Lines") ? " parts of them in caps" : " of them in caps");
   }
   return text.empty() ? "" : " (" + text + ")";
 }

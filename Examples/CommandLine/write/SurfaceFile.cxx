@@ -8,14 +8,18 @@
 #include "Job.h"
 #include "MessageCapture.h"
 #include "SafeText.h"
+#include "TableText.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 #include "vtkTriangle.h"
 #include "vtkXMLPolyDataWriter.h"
 
@@ -220,10 +224,52 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   return true;
 }
 
+/// Of two dimensions: a row for each point of each line, a column for each component.
+bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
+{
+  vtkNew<vtkTable> table;
+  vtkNew<vtkIdList> line;
+  std::vector<vtkIdType> lines, points;
+  for (vtkIdType l = 0; l < surface->GetNumberOfLines(); ++l)
+  {
+    surface->GetLines()->GetCellAtId(l, line);
+    lines.insert(lines.end(), static_cast<std::size_t>(line->GetNumberOfIds()), l);
+    points.insert(points.end(), line->begin(), line->end());
+  }
+  const auto add = [&](const std::string& name, const std::function<double(std::size_t)>& value)
+  {
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(name.c_str());
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      column->InsertNextValue(value(i));
+    }
+    table->AddColumn(column);
+  };
+  const auto addArray = [&](vtkDataArray* array, int c, const std::string& name)
+  { add(name, [&](std::size_t i) { return array->GetComponent(points[i], c); }); };
+  add("Line", [&](std::size_t i) { return static_cast<double>(lines[i]); });
+  for (int c = 0; c < 3; ++c)
+  {
+    addArray(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
+  }
+  for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = surface->GetPointData()->GetArray(i);
+    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
+    {
+      const bool isOne = array->GetNumberOfComponents() == 1;
+      addArray(array, c, array->GetName() + (isOne ? "" : ":" + std::to_string(c)));
+    }
+  }
+  bytes = TableHeader(table) + TableRows(table);
+  return true;
+}
+
 /// Every format that is written; all that is known of one stands here.
 using Writer = std::function<bool(vtkPolyData*, const ColorScale&, std::string& bytes)>;
 const std::vector<FileFormat<Writer>> Formats = { { ".vtp", WriteXml }, { ".stl", WriteStl },
-  { ".ply", WritePly }, { ".obj", WriteObj } };
+  { ".ply", WritePly }, { ".obj", WriteObj }, { ".csv", WriteCsv } };
 
 const char* const FilmMark = "<!-- a step of a film by marching-correctors -->";
 
@@ -245,12 +291,19 @@ std::string SurfaceBytes(
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
   std::string bytes;
-  if (surface->GetNumberOfLines() > 0 && surface->GetNumberOfPolys() == 0 &&
-    !EndsWith(file, ".vtp"))
+  const bool isTable = EndsWith(file, ".csv");
+  const vtkIdType lines = surface->GetNumberOfLines(), triangles = surface->GetNumberOfPolys();
+  if (lines > 0 && triangles == 0 && !isTable && !EndsWith(file, ".vtp"))
   {
     throw std::runtime_error(file +
       " could not be written: such a file cannot hold lines, which two dimensions give. "
-      "Write a .vtp file");
+      "Write a .vtp file, or a .csv file of their points");
+  }
+  if (isTable && lines == 0 && triangles > 0)
+  {
+    throw std::runtime_error(file +
+      " could not be written: such a file holds the points of lines, which two dimensions give, but "
+      "this is a surface. Write a .vtp file");
   }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
   {
@@ -288,7 +341,7 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
       std::string(array->GetName()) == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
   }
-  if (EndsWith(file, ".vtp") || names.empty() || (isPly && !colors.GetName().empty()))
+  if (EndsWith(file, ".vtp") || EndsWith(file, ".csv") || names.empty() || (isPly && !colors.GetName().empty()))
   {
     return "";
   }

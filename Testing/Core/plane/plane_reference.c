@@ -32,7 +32,7 @@ static double plane_margin(const plane_field* f, const plane_sample* s, const do
   const double wall = f->set->has_solids && o->wall_share > 0
     ? o->wall_share * s->weight - (s->weight - s->fluid)
     : INFINITY;
-  return o->field == MCOR_WEIGHT_SUM ? INFINITY : fmin(margin, wall);
+  return o->field == MCOR_WEIGHT_SUM ? wall : fmin(margin, wall);
 }
 
 /* Volumes of particles are areas. */

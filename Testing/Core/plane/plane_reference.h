@@ -14,6 +14,7 @@ typedef struct plane_field
   const core_set* set;
   const mcor_options* options;
   int axis;
+  const double* region; /* [4] or NULL: from, to along u and v, where centres of squares are */
 } plane_field;
 
 typedef struct plane_sample

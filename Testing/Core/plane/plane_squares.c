@@ -195,6 +195,15 @@ static int64_t plane_edge_at(
 static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t size, int half)
 {
   static const int corner[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 }, { 0, 0 } };
+  const double centre[2] = { ((double)x + 0.5 * (double)size) * s->cube,
+    ((double)y + 0.5 * (double)size) * s->cube };
+  const double* region = s->field->region;
+  if (region &&
+    (centre[0] < region[0] || centre[0] >= region[1] || centre[1] < region[2] ||
+      centre[1] >= region[3]))
+  {
+    return;
+  }
   int64_t at[9][2], edge[8];
   plane_node node[9];
   int count = 0, valid = 1, close = 0;
@@ -305,7 +314,7 @@ static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
     low = before ? t : low;
     high = before ? high : t;
   }
-  return o->field != MCOR_WEIGHT_SUM && (p.fluid < least + 1e-5 || p.margin < 1e-4);
+  return p.margin < 1e-4 || (o->field != MCOR_WEIGHT_SUM && p.fluid < least + 1e-5);
 }
 
 /* The number of the edge that a point is on; -1: of none. */

@@ -22,7 +22,7 @@ static fill_report extract(mcor_context* context, const core_set* set, const mco
   int axis, mcor_surface* surface)
 {
   const mcor_input input = core_input(set);
-  const plane_field field = { set, options, axis };
+  const plane_field field = { set, options, axis, NULL };
   *surface = core_extract(context, &input, options);
   return fill_check(&field, surface);
 }
@@ -49,7 +49,7 @@ static void test_free_surface(void** state)
       options.preview = axis == 1 && k == 0;
       mcor_surface surface;
       const fill_report report = extract(*state, &set, &options, axis, &surface);
-      const plane_field field = { &set, &options, axis };
+      const plane_field field = { &set, &options, axis, NULL };
       assert_int_equal(report.loose, 0);
       check_close(report.area, report.enclosed, 1e-9, "enclosed");
       check_close(report.area, fill_sample(&field, iso, 100), 2e-2, "sampled");
@@ -68,7 +68,7 @@ static void test_bands(void** state)
   core_set set = plane_make(20, 0.2, 1.2, 1, 4, 3);
   mcor_options options = fill_options(isos, 7);
   mcor_surface surface;
-  const plane_field field = { &set, &options, 1 };
+  const plane_field field = { &set, &options, 1, NULL };
   const fill_report all = extract(*state, &set, &options, 1, &surface);
   fill_check_points(&field, &surface);
   CORE_CHECK(all.inverted == 0, "inverted %g", all.inverted);
@@ -127,7 +127,7 @@ static void test_trimming(void** state)
     options.boundary_eigenvalue = mode == 1;
     options.node_threshold = 0.02;
     mcor_surface surface;
-    const plane_field field = { &set, &options, 0 };
+    const plane_field field = { &set, &options, 0, NULL };
     const fill_report report = extract(*state, &set, &options, 0, &surface);
     fill_check_points(&field, &surface);
     int64_t cuts = 0;

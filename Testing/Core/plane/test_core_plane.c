@@ -128,7 +128,7 @@ static void test_trimming(void** state)
     }
     CORE_CHECK(2 * inside > surface.point_count, "%d of %lld near 1", inside,
       (long long)surface.point_count);
-    const plane_field field = { &set, &options, 0 };
+    const plane_field field = { &set, &options, 0, NULL };
     plane_check_lines(&field, iso, &surface, 0);
     mcor_free_surface(&surface);
   }
@@ -171,6 +171,37 @@ static void test_what_is_no_plane(void** state)
   expect_error(*state, &input, &options, "solid ones have 1.000000001");
   set.position[5] = NAN;
   expect_error(*state, &input, &options, "position of particle 1 is not a number");
+  core_free_set(&set);
+}
+
+/* Sides are those of the caller's axes; a flat box around the particles is one. */
+static void test_sentences_of_sides(void** state)
+{
+  core_set set = plane_make(10, 0.1, 1, 1, 1, 7);
+  const double iso = 0;
+  const mcor_input input = core_input(&set);
+  mcor_options options = plane_options(&iso);
+  options.periodic[0] = 1;
+  expect_error(*state, &input, &options, "The period along x goes from 1 to 0");
+  options.periodic[0] = 0;
+  options.periodic[5] = 1;
+  expect_error(*state, &input, &options, "The period along z is 1, too short");
+  options.periodic[5] = 0;
+  mcor_surface whole = core_extract(*state, &input, &options);
+  const double box[6] = { -9, 9, 1, 1, 9, -9 };
+  memcpy(options.box, box, sizeof box);
+  expect_error(*state, &input, &options, "The box along z goes from 9 to -9");
+  options.box[4] = -9;
+  options.box[5] = 9;
+  mcor_surface flat = core_extract(*state, &input, &options);
+  assert_true(whole.line_count > 0);
+  assert_int_equal(core_hash(&flat), core_hash(&whole));
+  mcor_free_surface(&flat);
+  options.box[2] = options.box[3] = 0.5; /* beside them */
+  flat = core_extract(*state, &input, &options);
+  assert_int_equal(flat.line_count, 0);
+  mcor_free_surface(&flat);
+  mcor_free_surface(&whole);
   core_free_set(&set);
 }
 
@@ -253,7 +284,7 @@ static void test_derivatives_and_gauges(void** state)
     line.to[(axis + 1) % 3] = 12;
     mcor_gauges gauges;
     CORE_OK(context, mcor_gauge(context, &input, &options, &line, 1, &gauges));
-    const plane_field field = { &set, &options, axis };
+    const plane_field field = { &set, &options, axis, NULL };
     const double at = gauges.readings[0].place[(axis + 1) % 3];
     CORE_CHECK(gauges.readings[0].state == MCOR_GAUGE_WET && gauges.readings[0].place[axis] == 5 &&
         fabs(plane_evaluate(&field, at, 0).fluid - 0.5) < 1e-4,
@@ -409,7 +440,7 @@ int main(int argc, char** argv)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
     cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_circle),
     cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
-    cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
+    cmocka_unit_test(test_sentences_of_sides), cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
     cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
     cmocka_unit_test(test_boxes_and_periods) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);

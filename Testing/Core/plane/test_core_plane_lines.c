@@ -25,7 +25,7 @@ static int64_t compare_set(
   mcor_context* context, const core_set* set, const mcor_options* options, int axis, int closed)
 {
   const mcor_input input = core_input(set);
-  const plane_field field = { set, options, axis };
+  const plane_field field = { set, options, axis, NULL };
   return compare(context, &input, &field, closed);
 }
 
@@ -113,7 +113,7 @@ static void test_random_lines(void** state)
     options.topology = round & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
     options.boundary_detection =
       round % 5 == 3 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
-    options.wall_share = round % 3 != MCOR_WEIGHT_SUM ? shares[round / 4 % 3] : 0;
+    options.wall_share = shares[round / 4 % 3];
     mcor_input input = core_input(&set);
     core_set fluid = copy_fluid(&set);
     if (round % 7 == 2)
@@ -123,10 +123,12 @@ static void test_random_lines(void** state)
       input.volume = (mcor_array){ 0 };
     }
     input.ignore_solids = round % 8 == 1;
+    const bool ends = set.has_solids && options.field == MCOR_WEIGHT_SUM && options.wall_share > 0 &&
+      !input.ignore_solids; /* a free surface, at walls */
     const bool fluid_alone =
-      set.has_solids && (input.ignore_solids || options.field == MCOR_WEIGHT_SUM);
-    const plane_field field = { fluid_alone ? &fluid : &set, &options, axis };
-    compare(*state, &input, &field, options.field == MCOR_WEIGHT_SUM);
+      set.has_solids && (input.ignore_solids || (options.field == MCOR_WEIGHT_SUM && !ends));
+    const plane_field field = { fluid_alone ? &fluid : &set, &options, axis, NULL };
+    compare(*state, &input, &field, options.field == MCOR_WEIGHT_SUM && !ends);
     core_free_set(&fluid);
     core_free_set(&set);
   }
@@ -150,7 +152,7 @@ static void test_estimated_length(void** state)
   {
     set.smoothing_length[i] = h;
   }
-  const plane_field field = { &set, &options, 1 };
+  const plane_field field = { &set, &options, 1, NULL };
   CORE_CHECK(compare(*state, &input, &field, 1) > 60, "few edges");
   core_free_set(&set);
 }
@@ -168,7 +170,9 @@ static core_set with_images(const core_set* set, int axis, double period)
     all.smoothing_length[i] = set->smoothing_length[from];
     all.volume[i] = set->volume[from];
     all.scalar[i] = set->scalar[from];
+    all.solid[i] = set->solid[from];
   }
+  all.has_solids = set->has_solids;
   return all;
 }
 
@@ -203,7 +207,7 @@ static void test_periods(void** state)
     options.sph_kernel = axis == 1 ? MCOR_M_PRIME_4 : MCOR_QUINTIC_SPLINE;
     options.cube_size = 0.5;
     mcor_input images = core_input(&all), input = core_input(&set);
-    const plane_field field = { &all, &options, axis };
+    const plane_field field = { &all, &options, axis, NULL };
     compare(*state, &images, &field, 0);
     mcor_surface surface[2];
     for (int periodic = 0; periodic < 2; ++periodic)
@@ -284,6 +288,77 @@ static void test_adaptive_lines(void** state)
   assert_true(deep > 10);
 }
 
+/* Squares of several sizes in periods, and in boxes of these: the reference has all images. Caps are no part of it. */
+static void test_adaptive_periods(void** state)
+{
+  const double period = 32, ends[2] = { -16, 16 };
+  uint64_t seed = 5;
+  int several = 0;
+  for (int round = 0; round < 18; ++round)
+  {
+    const int axis = round % 3, both = round % 2, boxed = round % 4 == 3;
+    core_set set = core_make_set(120);
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      double* x = set.position + 3 * i;
+      const double u = i < 2 ? (double)i : random_unit(&seed);
+      const double h = pow(5, u);
+      x[axis] = -2;
+      x[(axis + 1) % 3] = 16 * u * (random_bits(&seed) % 2 ? 1 : -1);
+      x[(axis + 2) % 3] = (both ? period : 12) * (random_unit(&seed) - 0.5);
+      set.smoothing_length[i] = h;
+      set.volume[i] = 2 * h * h;
+      set.scalar[i] = 2 * random_unit(&seed) - 1;
+      set.solid[i] = random_bits(&seed) % 7 == 0;
+    }
+    const double iso = round % 3 == MCOR_WEIGHT_SUM ? 0.6 : 0.1;
+    mcor_options options = plane_options(&iso);
+    set.has_solids = round % 6 == 1 && round % 3 != MCOR_WEIGHT_SUM;
+    options.sph_kernel = round % 7 == 6 ? MCOR_M_PRIME_4 : (mcor_sph_kernel)(round % 5 ? 0 : 4);
+    options.field = (mcor_field)(round / 3 % 3 == axis ? MCOR_SHEPARD : round % 3);
+    options.cube_size = 0.5;
+    options.level_limit = MCOR_CUBE_LEVELS - 1;
+    options.vertex_threshold = round & 1 ? 0.5 : 0;
+    options.topology = round & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    double region[4] = { -16, 16, both ? -16 : -INFINITY, both ? 16 : INFINITY };
+    for (int a = 0; a < 1 + both; ++a)
+    {
+      memcpy(options.periodic + 2 * ((axis + 1 + a) % 3), ends, sizeof ends);
+    }
+    if (boxed)
+    {
+      const double box[4] = { -9.2, 20, -INFINITY, 3.4 };
+      for (int i = 0; i < 4; ++i)
+      {
+        options.box[2 * ((axis + 1 + i / 2) % 3) + i % 2] = box[i];
+        region[i] = i % 2 ? fmin(region[i], box[i]) : fmax(region[i], box[i]);
+      }
+      options.box[2 * axis] = -INFINITY;
+      options.box[2 * axis + 1] = INFINITY;
+    }
+    core_set all = with_images(&set, axis, period);
+    const plane_field field = { &all, &options, axis, region };
+    if (!both)
+    {
+      all.count = 3 * set.count; /* along u */
+      for (int64_t i = 0; i < all.count; ++i)
+      {
+        all.position[3 * i + (axis + 2) % 3] += period;
+      }
+    }
+    const mcor_input input = core_input(&set);
+    CORE_CHECK(compare(*state, &input, &field, 0) > 20, "round %d: few edges", round);
+    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_CHECK(surface.statistics.highest_level == 2, "round %d: highest level %d", round,
+      surface.statistics.highest_level);
+    several += surface.statistics.cells_of_level[0] > 2 && surface.statistics.cells_of_level[1] > 2;
+    mcor_free_surface(&surface);
+    core_free_set(&all);
+    core_free_set(&set);
+  }
+  assert_true(several > 12);
+}
+
 /* A point, and particles on a line, are in a plane if the caller says so. */
 static void test_points_and_rows(void** state)
 {
@@ -318,6 +393,7 @@ int main(int argc, char** argv)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_lines_are_those_of_the_field),
     cmocka_unit_test(test_random_lines), cmocka_unit_test(test_estimated_length),
     cmocka_unit_test(test_periods), cmocka_unit_test(test_adaptive_lines),
+    cmocka_unit_test(test_adaptive_periods),
     cmocka_unit_test(test_points_and_rows) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -16,7 +16,7 @@ static mcor_status mcor_check_period(mcor_context* context, const mcor_options* 
     MCOR_RETURN_IF(!isfinite(from) || !isfinite(to) || from > to, context, MCOR_INVALID_ARGUMENT,
       "The period along %c goes from %g to %g; both must be finite, and the second must not be "
       "lower.",
-      'x' + a, from, to);
+      mcor_axis_letter(context, a), from, to);
   }
   return MCOR_OK;
 }
@@ -27,9 +27,9 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   {
     const double from = options->box[2 * a], to = options->box[2 * a + 1];
     MCOR_RETURN_IF(isnan(from) || isnan(to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; both must be numbers.", 'x' + a, from, to);
+      "The box along %c goes from %g to %g; both must be numbers.", mcor_axis_letter(context, a), from, to);
     MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; the first must be lower than the second.", 'x' + a,
+      "The box along %c goes from %g to %g; the first must be lower than the second.", mcor_axis_letter(context, a),
       from, to);
   }
   return MCOR_OK;

@@ -102,7 +102,7 @@ static mcor_status mcor_fit_edges(
     MCOR_RETURN_IF(!(least < MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
       "With cube size %g there would be %.3g cubes in the period along %c; the limit is %d. Use a "
       "larger cube size, or a shorter period.",
-      cube, least, 'x' + a, MCOR_LATTICE_LIMIT);
+      cube, least, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
     fewest[a] = (int64_t)least;
   }
   int levels = *top;
@@ -170,12 +170,12 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     {
       const double most = MCOR_MOST_PERIODS * length[a];
       MCOR_RETURN_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
-        "The period along %c is %g, too short for support radii of up to %g.", 'x' + a, length[a],
+        "The period along %c is %g, too short for support radii of up to %g.", mcor_axis_letter(context, a), length[a],
         m->support_max);
       MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
         "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "
         "%.3g.",
-        cube, length[a], 'x' + a, (most - (reach - 8 * longest)) / 8);
+        cube, length[a], mcor_axis_letter(context, a), (most - (reach - 8 * longest)) / 8);
       MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge[a]));
       lattice->period[a] = (int)round(length[a] / edge[a]);
       m->low[a] = options->periodic[2 * a] - reach - margin - m->support_max;

@@ -242,9 +242,10 @@ void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to
     has = has || from[i] != 0;
     sides[i] = from[2 * mcor_plane_axis(plane, i / 2) + i % 2];
   }
-  if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] < sides[5])
+  if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] <= sides[5])
   {
-    const bool inside = sides[4] <= plane->at && plane->at < sides[5];
+    /* A flat box, around the particles, too. */
+    const bool inside = sides[4] <= plane->at && (plane->at < sides[5] || plane->at == sides[4]);
     sides[4] = inside ? -INFINITY : DBL_MAX;
     sides[5] = INFINITY;
   }
@@ -296,8 +297,9 @@ mcor_status mcor_flatten(
   {
     return MCOR_OK;
   }
-  MCOR_RETURN_IF(options->capping, context, MCOR_INVALID_ARGUMENT,
-    "Capping closes surfaces in three dimensions; these particles lie in a plane. Turn it off.");
+  MCOR_RETURN_IF(options->capping && options->filled, context, MCOR_INVALID_ARGUMENT,
+    "Capping cannot be combined with filling, which ends at the sides of a period or a box. Turn "
+    "one of them off.");
   if (options->filled) /* pairs may miss lines that a region ends at */
   {
     o->seeds = MCOR_COMPLETE;

@@ -14,7 +14,7 @@
 static inline bool mcor_caps_walls(const mcor_context* context)
 {
   return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
-    mcor_fluid_share(context) > 0;
+    context->plane.axis == 0 && mcor_fluid_share(context) > 0;
 }
 
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
@@ -74,6 +74,16 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
     face->tile[(int64_t)(v / MCOR_CAP_TILE) * face->tiles[0] + u / MCOR_CAP_TILE];
   return tile * (MCOR_CAP_TILE * MCOR_CAP_TILE) + (v % MCOR_CAP_TILE) * MCOR_CAP_TILE +
     u % MCOR_CAP_TILE;
+}
+
+/* Where node (u, v) is: in two dimensions, in the plane. */
+static inline void mcor_cap_node(
+  const mcor_context* context, const mcor_cap_face* face, int u, int v, cl_int node[3])
+{
+  node[face->axis] = face->plane;
+  node[face->across[0]] = face->first[0] + u;
+  node[face->across[1]] = face->first[1] + v;
+  node[2] = context->plane.axis > 0 ? 0 : node[2];
 }
 
 /* mcor_cap_tile.c. Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole

@@ -223,8 +223,8 @@ static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, i
 
 /* Lists the nodes of tile t that are to be evaluated, by squares of 4 x 4 nodes, which are near each other.
  * Returns the new count. */
-static int mcor_list_cap_nodes(
-  const mcor_cap_face* face, int t, bool within, cl_int* nodes, int64_t* to, int count)
+static int mcor_list_cap_nodes(const mcor_context* context, const mcor_cap_face* face, int t,
+  bool within, cl_int* nodes, int64_t* to, int count)
 {
   const int u0 = face->place[t] % face->tiles[0] * MCOR_CAP_TILE,
             v0 = face->place[t] / face->tiles[0] * MCOR_CAP_TILE;
@@ -234,9 +234,8 @@ static int mcor_list_cap_nodes(
     if (u < face->count[0] && v < face->count[1] && mcor_needs_cap_node(face, within, u, v))
     {
       cl_int* node = nodes + 4 * (size_t)count;
+      mcor_cap_node(context, face, u, v, node);
       node[face->axis] = within ? face->inner : face->plane;
-      node[face->across[0]] = face->first[0] + u;
-      node[face->across[1]] = face->first[1] + v;
       node[3] = 0;
       to[count++] = mcor_cap_index(face, u, v);
     }
@@ -255,7 +254,7 @@ static mcor_status mcor_fill_cap_nodes(
   int count = 0;
   for (int t = 1; t <= face->tile_count && status == MCOR_OK; ++t)
   {
-    count = mcor_list_cap_nodes(face, t, within, nodes, to, count);
+    count = mcor_list_cap_nodes(context, face, t, within, nodes, to, count);
     if (count >= MCOR_CAP_BATCH || t == face->tile_count)
     {
       status = mcor_take_cap_nodes(context, nodes, to, count, within, iso, p, face);

@@ -17,7 +17,8 @@ typedef struct mcor_cap_line
 {
   double from[3], to[3];
   double at, side[2], margin[2];
-  int last; /* of the two, that was moved */
+  double left; /* margin where it was last */
+  int last;    /* of the two, that was moved */
 } mcor_cap_line;
 
 /* A vertex only caps have. */
@@ -27,7 +28,7 @@ typedef struct mcor_cap_vertex
   double offset[3];
   bool is_cut;
   uint64_t key[2]; /* the first square that met it, and when it did */
-  bool is_placed;  /* on a line, exactly: of a cap at walls */
+  bool is_placed;  /* on a line, exactly: of a cap at walls, or in two dimensions */
   mcor_cap_line line;
 } mcor_cap_vertex;
 
@@ -72,6 +73,7 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
 
 /* A cut keeps off the ends of its line, as those of the surface do. */
 #define MCOR_CAP_CUT_MARGIN 1e-5
+#define MCOR_CAP_ROOT 2e-5 /* how near to 0 a margin is a root */
 
 /* At a place of the virtual grid, in cubes. */
 static inline void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
@@ -83,8 +85,9 @@ static inline void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[
   }
 }
 
-/* mcor_cap_place.c. Moves the cuts of caps at walls to where solids have their share. */
-mcor_status mcor_place_wall_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points);
+/* mcor_cap_place.c. Moves cuts to where trimming ends: those of caps at walls, where solids have their share, and of
+ * lines. */
+mcor_status mcor_place_cap_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points);
 
 /* mcor_cap_mesh.c. Appends the caps' vertices and triangles to the mesh. iso: relative to A0. */
 mcor_status mcor_append_caps(mcor_cap_job* job, double iso);

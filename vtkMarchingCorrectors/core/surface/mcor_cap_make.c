@@ -14,6 +14,7 @@
 
 #include "mcor_box.h"
 #include "mcor_cap_job.h"
+#include "mcor_plane.h"
 
 #include <stdlib.h>
 
@@ -115,6 +116,9 @@ static mcor_status mcor_make_caps(mcor_cap_job* job, double iso, mcor_cap_points
   {
     MCOR_TRY(mcor_cap_sides(job, axis, iso, points));
   }
+  MCOR_TRY(mcor_is_plane(context) && !context->run.options->preview
+      ? mcor_place_cap_cuts(job, iso, points)
+      : MCOR_OK);
   return mcor_caps_walls(context) ? mcor_cap_walls(job, iso, points) : MCOR_OK;
 }
 

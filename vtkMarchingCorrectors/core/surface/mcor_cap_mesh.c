@@ -43,7 +43,7 @@ static mcor_status mcor_append_bytes(
   return status;
 }
 
-/* Places and flags of the caps' vertices: 8, of cuts 2. */
+/* Places and flags of the caps' vertices: 8, of cuts 2, or 1 where they are exact. */
 static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
 {
   mcor_context* context = job->context;
@@ -58,7 +58,8 @@ static mcor_status mcor_append_cap_vertices(mcor_cap_job* job)
   {
     const mcor_cap_vertex* vertex = &job->vertices[i];
     memcpy(node + 4 * i, vertex->node, sizeof vertex->node);
-    flag[i] = vertex->is_cut ? 2 : MCOR_CAP_FLAG;
+    const bool exact = vertex->is_placed && fabs(vertex->line.left) < MCOR_CAP_ROOT;
+    flag[i] = vertex->is_cut ? (exact ? 1 : 2) : MCOR_CAP_FLAG;
     for (size_t a = 0; a < 3; ++a)
     {
       mcor_put_real(context, offset, (int64_t)(4 * i + a), vertex->offset[a]);

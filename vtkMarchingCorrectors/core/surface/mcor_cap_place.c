@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Where the vertices of caps at walls are: cuts of lattice edges, where the margin by which trimming leaves the
- * fluid is 0. Linear cuts at first, they are moved by the margins found there, all of them at a time, each within
+/* Where cuts of lattice edges are, by caps at walls and in two dimensions: where the margin by which trimming leaves
+ * the fluid is 0. Linear cuts at first, they are moved by the margins found there, all of them at a time, each within
  * what encloses its root (the Illinois method). */
 
 #include "mcor_cap_job.h"
@@ -18,6 +18,7 @@ static void mcor_move_cut(mcor_cap_vertex* vertex, double margin)
 {
   mcor_cap_line* line = &vertex->line;
   const int moved = (margin > 0) == (line->margin[0] > 0) ? 0 : 1, other = 1 - moved;
+  line->left = margin;
   line->side[moved] = line->at;
   line->margin[moved] = margin;
   line->margin[other] *= line->last == moved ? 0.5 : 1;
@@ -58,7 +59,7 @@ static mcor_status mcor_move_cuts(mcor_cap_job* job, const int64_t* vertices, in
   return status == MCOR_OK ? mcor_report_launch(context) : status;
 }
 
-mcor_status mcor_place_wall_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points)
+mcor_status mcor_place_cap_cuts(mcor_cap_job* job, double iso, mcor_cap_points* points)
 {
   const size_t all = (size_t)job->vertex_count,
                room = all < MCOR_PLACE_BATCH ? all : MCOR_PLACE_BATCH;

@@ -5,6 +5,7 @@
  * mcor_cap_make.c. */
 
 #include "mcor_cap_job.h"
+#include "mcor_plane.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -48,9 +49,7 @@ static mcor_status mcor_cap_node_corner(
   mcor_cap_job* job, const mcor_cap_face* face, int u, int v, mcor_cap_corner* corner)
 {
   cl_int node[3];
-  node[face->axis] = face->plane;
-  node[face->across[0]] = face->first[0] + u;
-  node[face->across[1]] = face->first[1] + v;
+  mcor_cap_node(job->context, face, u, v, node);
   for (int a = 0; a < 3; ++a)
   {
     corner->at[a] = node[a];
@@ -68,9 +67,7 @@ static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, const mcor_cap_face* 
   mcor_context* context = job->context;
   const int axis = face->across[along], other = axis == 0 ? 1 : 0;
   cl_int node[3], cell[3];
-  node[face->axis] = face->plane;
-  node[face->across[0]] = face->first[0] + u;
-  node[face->across[1]] = face->first[1] + v;
+  mcor_cap_node(context, face, u, v, node);
   cell[face->axis] = face->cell;
   cell[face->across[0]] = face->first[0] + u0;
   cell[face->across[1]] = face->first[1] + v0;
@@ -123,11 +120,11 @@ static mcor_status mcor_cap_cut(
   }
   const int64_t before = job->vertex_count;
   MCOR_TRY(mcor_find_cap_vertex(job, &job->cuts, key, cut->at, true, &cut->vertex));
-  if (job->border && job->vertex_count > before)
+  if ((job->border || mcor_is_plane(job->context)) && job->vertex_count > before)
   {
     mcor_cap_vertex* vertex = &job->vertices[before];
     mcor_cap_line* line = &vertex->line;
-    *line = (mcor_cap_line){ .at = s, .side = { 0, 1 }, .last = -1 };
+    *line = (mcor_cap_line){ .at = s, .side = { 0, 1 }, .left = INFINITY, .last = -1 };
     vertex->is_placed = true;
     line->margin[0] = low->margin;
     line->margin[1] = high->margin;
@@ -162,6 +159,24 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
   return MCOR_OK;
 }
 
+/* In two dimensions, where corners above each other are one, what runs along the side: with what is inside on its
+ * left, as a triangle whose last two corners are one. */
+static mcor_status mcor_add_cap_line(
+  mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count)
+{
+  const mcor_cap_corner* other = corners + 1;
+  while (other < corners + count - 1 && other->vertex == corners->vertex)
+  {
+    ++other;
+  }
+  const int along = 1 - face->axis;
+  const bool forward = (other->at[along] > corners->at[along]) == (face->upper == along);
+  const int32_t from = forward ? corners->vertex : other->vertex,
+                to = forward ? other->vertex : corners->vertex;
+  const int32_t line[3] = { from, to, to };
+  return mcor_add_cap_triangle(job, line);
+}
+
 /* A fan. Corners go round as seen from above the axis. Or its last edge, where that is wanted. */
 static mcor_status mcor_add_cap_fan(
   mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count, bool cut)
@@ -171,6 +186,10 @@ static mcor_status mcor_add_cap_fan(
     const int32_t first = corners[0].vertex, last = corners[count - 1].vertex;
     return cut ? mcor_add_cap_border(job, face->upper ? first : last, face->upper ? last : first)
                : MCOR_OK;
+  }
+  if (mcor_is_plane(job->context))
+  {
+    return mcor_add_cap_line(job, face, corners, count);
   }
   for (int i = 1; i + 1 < count; ++i)
   {

@@ -74,6 +74,12 @@ static void mcor_set_cap_extent(
     face->count[i] = (high < last ? high : last) - face->first[i] + 1;
     face->owned[i] = box->first[a] - face->first[i];
     face->end[i] = box->last[a] - face->first[i];
+    if (a == 2 && context->plane.axis > 0) /* one row of squares stands for the side's edges */
+    {
+      face->first[i] = face->owned[i] = 0;
+      face->count[i] = 2;
+      face->end[i] = 1;
+    }
     face->tiles[i] = (face->count[i] - 1) / MCOR_CAP_TILE + 1;
   }
 }
@@ -106,7 +112,8 @@ static mcor_status mcor_note_tiles(
   MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes of a side along %c are within reach of particles, with cube size "
     "%g: too many for a cap. Use a larger cube size, or no caps.",
-    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, 'x' + face->axis, context->lattice.cube);
+    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE,
+    mcor_axis_letter(context, face->axis), context->lattice.cube);
   return MCOR_OK;
 }
 

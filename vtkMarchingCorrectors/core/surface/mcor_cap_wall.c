@@ -355,7 +355,7 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap, double iso, mcor_cap_points* point
   status = status == MCOR_OK ? mcor_load_wall_edges(&job) : status;
   cap->border = &border;
   status = status == MCOR_OK ? mcor_cap_wall_cells(&job) : status;
-  status = status == MCOR_OK ? mcor_place_wall_cuts(cap, iso, points) : status;
+  status = status == MCOR_OK ? mcor_place_cap_cuts(cap, iso, points) : status;
   cap->border = NULL;
   mcor_free_wall(&job.wall);
   free(job.edges);

@@ -1,0 +1,306 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Caps of two dimensions: lines along the sides of periods and boxes, where it is filled beside these. */
+
+#include "plane_reference.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of a call: where caps are, on the plane's two axes; infinite where there are none. */
+typedef struct caps_case
+{
+  const core_set* set;
+  mcor_options options;
+  int axis;
+  double side[4]; /* low u, high u, low v, high v */
+} caps_case;
+
+static double caps_at(const caps_case* c, const mcor_surface* s, int32_t p, int a)
+{
+  return s->points[3 * (int64_t)p + (c->axis + 1 + a) % 3];
+}
+
+/* The side that two points are on; -1: none. */
+static int caps_side_of(const caps_case* c, const mcor_surface* s, int32_t p, int32_t q)
+{
+  for (int i = 0; i < 4; ++i)
+  {
+    if (fabs(caps_at(c, s, p, i / 2) - c->side[i]) < 1e-6 &&
+      fabs(caps_at(c, s, q, i / 2) - c->side[i]) < 1e-6)
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/* Length along side i, with what is inside on the left. */
+static double caps_length(const caps_case* c, const mcor_surface* s, int i, int32_t p, int32_t q)
+{
+  const int along = 1 - i / 2;
+  const double forward = caps_at(c, s, q, along) - caps_at(c, s, p, along);
+  return (i % 2 == along) == 1 ? forward : -forward;
+}
+
+/* What is filled along each side, from triangles. */
+static void caps_filled(const caps_case* c, const mcor_surface* s, double length[4])
+{
+  for (int64_t t = 0; t < 3 * s->triangle_count; ++t)
+  {
+    const int32_t p = s->triangles[t], q = s->triangles[t - t % 3 + (t + 1) % 3];
+    const int side = caps_side_of(c, s, p, q);
+    if (side >= 0)
+    {
+      length[side] += caps_length(c, s, side, p, q);
+    }
+  }
+}
+
+static void caps_lines(const caps_case* c, const mcor_surface* s, double length[4])
+{
+  for (int64_t l = 0; l < s->line_count; ++l)
+  {
+    for (int64_t i = s->line_offsets[l]; i + 1 < s->line_offsets[l + 1]; ++i)
+    {
+      const int32_t p = s->line_points[i], q = s->line_points[i + 1];
+      const int side = caps_side_of(c, s, p, q);
+      if (side >= 0)
+      {
+        const double part = caps_length(c, s, side, p, q);
+        CORE_CHECK(part > 0, "a cap of side %d goes back by %g", side, -part);
+        length[side] += part;
+      }
+    }
+  }
+}
+
+/* Sides of the cells of a box, or of the period. */
+static void caps_place(caps_case* c, const mcor_surface* s)
+{
+  const mcor_options* o = &c->options;
+  const double cube = s->statistics.cube_size;
+  for (int i = 0; i < 4; ++i)
+  {
+    const int from = 2 * ((c->axis + 1 + i / 2) % 3) + i % 2;
+    const int periodic = o->periodic[from - i % 2] < o->periodic[from - i % 2 + 1];
+    const double box = o->box[from];
+    const int has_box = box != 0 && !isinf(box);
+    const double low = cube * (double)s->statistics.lattice_origin[from / 2];
+    c->side[i] = periodic && !has_box
+      ? low + i % 2 * (o->periodic[from] - o->periodic[from - 1])
+      : has_box ? ceil(box / cube - 0.5) * cube
+                : INFINITY;
+  }
+}
+
+/* Without caps the lines are the same points before those of caps; caps are as long as what is filled is along
+ * sides; where nothing is trimmed, they close the lines around the filled area. */
+static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
+{
+  const mcor_input input = core_input(c->set);
+  mcor_options options = c->options;
+  options.level_limit = 0;
+  options.capping = 0;
+  mcor_surface open = core_extract(context, &input, &options);
+  options.filled = 1;
+  mcor_surface filled = core_extract(context, &input, &options);
+  mcor_surface capped = core_extract(context, &input, &c->options);
+  double expected[4] = { 0 }, length[4] = { 0 }, all = 0;
+  caps_place(c, &open);
+  caps_filled(c, &filled, expected);
+  caps_lines(c, &capped, length);
+  for (int i = 0; i < 4; ++i)
+  {
+    CORE_CHECK(fabs(length[i] - expected[i]) < 2e-4, "side %d: caps of %g, not %g", i, length[i],
+      expected[i]);
+    all += length[i];
+  }
+  CORE_CHECK(fabs(capped.statistics.length - open.statistics.length - all) < 1e-4,
+    "length %g, without caps %g, caps %g", capped.statistics.length, open.statistics.length, all);
+  assert_true(capped.point_count >= open.point_count);
+  assert_memory_equal(
+    capped.points, open.points, (size_t)open.point_count * 3 * sizeof *open.points);
+  for (int64_t p = open.point_count; p < capped.point_count; ++p)
+  {
+    const float* n = capped.normals + 3 * p;
+    double out = 0;
+    for (int i = 0; i < 4; ++i)
+    {
+      out = caps_side_of(c, &capped, (int32_t)p, (int32_t)p) >= 0 &&
+          fabs(caps_at(c, &capped, (int32_t)p, i / 2) - c->side[i]) < 1e-6
+        ? fmax(out, (i % 2 ? 1 : -1) * n[(c->axis + 1 + i / 2) % 3])
+        : out;
+    }
+    CORE_CHECK(out > 0.7, "point %lld: its normal points out by %g", (long long)p, out);
+    CORE_CHECK(capped.boundary_flag[p] == 8 || (is_trimmed && capped.boundary_flag[p] == 1),
+      "point %lld has flag %d", (long long)p, capped.boundary_flag[p]);
+  }
+  if (!is_trimmed)
+  {
+    assert_true(capped.statistics.is_closed);
+    CORE_CHECK(fabs(capped.statistics.area - filled.statistics.area) < 1e-6 * filled.statistics.area,
+      "area %.9g, not %.9g", capped.statistics.area, filled.statistics.area);
+  }
+  mcor_free_surface(&open);
+  mcor_free_surface(&filled);
+  mcor_free_surface(&capped);
+  return all;
+}
+
+static void set_sides(double sides[6], int axis, double u0, double u1, double v0, double v1)
+{
+  const double given[4] = { u0, u1, v0, v1 };
+  for (int i = 0; i < 4; ++i)
+  {
+    sides[2 * ((axis + 1 + i / 2) % 3) + i % 2] = given[i];
+  }
+}
+
+/* Of periods along both axes or one, boxes, and boxes in a period. */
+static void test_sides(void** state)
+{
+  double all = 0;
+  for (int round = 0; round < 36; ++round)
+  {
+    const int axis = round % 3, where = round / 3 % 4;
+    const mcor_field field = (mcor_field)(round / 12);
+    const double iso = field == MCOR_SUM ? 0.35 : field == MCOR_SHEPARD ? 0.1 : 0.9;
+    core_set set = plane_make(12, 0.45, 1.4, axis, 3, (uint64_t)(round + 1));
+    uint64_t seed = (uint64_t)round + 77;
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.scalar[i] = field == MCOR_SUM ? random_unit(&seed) : 2 * random_unit(&seed) - 1;
+    }
+    caps_case c = { .set = &set, .options = plane_options(&iso), .axis = axis };
+    c.options.field = field;
+    c.options.cube_size = 0.5;
+    c.options.topology = round % 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+    c.options.precision = round % 5 == 4 ? MCOR_FLOAT64 : MCOR_FLOAT32;
+    c.options.node_threshold = 0;
+    if (where != 1)
+    {
+      set_sides(c.options.periodic, axis, -6, 6, where == 3 ? 0 : -6, where == 3 ? 0 : 6);
+    }
+    if (where == 1 || where == 2)
+    {
+      set_sides(c.options.box, axis, -3.1, 2.4, where == 2 ? -6 : -4.6, where == 2 ? 1.2 : INFINITY);
+      c.options.box[2 * axis] = -INFINITY;
+      c.options.box[2 * axis + 1] = INFINITY;
+    }
+    c.options.capping = where == 1 || where == 2 ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
+    /* In a whole period there is fluid everywhere; else the edge of the fluid ends lines of a scalar. */
+    const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
+    all += caps_check(*state, &c, ends);
+    core_free_set(&set);
+  }
+  CORE_CHECK(all > 36 * 5, "caps of %g", all);
+}
+
+/* Cut where trimming ends: by weight, by eigenvalue, at walls. */
+static void test_trimmed_sides(void** state)
+{
+  const double iso = -1e3;
+  for (int mode = 0; mode < 9; ++mode)
+  {
+    const int axis = mode % 3;
+    core_set set = plane_make(14, 0.25, 1.2, axis, -2, (uint64_t)(4 + mode));
+    for (int64_t i = 0; i < set.count; ++i)
+    {
+      set.solid[i] = set.position[3 * i + (axis + 2) % 3] < -4;
+    }
+    set.has_solids = mode / 3 == 2;
+    caps_case c = { .set = &set, .options = plane_options(&iso), .axis = axis };
+    c.options.boundary_detection =
+      mode / 3 == 1 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
+    c.options.vertex_threshold = mode / 3 == 1 ? 0.75 : 0.5;
+    c.options.wall_share = mode / 3 == 2 ? 0.5 : 0;
+    c.options.node_threshold = 0.02;
+    c.options.capping = MCOR_CAP_BOX;
+    set_sides(c.options.box, axis, -3.1, 2.4, -INFINITY, INFINITY);
+    c.options.box[2 * axis] = -3;
+    c.options.box[2 * axis + 1] = 3;
+    const double all = caps_check(*state, &c, 1);
+    CORE_CHECK(all > 18 && all < 32, "mode %d: caps of %g", mode, all);
+    core_free_set(&set);
+  }
+}
+
+/* Several iso values have caps of their own; boxes side by side, those of the whole. */
+static void test_values_and_order(void** state)
+{
+  const double isos[2] = { 0.9, 0.6 };
+  core_set set = plane_make(12, 0.45, 1.3, 2, 0, 6);
+  const mcor_input input = core_input(&set);
+  mcor_options options = plane_options(isos);
+  options.field = MCOR_WEIGHT_SUM;
+  options.capping = MCOR_CAP_BOX;
+  set_sides(options.box, 2, -3, 3, -2, 2);
+  options.box[4] = -INFINITY;
+  options.box[5] = INFINITY;
+  double area[2], sum = 0;
+  for (int i = 0; i < 2; ++i)
+  {
+    options.iso_values = isos + i;
+    mcor_surface one = core_extract(*state, &input, &options);
+    area[i] = one.statistics.area;
+    mcor_free_surface(&one);
+  }
+  options.iso_values = isos;
+  options.iso_count = 2;
+  mcor_surface both = core_extract(*state, &input, &options);
+  sum = both.statistics.area;
+  CORE_CHECK(fabs(sum - area[0] - area[1]) < 1e-9 * sum, "%g, not %g", sum, area[0] + area[1]);
+  mcor_free_surface(&both);
+  int64_t* order = core_make_order(set.count, 6);
+  core_set other = core_permute(&set, order);
+  const mcor_input permuted = core_input(&other);
+  mcor_surface a = core_extract(*state, &input, &options),
+               b = core_extract(*state, &permuted, &options);
+  assert_int_equal(core_hash(&a), core_hash(&b));
+  mcor_free_surface(&a);
+  mcor_free_surface(&b);
+  free(order);
+  core_free_set(&other);
+  core_free_set(&set);
+}
+
+static void test_what_is_not_capped(void** state)
+{
+  const double iso = 0.5;
+  core_set set = plane_make(8, 0.2, 1, 1, 0, 1);
+  const mcor_input input = core_input(&set);
+  mcor_options options = plane_options(&iso);
+  mcor_surface surface;
+  options.capping = MCOR_CAP_PERIOD;
+  options.filled = 1;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+  assert_non_null(strstr(mcor_last_error(*state), "cannot be combined with filling"));
+  options.filled = 0;
+  options.field = MCOR_WEIGHT_SUM;
+  surface = core_extract(*state, &input, &options); /* nothing to close */
+  assert_true(surface.statistics.is_closed && surface.statistics.cap_triangles == 0);
+  mcor_free_surface(&surface);
+  options.capping = MCOR_CAP_BOX;
+  set_sides(options.box, 1, 100, 101, 100, 101);
+  options.box[2] = -1;
+  options.box[3] = 1;
+  surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.line_count, 0);
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+}
+
+int main(int argc, char** argv)
+{
+  if (argc > 1)
+  {
+    cmocka_set_test_filter(argv[1]);
+  }
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_sides),
+    cmocka_unit_test(test_trimmed_sides), cmocka_unit_test(test_values_and_order),
+    cmocka_unit_test(test_what_is_not_capped) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

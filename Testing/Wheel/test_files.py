@@ -151,7 +151,7 @@ def write_bi4(path, order="<", wide=False, double=True, **more):
               value("CaseNfixed", 10, "Q", int(WALL.sum())), value("CaseNmoving", 10, "Q", 0),
               value("CaseNfloat", 10, "Q", 0), value("PeriActive", 7, "i", more.get("period", 0)),
               value("MapPosMin", 23, "3d", -2, -2, -2), value("MapPosMax", 23, "3d", 2, 2, 2)]
-    head = b"#File JPartDataBi4".ljust(60) + bytes([(order == ">") + 10 * wide, wide, 0, 0])
+    head = b"#FileJBD JPartDataBi4".ljust(58) + b"\n\0" + bytes([(order == ">") + 10 * wide, wide, 0, 0])
     Path(path).write_bytes(head + item("JPartDataBi4", values, [], [part]))
 
 

@@ -325,6 +325,44 @@ class Layouts(Case):
             self.assertEqual(velocity.shape, (len(X), 3))
             self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
 
+    def test_sphinxsys(self):
+        """As its own writer has them, without VTK: text, a name for vectors that are not there."""
+        def write(name, chosen, arrays):
+            def array(name, values, more=""):
+                kind = "Int32" if values.dtype.kind == "i" else "Float32"
+                return (f'    <DataArray Name="{name}" type="{kind}" {more} Format="ascii">\n'
+                        + " ".join(f"{value:.9f}" if kind == "Float32" else str(value) for value in values.ravel())
+                        + "\n    </DataArray>\n")
+
+            count, three = int(chosen.sum()), 'NumberOfComponents="3"'
+            self.at(name).write_text(
+                '<?xml version="1.0"?>\n<VTKFile type="PolyData" version="0.1" byte_order="LittleEndian">\n <PolyData>\n'
+                f'  <Piece Name ="{name}" NumberOfPoints="{count}" NumberOfVerts="{count}">\n   <Points>\n'
+                + array("Position", X[chosen], three) + '   </Points>\n   <PointData  Vectors="vector">\n'
+                + array("SortedParticle_ID", np.arange(count))
+                + "".join(array(key, values[chosen], three if values.ndim == 2 else "") for key, values in arrays.items())
+                + "   </PointData>\n   <Verts>\n" + array("connectivity", np.arange(count))
+                + array("offsets", np.arange(count) + 1)
+                + "   </Verts>\n  </Piece>\n </PolyData>\n</VTKFile>\n")
+
+        write("WaterBody_0000521845.vtp", ~WALL, {"Density": DENSITY, "Velocity": X, "VolumetricMeasure": MASS / DENSITY})
+        write("Wall_0000000000.vtp", WALL, {"NormalDirection": X})
+        particles = io.read([self.at("WaterBody_0000521845.vtp"), self.at("Wall_0000000000.vtp")])
+        self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum())
+        self.assertLess(np.abs(particles.positions[~particles.solid] - X[~WALL]).max(), 1e-6)
+        self.assertEqual(list(particles.arrays), ["SortedParticle_ID", "Density", "Velocity", "VolumetricMeasure"])
+        self.assertLess(np.abs(particles.arrays["Velocity"][~particles.solid] - X[~WALL]).max(), 1e-6)
+
+    def test_walls_by_names(self):
+        import pyvista
+
+        for wall in ("rb_particle_data_0_1.vtk", "Obstacle.vtp", "PartBound_0000.vtk", "WallBoundary_0.vtp", "Rigid.vtu"):
+            for name, chosen in (("ParticleData_Fluid_1.vtk", ~WALL), (wall, WALL)):
+                body = pyvista.PolyData(X[chosen])
+                (body.cast_to_unstructured_grid() if name.endswith("u") else body).save(self.at(name))
+            particles = io.read([self.at("ParticleData_Fluid_1.vtk"), self.at(wall)])
+            self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum(), wall)
+
     def test_legacy(self):
         """SPlisHSPlasH's ParticleData_Fluid_1.vtk: an unstructured grid, binary."""
         import pyvista

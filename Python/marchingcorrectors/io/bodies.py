@@ -2,13 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's files (.vtp, .vtu, .vtk) of SPHinXsys, PartVTK, SPlisHSPlasH: several bodies as one set, walls marked."""
 import contextlib
-import re
 
 import numpy as np
 
-from ._particles import FileError, Particles, join
-
-WALL = re.compile(r"wall|boundary|solid|bound|container|tank", re.I)
+from ._particles import WALL, FileError, Particles, join
 
 
 @contextlib.contextmanager

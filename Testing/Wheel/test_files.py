@@ -4,6 +4,7 @@
 them. What is damaged: test_damaged.py."""
 import gzip
 import importlib.util
+import itertools
 import struct
 import subprocess
 import sys
@@ -375,6 +376,28 @@ class Layouts(Case):
         self.assertEqual(particles.arrays["velocity"].tobytes(), X.astype(np.float32).tobytes())
         self.assertEqual(particles.arrays["id"].tolist(), list(range(len(X))))
         self.assertIsNone(particles.solid)
+
+    def test_legacy_of_all_kinds(self):
+        """Versions, bytes and text, bodies and grids, arrays of cells: as VTK reads them."""
+        import pyvista
+        from vtkmodules.vtkIOLegacy import vtkPolyDataWriter, vtkUnstructuredGridWriter
+
+        for version, text, grid in itertools.product((42, 51), (False, True), (False, True)):
+            body = pyvista.PolyData(X.astype(np.float32) if grid else X)
+            body["an id"], body["Velocity"], body["t"] = np.arange(len(X)), X.astype(np.float32), np.tile(DENSITY[:, None], 9)
+            body.cell_data["Mass"], body.field_data["TimeValue"] = MASS, [0.75]
+            writer = vtkUnstructuredGridWriter() if grid else vtkPolyDataWriter()
+            writer.SetFileName(str(self.at("body.vtk")))
+            writer.SetInputData(body.cast_to_unstructured_grid() if grid else body)
+            writer.SetFileVersion(version)
+            writer.SetFileType(1 if text else 2)
+            writer.Write()
+            found, wanted = io.read(self.at("body.vtk")), pyvista.read(self.at("body.vtk"))
+            self.assertTrue(np.array_equal(found.positions, wanted.points))
+            self.assertEqual(sorted(found.arrays), ["Velocity", "an id", "t"])
+            for name in found.arrays:
+                self.assertTrue(np.array_equal(found.arrays[name], wanted[name]), (version, text, grid, name))
+            self.assertEqual(found.time, 0.75)
 
     def test_lazy(self):
         """No array is read before it is used."""

@@ -22,6 +22,7 @@ from pathlib import Path
 
 SOURCES, HERE = Path(os.environ["MCOR_TEST_SOURCES"]), Path(__file__).parent
 PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4")  # NumPy 2 wants functions that wine 8 has not
+INTEL = ("intel-opencl-rt==2026.2.0", "tbb==2023.2.0")
 PYVISTA = ("pyvista==0.49.1", "vtk==9.3.1", PACKAGES[1])
 VERSION = (3, 11)
 SKIPPED = 77
@@ -42,7 +43,7 @@ def skip(sentence):
 
 
 def make_python(folder):
-    for more in (["--no-deps", *PACKAGES], PYVISTA):
+    for more in (["--no-deps", *PACKAGES, *INTEL], PYVISTA):
         if subprocess.run([sys.executable, "-m", "pip", "--disable-pip-version-check", "download", "-q",
                            "--only-binary=:all:", "--platform", "win_amd64", "--python-version", "%d.%d" % VERSION,
                            "-d", folder / "wheels", *more]).returncode:
@@ -76,6 +77,19 @@ def install(python, wheels, environment, *packages):
     print(f"pip install {Path(packages[0]).name}: {time.monotonic() - begin:.1f} s")
 
 
+def add_intel(wheels, folder, environment):
+    """A driver for wine: OpenCL.dll in place of wine's own, and its name in the registry."""
+    for wheel in (*wheels.glob("intel_opencl_rt-*.whl"), *wheels.glob("tbb-*.whl")):
+        with zipfile.ZipFile(wheel) as archive:
+            for name in archive.namelist():
+                if "/Library/bin/" in name and not name.endswith("/"):
+                    (folder / Path(name).name).write_bytes(archive.read(name))
+    system = Path(environment["WINEPREFIX"]) / "drive_c" / "windows" / "system32"
+    shutil.copy(folder / "OpenCL.dll", system / "opencl.dll")
+    run("wine", "reg", "add", r"HKLM\SOFTWARE\Khronos\OpenCL\Vendors", "/v", f"Z:{folder / 'intelocl64.dll'}".replace("/", "\\"),
+        "/t", "REG_DWORD", "/d", "0", "/f", env=environment)
+
+
 def main():
     if not (shutil.which("wine") and shutil.which("x86_64-w64-mingw32-gcc")):
         skip("there is no wine, or no gcc for Windows (Debian: apt install wine64 wine gcc-mingw-w64-x86-64).")
@@ -104,6 +118,10 @@ def main():
             page = run("wine", python, HERE / "python_page.py", SOURCES / "Documentation" / "Guide" / "python.md",
                        env=environment)
             assert page == ["PyVista 0.49.1", "the page's words hold"], page
+            (folder / "intel").mkdir()
+            add_intel(folder / "wheels", folder / "intel", environment)
+            intel = run("wine", python, HERE / "intel_device.py", env={**environment, "WINEDLLOVERRIDES": "opencl=n"})
+            assert intel == ["Intel's runtime: the same"], intel
         finally:
             subprocess.run(["wineserver", "-k"], env=environment)
 

@@ -364,6 +364,20 @@ class Layouts(Case):
             particles = io.read([self.at("ParticleData_Fluid_1.vtk"), self.at(wall)])
             self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum(), wall)
 
+    def test_partvtk(self):
+        """Types tell of walls, in one file and in several, whatever these are called."""
+        import pyvista
+
+        kinds = np.where(WALL, 1, 3).astype(np.uint8)
+        for name, chosen in (("PartAll_0001.vtk", X[:, 0] < 9), ("PartFluid_0001.vtk", ~WALL), ("PartMoving_0001.vtk", WALL)):
+            body = pyvista.PolyData(X[chosen].astype(np.float32))
+            body["Idp"], body["Rhop"], body["Type"] = np.flatnonzero(chosen).astype(np.uint32), DENSITY[chosen], kinds[chosen]
+            body.save(self.at(name))
+        self.assertEqual(io.read(self.at("PartAll_0001.vtk")).solid.tolist(), WALL.tolist())
+        parts = io.read([self.at("PartFluid_0001.vtk"), self.at("PartMoving_0001.vtk")])
+        self.assertEqual(parts.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum())
+        self.assertIsNone(io.read(self.at("PartFluid_0001.vtk")).solid)
+
     def test_legacy(self):
         """SPlisHSPlasH's ParticleData_Fluid_1.vtk: an unstructured grid, binary."""
         import pyvista

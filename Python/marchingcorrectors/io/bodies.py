@@ -90,8 +90,8 @@ def read_bodies(paths, walls):
         return next((lower[name] for name in names if name in lower), None)
 
     solid = np.repeat(marked, counts)
-    if "Type" in common and len(every) == 1 and ("Rhop" in common or "Idp" in common):
-        solid = arrays["Type"]() != 3  # PartVTK's
+    if "Type" in common and ("Rhop" in common or "Idp" in common):
+        solid |= arrays["Type"]() != 3  # PartVTK's
     return Particles(paths[0].name, "VTK", lambda: join([points for points, _, _ in bodies]), arrays,
                      smoothing_length=find("smoothinglength", "hsml", "h"), mass=find("mass", "masses", "m"),
                      density=find("density", "rho", "rhop"), solid=solid if solid.any() else None,

@@ -12,7 +12,7 @@
  * and "-" do not matter):
  *
  *     smoothing length   SmoothingLength SmoothingLengths hsml h
- *     volume             Volume Volumes ParticleVolume vol
+ *     volume             Volume Volumes ParticleVolume vol VolumetricMeasure
  *     mass               Mass Masses ParticleMass m
  *     density            Density Densities ParticleDensity rho
  *

@@ -20,6 +20,7 @@
  * matter) unless they are named; ids are also found as the active global ids:
  *
  *     id         Idp ParticleId ParticleIds PartId id ids GlobalIds GlobalId gid pid iorig
+ *                OriginalId UnsortedParticleId
  *     velocity   Velocity Velocities vel v
  *
  * As a name, "(automatic)" and "(none)" mean the same as an empty one. Without ids, or if two particles

@@ -12,6 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pyvista
+from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
 
 from marchingcorrectors import io
 from test_files import DENSITY, X, Case, quietly, write_bgeo, write_bi4, write_gadget, write_phantom, write_pysph
@@ -21,6 +22,18 @@ def write_vtk(path):
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     (body if path.suffix != ".vtu" else body.cast_to_unstructured_grid()).save(path)
+
+
+def write_grid(path, text=False):
+    """As SPlisHSPlasH does."""
+    body = pyvista.PolyData(X.astype(np.float32))
+    body["Density"], body["Velocity"] = DENSITY, X
+    writer = vtkUnstructuredGridWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(body.cast_to_unstructured_grid())
+    writer.SetFileVersion(42)
+    writer.SetFileType(1 if text else 2)
+    writer.Write()
 
 
 class Hostile(Case):
@@ -81,7 +94,8 @@ class Hostile(Case):
     def test_cut_off(self):
         """A file of each kind without its end: one line on stderr, and no file."""
         for name, make in (("Part_0001.bi4", write_bi4), ("fluid.bgeo", write_bgeo), ("body.vtp", write_vtk),
-                           ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("snap.hdf5", write_gadget)):
+                           ("body.vtu", write_vtk), ("body.vtk", write_vtk), ("grid.vtk", write_grid),
+                           ("text.vtk", lambda path: write_grid(path, True)), ("snap.hdf5", write_gadget)):
             make(self.at(name))
             self.at(name).write_bytes(self.at(name).read_bytes()[:-2000])
             done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", str(self.at(name)),
@@ -90,12 +104,23 @@ class Hostile(Case):
             self.assertIn(name, done.stderr)
             self.assertFalse(self.at("out.vtp").exists())
 
+    def test_cells(self):
+        """VTK's own reader would read where a damaged list of cells points to."""
+        write_grid(self.at("grid.vtk"))
+        whole = self.at("grid.vtk").read_bytes()
+        wanted = io.read(self.at("grid.vtk"))
+        at = whole.index(b"\n", whole.index(b"\nCELLS ") + 1) + 1 + 8 * 2000  # how many points the 2000th cell has
+        self.at("grid.vtk").write_bytes(whole[:at] + b"\2\0\0\1" + whole[at + 4:])
+        found = io.read(self.at("grid.vtk"))
+        self.assertEqual(found.positions.tobytes(), wanted.positions.tobytes())
+        self.assertEqual(found.arrays["Density"].tobytes(), wanted.arrays["Density"].tobytes())
+
     def test_fuzz(self):
         """Truncated, and with bits turned: a FileError of one line, or particles."""
         random, refused = np.random.default_rng(34), 0
         makers = {"snap.hdf5": write_gadget, "dump.h5": write_phantom, "run.hdf5": write_pysph,
                   "Part_0001.bi4": write_bi4, "fluid.bgeo": write_bgeo, "body.vtp": write_vtk, "body.vtu": write_vtk,
-                  "body.vtk": write_vtk}
+                  "body.vtk": write_vtk, "grid.vtk": write_grid}
         for name, make in makers.items():
             make(self.at(name))
             whole = self.at(name).read_bytes()

@@ -4,6 +4,7 @@
 them. What is damaged: test_damaged.py."""
 import gzip
 import importlib.util
+import itertools
 import struct
 import subprocess
 import sys
@@ -151,7 +152,7 @@ def write_bi4(path, order="<", wide=False, double=True, **more):
               value("CaseNfixed", 10, "Q", int(WALL.sum())), value("CaseNmoving", 10, "Q", 0),
               value("CaseNfloat", 10, "Q", 0), value("PeriActive", 7, "i", more.get("period", 0)),
               value("MapPosMin", 23, "3d", -2, -2, -2), value("MapPosMax", 23, "3d", 2, 2, 2)]
-    head = b"#File JPartDataBi4".ljust(60) + bytes([(order == ">") + 10 * wide, wide, 0, 0])
+    head = b"#FileJBD JPartDataBi4".ljust(58) + b"\n\0" + bytes([(order == ">") + 10 * wide, wide, 0, 0])
     Path(path).write_bytes(head + item("JPartDataBi4", values, [], [part]))
 
 
@@ -325,6 +326,58 @@ class Layouts(Case):
             self.assertEqual(velocity.shape, (len(X), 3))
             self.assertTrue(np.array_equal(particles.arrays["Density"], np.concatenate([DENSITY[~WALL], DENSITY[WALL]])))
 
+    def test_sphinxsys(self):
+        """As its own writer has them, without VTK: text, a name for vectors that are not there."""
+        def write(name, chosen, arrays):
+            def array(name, values, more=""):
+                kind = "Int32" if values.dtype.kind == "i" else "Float32"
+                return (f'    <DataArray Name="{name}" type="{kind}" {more} Format="ascii">\n'
+                        + " ".join(f"{value:.9f}" if kind == "Float32" else str(value) for value in values.ravel())
+                        + "\n    </DataArray>\n")
+
+            count, three = int(chosen.sum()), 'NumberOfComponents="3"'
+            self.at(name).write_text(
+                '<?xml version="1.0"?>\n<VTKFile type="PolyData" version="0.1" byte_order="LittleEndian">\n <PolyData>\n'
+                f'  <Piece Name ="{name}" NumberOfPoints="{count}" NumberOfVerts="{count}">\n   <Points>\n'
+                + array("Position", X[chosen], three) + '   </Points>\n   <PointData  Vectors="vector">\n'
+                + array("SortedParticle_ID", np.arange(count))
+                + "".join(array(key, values[chosen], three if values.ndim == 2 else "") for key, values in arrays.items())
+                + "   </PointData>\n   <Verts>\n" + array("connectivity", np.arange(count))
+                + array("offsets", np.arange(count) + 1)
+                + "   </Verts>\n  </Piece>\n </PolyData>\n</VTKFile>\n")
+
+        write("WaterBody_0000521845.vtp", ~WALL, {"Density": DENSITY, "Velocity": X, "VolumetricMeasure": MASS / DENSITY})
+        write("Wall_0000000000.vtp", WALL, {"NormalDirection": X})
+        particles = io.read([self.at("WaterBody_0000521845.vtp"), self.at("Wall_0000000000.vtp")])
+        self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum())
+        self.assertLess(np.abs(particles.positions[~particles.solid] - X[~WALL]).max(), 1e-6)
+        self.assertEqual(list(particles.arrays), ["SortedParticle_ID", "Density", "Velocity", "VolumetricMeasure"])
+        self.assertLess(np.abs(particles.arrays["Velocity"][~particles.solid] - X[~WALL]).max(), 1e-6)
+
+    def test_walls_by_names(self):
+        import pyvista
+
+        for wall in ("rb_particle_data_0_1.vtk", "Obstacle.vtp", "PartBound_0000.vtk", "WallBoundary_0.vtp", "Rigid.vtu"):
+            for name, chosen in (("ParticleData_Fluid_1.vtk", ~WALL), (wall, WALL)):
+                body = pyvista.PolyData(X[chosen])
+                (body.cast_to_unstructured_grid() if name.endswith("u") else body).save(self.at(name))
+            particles = io.read([self.at("ParticleData_Fluid_1.vtk"), self.at(wall)])
+            self.assertEqual(particles.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum(), wall)
+
+    def test_partvtk(self):
+        """Types tell of walls, in one file and in several, whatever these are called."""
+        import pyvista
+
+        kinds = np.where(WALL, 1, 3).astype(np.uint8)
+        for name, chosen in (("PartAll_0001.vtk", X[:, 0] < 9), ("PartFluid_0001.vtk", ~WALL), ("PartMoving_0001.vtk", WALL)):
+            body = pyvista.PolyData(X[chosen].astype(np.float32))
+            body["Idp"], body["Rhop"], body["Type"] = np.flatnonzero(chosen).astype(np.uint32), DENSITY[chosen], kinds[chosen]
+            body.save(self.at(name))
+        self.assertEqual(io.read(self.at("PartAll_0001.vtk")).solid.tolist(), WALL.tolist())
+        parts = io.read([self.at("PartFluid_0001.vtk"), self.at("PartMoving_0001.vtk")])
+        self.assertEqual(parts.solid.tolist(), [False] * (~WALL).sum() + [True] * WALL.sum())
+        self.assertIsNone(io.read(self.at("PartFluid_0001.vtk")).solid)
+
     def test_legacy(self):
         """SPlisHSPlasH's ParticleData_Fluid_1.vtk: an unstructured grid, binary."""
         import pyvista
@@ -337,6 +390,28 @@ class Layouts(Case):
         self.assertEqual(particles.arrays["velocity"].tobytes(), X.astype(np.float32).tobytes())
         self.assertEqual(particles.arrays["id"].tolist(), list(range(len(X))))
         self.assertIsNone(particles.solid)
+
+    def test_legacy_of_all_kinds(self):
+        """Versions, bytes and text, bodies and grids, arrays of cells: as VTK reads them."""
+        import pyvista
+        from vtkmodules.vtkIOLegacy import vtkPolyDataWriter, vtkUnstructuredGridWriter
+
+        for version, text, grid in itertools.product((42, 51), (False, True), (False, True)):
+            body = pyvista.PolyData(X.astype(np.float32) if grid else X)
+            body["an id"], body["Velocity"], body["t"] = np.arange(len(X)), X.astype(np.float32), np.tile(DENSITY[:, None], 9)
+            body.cell_data["Mass"], body.field_data["TimeValue"] = MASS, [0.75]
+            writer = vtkUnstructuredGridWriter() if grid else vtkPolyDataWriter()
+            writer.SetFileName(str(self.at("body.vtk")))
+            writer.SetInputData(body.cast_to_unstructured_grid() if grid else body)
+            writer.SetFileVersion(version)
+            writer.SetFileType(1 if text else 2)
+            writer.Write()
+            found, wanted = io.read(self.at("body.vtk")), pyvista.read(self.at("body.vtk"))
+            self.assertTrue(np.array_equal(found.positions, wanted.points))
+            self.assertEqual(sorted(found.arrays), ["Velocity", "an id", "t"])
+            for name in found.arrays:
+                self.assertTrue(np.array_equal(found.arrays[name], wanted[name]), (version, text, grid, name))
+            self.assertEqual(found.time, 0.75)
 
     def test_lazy(self):
         """No array is read before it is used."""

@@ -44,7 +44,7 @@ def write(path, time, points):
     base = text("\nARRAY") + text("Posd") + struct.pack("<iiII", 0, 23, len(points), len(data))
     part = item("PART", [text("TimeStep") + struct.pack("<id", 12, time)],
                 [struct.pack("<I", len(base)) + base + data], [])
-    head = b"#File JPartDataBi4".ljust(60) + bytes(4)
+    head = b"#FileJBD JPartDataBi4".ljust(58) + b"\n" + bytes(5)
     with open(path, "wb") as file:
         file.write(head + item("JPartDataBi4", [text("H") + struct.pack("<id", 12, 0.13)], [], [part]))
 
@@ -80,7 +80,7 @@ assert min(cells) > 300, cells
 
 damaged = os.path.join(folder, "damaged.bi4")
 with open(damaged, "wb") as file:
-    file.write(b"#File JPartDataBi4")
+    file.write(b"#FileJBD JPartDataBi4")
 reader = SPHParticleReader(FileNames=[damaged])  # noqa: F821
 reader.UpdatePipeline()
 assert servermanager.Fetch(reader).GetNumberOfPoints() == 0

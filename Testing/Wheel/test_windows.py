@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The wheel for Windows in a Windows CPython under wine gives the bytes that the wheel for Linux gives.
+"""The wheel for Windows in a Windows CPython under wine gives the bytes that the wheel for Linux gives, and does what the
+guide's page for Python says, with PyVista, too.
 
     test_windows.py FOLDER_OF_THE_ENVIRONMENT
 
@@ -21,6 +22,8 @@ from pathlib import Path
 
 SOURCES, HERE = Path(os.environ["MCOR_TEST_SOURCES"]), Path(__file__).parent
 PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4")  # NumPy 2 wants functions that wine 8 has not
+INTEL = ("intel-opencl-rt==2026.2.0", "tbb==2023.2.0")
+PYVISTA = ("pyvista==0.49.1", "vtk==9.3.1", PACKAGES[1])
 VERSION = (3, 11)
 SKIPPED = 77
 WIDE_MAIN = """#define WIN32_LEAN_AND_MEAN
@@ -40,10 +43,11 @@ def skip(sentence):
 
 
 def make_python(folder):
-    if subprocess.run([sys.executable, "-m", "pip", "--disable-pip-version-check", "download", "-q", "--no-deps",
-                       "--only-binary=:all:", "--platform", "win_amd64", "--python-version", "%d.%d" % VERSION,
-                       "-d", folder / "wheels", *PACKAGES]).returncode:
-        skip("the Python package index is out of reach.")
+    for more in (["--no-deps", *PACKAGES, *INTEL], PYVISTA):
+        if subprocess.run([sys.executable, "-m", "pip", "--disable-pip-version-check", "download", "-q",
+                           "--only-binary=:all:", "--platform", "win_amd64", "--python-version", "%d.%d" % VERSION,
+                           "-d", folder / "wheels", *more]).returncode:
+            skip("the Python package index is out of reach.")
     python = folder / "été 測試" / "python"
     shutil.copytree(sysconfig.get_path("stdlib"), python / "Lib",
                     ignore=shutil.ignore_patterns("site-packages", "lib-dynload", "test", "config-*", "__pycache__"))
@@ -64,13 +68,26 @@ def run(*command, **more):
     return [line.strip() for line in done.stdout.splitlines() if line.strip()]
 
 
-def install(python, wheels, wheel, environment):
+def install(python, wheels, environment, *packages):
     """By the pip that each CPython has with it."""
     pip, = (python.parent / "Lib" / "ensurepip" / "_bundled").glob("pip-*.whl")
     begin = time.monotonic()
     run("wine", python, f"{pip}/pip", "--disable-pip-version-check", "--no-cache-dir", "install", "--no-index",
-        "--find-links", wheels, "--no-compile", "--no-warn-script-location", wheel, env=environment)
-    print(f"pip install: {time.monotonic() - begin:.1f} s")
+        "--find-links", wheels, "--no-compile", "--no-warn-script-location", *packages, env=environment)
+    print(f"pip install {Path(packages[0]).name}: {time.monotonic() - begin:.1f} s")
+
+
+def add_intel(wheels, folder, environment):
+    """A driver for wine: OpenCL.dll in place of wine's own, and its name in the registry."""
+    for wheel in (*wheels.glob("intel_opencl_rt-*.whl"), *wheels.glob("tbb-*.whl")):
+        with zipfile.ZipFile(wheel) as archive:
+            for name in archive.namelist():
+                if "/Library/bin/" in name and not name.endswith("/"):
+                    (folder / Path(name).name).write_bytes(archive.read(name))
+    system = Path(environment["WINEPREFIX"]) / "drive_c" / "windows" / "system32"
+    shutil.copy(folder / "OpenCL.dll", system / "opencl.dll")
+    run("wine", "reg", "add", r"HKLM\SOFTWARE\Khronos\OpenCL\Vendors", "/v", f"Z:{folder / 'intelocl64.dll'}".replace("/", "\\"),
+        "/t", "REG_DWORD", "/d", "0", "/f", env=environment)
 
 
 def main():
@@ -91,12 +108,20 @@ def main():
                        "PYTHONIOENCODING": "utf-8"}
         environment.pop("PYTHONPATH", None)
         try:
-            install(python, folder / "wheels", wheel, environment)
+            install(python, folder / "wheels", environment, wheel)
             here = run(Path(sys.argv[1]) / "venv" / "bin" / "python", HERE / "surface_hashes.py")
             for threads in ("1", "3"):
                 windows = run("wine", python, HERE / "surface_hashes.py", env={**environment, "MCOR_THREADS": threads})
                 print("\n".join(windows))
                 assert len(here) == 11 and windows == here, "\n".join(["on Linux:", *here])
+            install(python, folder / "wheels", environment, *PYVISTA)
+            page = run("wine", python, HERE / "python_page.py", SOURCES / "Documentation" / "Guide" / "python.md",
+                       env=environment)
+            assert page == ["PyVista 0.49.1", "the page's words hold"], page
+            (folder / "intel").mkdir()
+            add_intel(folder / "wheels", folder / "intel", environment)
+            intel = run("wine", python, HERE / "intel_device.py", env={**environment, "WINEDLLOVERRIDES": "opencl=n"})
+            assert intel == ["Intel's runtime: the same"], intel
         finally:
             subprocess.run(["wineserver", "-k"], env=environment)
 

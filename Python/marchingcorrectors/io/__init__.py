@@ -61,7 +61,7 @@ def _read(paths, types, walls):
     if head.startswith(b"\x89HDF\r\n\x1a\n"):
         from .snapshot import read_snapshot
         return read_snapshot(path, types)
-    if head.startswith(b"#File "):
+    if head.startswith(b"#FileJBD "):
         from .bi4 import read_bi4
         return read_bi4(path)
     if head.startswith((b"BgeoV", b"\x1f\x8b")) and ending != ".npz":

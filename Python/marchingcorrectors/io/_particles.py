@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles of a file, whose arrays are read when they are asked for."""
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -14,6 +15,9 @@ from .._warnings import warn
 KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
            "wendlandquinticc6": "wendland_c6", "wendlandquinticc": None, "wendlandquintic": "wendland"}
+
+# Names of bodies and of sets that tell of walls; rb_particle_data is SPlisHSPlasH's rigid bodies.
+WALL = re.compile(r"wall|bound|solid|obstacle|rigid|rb_particle|container|tank", re.I)
 
 
 class FileError(Error, ValueError):

@@ -2,19 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's files (.vtp, .vtu, .vtk) of SPHinXsys, PartVTK, SPlisHSPlasH: several bodies as one set, walls marked."""
 import contextlib
-import re
 
 import numpy as np
 
-from ._particles import FileError, Particles, join
-
-WALL = re.compile(r"wall|boundary|solid|bound|container|tank", re.I)
+from ._particles import WALL, FileError, Particles, join
+from .legacy import read_legacy
 
 
 @contextlib.contextmanager
 def caught():
-    """What VTK has to say goes into a list, and nowhere else: its reader of legacy files tells of a file that ends too
-    early by a warning of no object, and gives what memory held."""
+    """What VTK has to say goes into a list, and nowhere else."""
     from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
     before, window, complaints = vtkOutputWindow.GetInstance(), vtkStringOutputWindow(), []
@@ -30,30 +27,17 @@ def caught():
 
 
 def make_reader(path):
-    from vtkmodules.util.vtkConstants import VTK_POLY_DATA, VTK_UNSTRUCTURED_GRID
-    from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkPolyDataReader, vtkUnstructuredGridReader
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-    ending = path.suffix.lower()
-    if ending != ".vtk":
-        with open(path, "rb") as file:
-            if not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
-                raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
-        return vtkXMLPolyDataReader() if ending == ".vtp" else vtkXMLUnstructuredGridReader()
-    kind = vtkDataSetReader()
-    kind.SetFileName(str(path))
-    kinds = {VTK_POLY_DATA: vtkPolyDataReader, VTK_UNSTRUCTURED_GRID: vtkUnstructuredGridReader}
-    reader = kinds.get(kind.ReadOutputType())
-    if reader is None:
-        raise FileError(f"{path.name} is no file of VTK's with particles (poly data or an unstructured grid), or its "
-                        "beginning is damaged.")
-    reader = reader()
-    for what in ("Scalars", "Vectors", "Fields"):
-        getattr(reader, f"ReadAll{what}On")()
-    return reader
+    with open(path, "rb") as file:
+        if not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
+            raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
+    return vtkXMLPolyDataReader() if path.suffix.lower() == ".vtp" else vtkXMLUnstructuredGridReader()
 
 
 def load(path):
+    if path.suffix.lower() == ".vtk":
+        return read_legacy(path)
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     with caught() as complaints:
@@ -106,8 +90,8 @@ def read_bodies(paths, walls):
         return next((lower[name] for name in names if name in lower), None)
 
     solid = np.repeat(marked, counts)
-    if "Type" in common and len(every) == 1 and ("Rhop" in common or "Idp" in common):
-        solid = arrays["Type"]() != 3  # PartVTK's
+    if "Type" in common and ("Rhop" in common or "Idp" in common):
+        solid |= arrays["Type"]() != 3  # PartVTK's
     return Particles(paths[0].name, "VTK", lambda: join([points for points, _, _ in bodies]), arrays,
                      smoothing_length=find("smoothinglength", "hsml", "h"), mass=find("mass", "masses", "m"),
                      density=find("density", "rho", "rhop"), solid=solid if solid.any() else None,

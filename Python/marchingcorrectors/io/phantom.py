@@ -25,14 +25,16 @@ def read_hdf5_dump(path):
     return make(path, lambda name: load(there, name), lambda: load(there, "xyz"), names, values)
 
 
-def cube(values):
-    return values * values * values
+def cube_of_ratio(factor, h):
+    with np.errstate(over="ignore", divide="ignore"):  # of damaged ones: infinite
+        ratio = factor / h
+        return ratio * ratio * ratio
 
 
 def make(path, array, positions, names, values):
     hfact, mass = values.get("hfact", [1.2])[0], values["massoftype"][0]
     arrays = {name: lambda n=name: array(n) for name in names}
-    arrays.setdefault("density", lambda: float(mass) * cube(float(hfact) / array("h").astype(float)))
+    arrays.setdefault("density", lambda: float(mass) * cube_of_ratio(float(hfact), array("h").astype(float)))
     return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=float(mass),
                      density="density", time=float(values["time"][0]) if "time" in values else None,
                      parameters={name: value.tolist() for name, value in values.items()})

@@ -1,14 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """PySPH's .hdf5: all arrays of particles as one set, walls marked by the names of arrays."""
-import re
 
 import numpy as np
 
-from ._particles import FileError, Particles
+from ._particles import WALL, FileError, Particles
 from .hdf5 import Part, data_set, get, load, names_of
-
-WALL = re.compile(r"solid|bound|wall|tank|obstacle", re.I)
 
 
 def read_pysph(path):

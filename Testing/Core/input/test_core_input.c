@@ -579,6 +579,9 @@ static void test_names(void** state)
   assert_int_equal(mcor_name_priority(MCOR_PARTICLE_ID, "Idp"), 0);
   assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
   assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "iorig") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "UnsortedParticle_ID") > 0);
+  assert_int_equal(mcor_name_priority(MCOR_PARTICLE_ID, "SortedParticle_ID"), -1);
+  assert_true(mcor_name_priority(MCOR_VOLUME, "VolumetricMeasure") > 0);
   const char* const others[] = { "", "mas", "masss", "volume of it", NULL };
   for (int i = 0; i < 5; ++i)
   {

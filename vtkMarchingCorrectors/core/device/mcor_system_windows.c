@@ -194,18 +194,20 @@ void mcor_system_remove_unused(const char* folder, const char* part, int days)
   }
 }
 
-/* Objects of Wine's own OpenCL.dll do not begin with tables of functions, by which all others are called. */
-static bool mcor_is_wine(void)
+/* Objects of Wine's own OpenCL.dll do not begin with tables of functions, by which all others are called.
+ * Libraries of Wine's say what they are behind their first 64 bytes, where others have a program of DOS. */
+static bool mcor_is_wines_own(HMODULE library)
 {
-  const HMODULE library = GetModuleHandleW(L"ntdll.dll");
-  return library && GetProcAddress(library, "wine_get_version") != NULL;
+  static const char mark[] = "Wine builtin DLL";
+  return memcmp((const char*)library + 64, mark, sizeof mark - 1) == 0;
 }
 
 mcor_function mcor_system_opencl(void)
 {
-  const HMODULE loader =
-    mcor_is_wine() ? NULL : LoadLibraryExW(L"OpenCL.dll", NULL, LOAD_LIBRARY_SEARCH_SYSTEM32);
-  return loader ? (mcor_function)(void*)GetProcAddress(loader, "clGetPlatformIDs") : NULL;
+  const HMODULE loader = LoadLibraryExW(L"OpenCL.dll", NULL, LOAD_LIBRARY_SEARCH_SYSTEM32);
+  return loader && !mcor_is_wines_own(loader)
+    ? (mcor_function)(void*)GetProcAddress(loader, "clGetPlatformIDs")
+    : NULL;
 }
 
 /* PoCL is not for Windows. */

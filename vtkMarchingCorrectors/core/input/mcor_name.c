@@ -10,17 +10,17 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define MCOR_NAMES 12
+#define MCOR_NAMES 13
 
 /* The most usual name first; in small letters and digits alone. */
 static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_SMOOTHING_LENGTH] = { "smoothinglength", "smoothinglengths", "hsml", "h" },
-  [MCOR_VOLUME] = { "volume", "volumes", "particlevolume", "vol" },
+  [MCOR_VOLUME] = { "volume", "volumes", "particlevolume", "vol", "volumetricmeasure" },
   [MCOR_MASS] = { "mass", "masses", "particlemass", "m" },
   [MCOR_DENSITY] = { "density", "densities", "particledensity", "rho", "rhop" },
   [MCOR_VELOCITY] = { "velocity", "velocities", "vel", "v" },
   [MCOR_PARTICLE_ID] = { "idp", "particleid", "particleids", "partid", "id", "ids", "globalids",
-    "globalid", "gid", "pid", "iorig" },
+    "globalid", "gid", "pid", "iorig", "originalid", "unsortedparticleid" },
   [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
     "isboundary", "iswall", "issolid", "isfluid", "wallblock" },
 };

@@ -1,0 +1,139 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""VTK's legacy files (.vtk): points and their arrays. VTK's own reader gives what memory held where a file of text ends too
+early, and reads where damaged lists of cells point to; here all lengths are compared with what is left of the file."""
+import re
+from urllib.parse import unquote_to_bytes
+
+import numpy as np
+
+from ._particles import FileError
+
+KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
+         "int": "i4", "vtkidtype": "i4", "unsigned_long": "u8", "long": "i8", "float": "f4", "double": "f8",
+         **{f"vtktype{sign}int{bits}": f"{'u' if sign else 'i'}{bits // 8}" for sign in ("u", "") for bits in (8, 16, 32, 64)}}
+LISTS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS", "CELLS")
+COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS": 1, "PEDIGREE_IDS": 1, "EDGE_FLAGS": 1}
+
+
+class Legacy:
+    def __init__(self, path):
+        self.name, self.data, self.at = path.name, path.read_bytes(), 0
+        self.points, self.arrays, self.field, self.cell_types = None, {}, {}, False
+        head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\nDATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n",
+                        self.data)
+        if not head:
+            raise FileError(f"{self.name} is no file of VTK's with particles (poly data or an unstructured grid), or its "
+                            "beginning is damaged.")
+        self.at, self.text, self.offsets = head.end(), head[2] == b"ASCII", int(head[1]) > 4
+        into = self.field
+        while True:
+            words = self.line()
+            if not words:
+                break
+            into = self.section(words, into)
+        if self.points is None or not len(self.points) or self.cell_types != (head[3] != b"POLYDATA"):
+            raise self.damaged()
+
+    def damaged(self):
+        return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
+
+    def line(self):
+        """The words of the next line that has some."""
+        while self.at < len(self.data):
+            end = self.data.find(b"\n", self.at, self.at + 1000)
+            end = min(len(self.data), self.at + 1000) if end < 0 else end
+            words, self.at = self.data[self.at:end].split(), end + 1
+            if words:
+                return [word.decode(errors="replace") for word in words]
+        return []
+
+    def values(self, kind, count, columns=1):
+        code, count, columns = KINDS.get(kind.lower()), int(count), int(columns)
+        left = len(self.data) - self.at
+        if code is None or count < 0 or not 0 < columns <= 1000:
+            raise self.damaged()
+        size = count * columns * (2 if self.text else np.dtype(code).itemsize)
+        if size > left + self.text:  # each a digit and a blank, but for the last
+            raise self.damaged()
+        if self.text:
+            words = self.data[self.at:].split(None, count * columns)
+            if len(words) < count * columns:
+                raise self.damaged()
+            self.at = len(self.data) - (len(words.pop()) if len(words) > count * columns else 0)
+            values = np.array(words, bytes).astype(code) if words else np.empty(0, code)
+        else:
+            values = np.frombuffer(self.data, ">" + code, count * columns, self.at).astype(code)
+            self.at += size
+        return values.reshape(count, columns) if columns > 1 else values
+
+    def section(self, words, into):
+        """Reads what words begin; into: where arrays go. Returns where those after it go."""
+        word, rest = words[0].upper(), words[1:]
+        if word == "POINTS":
+            self.points = self.values(rest[1], rest[0], 3)
+        elif word in LISTS and not self.offsets:
+            self.values("int", rest[1])
+        elif word in LISTS:
+            for count in rest[:2]:
+                self.values(self.line()[1], count)
+        elif word == "CELL_TYPES":
+            self.values("int", rest[0])
+            self.cell_types = True
+        elif word in ("POINT_DATA", "CELL_DATA"):
+            self.count = int(rest[0])
+            if word == "POINT_DATA" and (self.points is None or self.count != len(self.points)):
+                raise self.damaged()
+            return self.arrays if word == "POINT_DATA" else {}
+        elif word == "FIELD":
+            for _ in range(int(rest[1])):
+                name, columns, count, kind = self.next_array()
+                into[plain(name)] = self.values(kind, count, columns)
+        elif word == "SCALARS":
+            if self.line()[0].upper() != "LOOKUP_TABLE":
+                raise self.damaged()
+            into[plain(rest[0])] = self.values(rest[1], self.count, rest[2] if len(rest) > 2 else 1)
+        elif word in COLUMNS:
+            into[plain(rest[0])] = self.values(rest[1], self.count, COLUMNS[word])
+        elif word == "TEXTURE_COORDINATES":
+            into[plain(rest[0])] = self.values(rest[2], self.count, rest[1])
+        elif word == "COLOR_SCALARS":
+            into[plain(rest[0])] = self.values("float" if self.text else "unsigned_char", self.count, rest[1])
+        elif word == "LOOKUP_TABLE":
+            self.values("float" if self.text else "unsigned_char", rest[1], 4)
+        elif word == "METADATA":
+            self.skip_metadata()
+        else:
+            raise self.damaged()
+        return into
+
+    def next_array(self):
+        words = self.line()
+        if words == ["METADATA"]:
+            self.skip_metadata()
+            words = self.line()
+        return words
+
+    def skip_metadata(self):
+        """It ends with an empty line."""
+        end = self.data.find(b"\n\n", self.at)
+        self.at = end + 2 if end >= 0 else len(self.data)
+
+
+def plain(name):
+    """VTK writes blanks and the like as %20."""
+    return unquote_to_bytes(name).decode(errors="replace")
+
+
+def read_legacy(path):
+    """Points, arrays, time."""
+    try:
+        legacy = Legacy(path)
+    except (FileError, MemoryError):
+        raise
+    except Exception:  # words that are no numbers, or too few
+        raise FileError(f"{path.name} is damaged, or ends too early.") from None
+    count = len(legacy.points)
+    time = next((legacy.field[name] for name in ("TimeValue", "TIME") if name in legacy.field), ())
+    return (legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
+            float(np.ravel(time)[0]) if len(time) else None)

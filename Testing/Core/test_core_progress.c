@@ -166,7 +166,7 @@ static void test_all_phases_ask(void** state)
     [MCOR_PHASE_SEARCH_GRID] = 25,
     [MCOR_PHASE_SEEDS] = built_in ? 40 : 36,
     [MCOR_PHASE_EXTRACTION] = 18,
-    [MCOR_PHASE_CORRECTION] = built_in ? 6 : 5,
+    [MCOR_PHASE_CORRECTION] = 5,
     [MCOR_PHASE_TRIMMING] = 30,
     [MCOR_PHASE_OUTPUT] = 11 };
   mcor_input input = core_input(&set);

@@ -298,16 +298,19 @@ static mcor_status mcor_fail_without_device(
   char missing[MCOR_BUILD_NAME];
   mcor_name_build(build, missing, sizeof missing);
   char fault[1200];
-  MCOR_RETURN_IF(mcor_pocl_folder_fault(fault, sizeof fault), context, MCOR_DEVICE_ERROR,
-    "No OpenCL device was found. If PoCL is installed: %s", fault);
+  const bool has_fault = mcor_pocl_folder_fault(fault, sizeof fault);
+  const char *if_installed = has_fault ? " If PoCL is installed: " : "",
+             *why = has_fault ? fault : "";
   MCOR_RETURN_IF(mcor_choose_device(list, &usual) >= 0, context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. %s "
     "an OpenCL driver (PoCL, Debian package pocl-opencl-icd, runs on the CPU), or build with "
-    "MCOR_AHEAD=all.",
-    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install");
+    "MCOR_AHEAD=all.%s%s",
+    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install",
+    if_installed, why);
   return mcor_fail(context, MCOR_DEVICE_ERROR,
     "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
-    "runs on the CPU.");
+    "runs on the CPU.%s%s",
+    if_installed, why);
 }
 
 /* A device where none was named. */

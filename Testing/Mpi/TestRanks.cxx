@@ -53,7 +53,7 @@ void ContourDamBreak(vtkMarchingCorrectors* filter)
 }
 
 const char* const TwoSizes = "two sizes"; // no file
-const char* const InPlane = "in a plane";  // double_dam_break_small, moved into z = 0.5
+const char* const InPlane = "in a plane"; // double_dam_break_small, moved into z = 0.5
 
 /// Isolines of particles whose areas, and smoothing lengths, are larger on one side.
 void ContourInPlane(vtkMarchingCorrectors* filter)
@@ -304,9 +304,9 @@ void MoveIntoPlane(vtkPolyData* particles)
 }
 
 /// Statistics that are of the surface, whoever made what of it.
-const char* const OfSurface[] = { "Area", "Volume", "Length", "CellsUsed", "TrianglesBeforeTrimming",
-  "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected",
-  "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices",
+const char* const OfSurface[] = { "Area", "Volume", "Length", "CellsUsed",
+  "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
+  "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices",
   "TrimVerticesLinear" };
 constexpr std::size_t OfSurfaceCount = sizeof(OfSurface) / sizeof(OfSurface[0]);
 

@@ -6,9 +6,9 @@
 /* The state of a context: a struct for each phase, the call under way, and what is kept. */
 
 #include "mcor_cl.h"
-#include "mcor_table.h"
 #include "mcor_parts.h"
 #include "mcor_shared.h"
+#include "mcor_table.h"
 
 #define MCOR_LEVEL_LIMIT 32
 

@@ -245,8 +245,8 @@ private:
                       lines = triangles > 0 ? 0 : run.Surface->GetNumberOfLines();
       std::cout << Printable(this->Label(i)) << ": " << run.Surface->GetNumberOfPoints()
                 << " points, " << (lines > 0 ? lines : triangles)
-                << (lines > 0 ? " lines, " : " triangles, ")
-                << std::setprecision(3) << run.WallSeconds << " s" << std::endl;
+                << (lines > 0 ? " lines, " : " triangles, ") << std::setprecision(3)
+                << run.WallSeconds << " s" << std::endl;
     }
   }
 

@@ -302,7 +302,8 @@ std::string SurfaceBytes(
   if (isTable && lines == 0 && triangles > 0)
   {
     throw std::runtime_error(file +
-      " could not be written: such a file holds the points of lines, which two dimensions give, but "
+      " could not be written: such a file holds the points of lines, which two dimensions give, "
+      "but "
       "this is a surface. Write a .vtp file");
   }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
@@ -341,7 +342,8 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
       std::string(array->GetName()) == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
   }
-  if (EndsWith(file, ".vtp") || EndsWith(file, ".csv") || names.empty() || (isPly && !colors.GetName().empty()))
+  if (EndsWith(file, ".vtp") || EndsWith(file, ".csv") || names.empty() ||
+    (isPly && !colors.GetName().empty()))
   {
     return "";
   }

@@ -89,10 +89,9 @@ static void caps_place(caps_case* c, const mcor_surface* s)
     const double box = o->box[from];
     const int has_box = box != 0 && !isinf(box);
     const double low = cube * (double)s->statistics.lattice_origin[from / 2];
-    c->side[i] = periodic && !has_box
-      ? low + i % 2 * (o->periodic[from] - o->periodic[from - 1])
-      : has_box ? ceil(box / cube - 0.5) * cube
-                : INFINITY;
+    c->side[i] = periodic && !has_box ? low + i % 2 * (o->periodic[from] - o->periodic[from - 1])
+      : has_box                       ? ceil(box / cube - 0.5) * cube
+                                      : INFINITY;
   }
 }
 
@@ -141,7 +140,8 @@ static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
   if (!is_trimmed)
   {
     assert_true(capped.statistics.is_closed);
-    CORE_CHECK(fabs(capped.statistics.area - filled.statistics.area) < 1e-6 * filled.statistics.area,
+    CORE_CHECK(
+      fabs(capped.statistics.area - filled.statistics.area) < 1e-6 * filled.statistics.area,
       "area %.9g, not %.9g", capped.statistics.area, filled.statistics.area);
   }
   mcor_free_surface(&open);
@@ -186,7 +186,8 @@ static void test_sides(void** state)
     }
     if (where == 1 || where == 2)
     {
-      set_sides(c.options.box, axis, -3.1, 2.4, where == 2 ? -6 : -4.6, where == 2 ? 1.2 : INFINITY);
+      set_sides(
+        c.options.box, axis, -3.1, 2.4, where == 2 ? -6 : -4.6, where == 2 ? 1.2 : INFINITY);
       c.options.box[2 * axis] = -INFINITY;
       c.options.box[2 * axis + 1] = INFINITY;
     }

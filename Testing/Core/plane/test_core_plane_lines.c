@@ -123,8 +123,8 @@ static void test_random_lines(void** state)
       input.volume = (mcor_array){ 0 };
     }
     input.ignore_solids = round % 8 == 1;
-    const bool ends = set.has_solids && options.field == MCOR_WEIGHT_SUM && options.wall_share > 0 &&
-      !input.ignore_solids; /* a free surface, at walls */
+    const bool ends = set.has_solids && options.field == MCOR_WEIGHT_SUM &&
+      options.wall_share > 0 && !input.ignore_solids; /* a free surface, at walls */
     const bool fluid_alone =
       set.has_solids && (input.ignore_solids || (options.field == MCOR_WEIGHT_SUM && !ends));
     const plane_field field = { fluid_alone ? &fluid : &set, &options, axis, NULL };
@@ -393,7 +393,6 @@ int main(int argc, char** argv)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_lines_are_those_of_the_field),
     cmocka_unit_test(test_random_lines), cmocka_unit_test(test_estimated_length),
     cmocka_unit_test(test_periods), cmocka_unit_test(test_adaptive_lines),
-    cmocka_unit_test(test_adaptive_periods),
-    cmocka_unit_test(test_points_and_rows) };
+    cmocka_unit_test(test_adaptive_periods), cmocka_unit_test(test_points_and_rows) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -4,8 +4,8 @@
 /* Adaptive cubes: the leaves, those parts of split bricks (mcor_tree_split.c) that are not split
  * themselves. Which bricks are split is global; leaves are listed in the box alone. */
 
-#include "mcor_tree.h"
 #include "mcor_box.h"
+#include "mcor_tree.h"
 
 #include <stdlib.h>
 

@@ -27,10 +27,11 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   {
     const double from = options->box[2 * a], to = options->box[2 * a + 1];
     MCOR_RETURN_IF(isnan(from) || isnan(to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; both must be numbers.", mcor_axis_letter(context, a), from, to);
-    MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; the first must be lower than the second.", mcor_axis_letter(context, a),
+      "The box along %c goes from %g to %g; both must be numbers.", mcor_axis_letter(context, a),
       from, to);
+    MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
+      "The box along %c goes from %g to %g; the first must be lower than the second.",
+      mcor_axis_letter(context, a), from, to);
   }
   return MCOR_OK;
 }

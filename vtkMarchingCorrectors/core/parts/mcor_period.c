@@ -170,8 +170,8 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     {
       const double most = MCOR_MOST_PERIODS * length[a];
       MCOR_RETURN_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
-        "The period along %c is %g, too short for support radii of up to %g.", mcor_axis_letter(context, a), length[a],
-        m->support_max);
+        "The period along %c is %g, too short for support radii of up to %g.",
+        mcor_axis_letter(context, a), length[a], m->support_max);
       MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
         "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "
         "%.3g.",

@@ -112,8 +112,8 @@ static mcor_status mcor_note_tiles(
   MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes of a side along %c are within reach of particles, with cube size "
     "%g: too many for a cap. Use a larger cube size, or no caps.",
-    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE,
-    mcor_axis_letter(context, face->axis), context->lattice.cube);
+    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, mcor_axis_letter(context, face->axis),
+    context->lattice.cube);
   return MCOR_OK;
 }
 

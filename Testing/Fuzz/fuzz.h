@@ -16,7 +16,10 @@ typedef struct fuzz_bytes
   size_t left;
 } fuzz_bytes;
 
-/* Writes the input under way, and aborts. */
+/* The input under way, to be written to the file FUZZ_FOUND of the environment where a check fails:
+ * OpenCL drivers take the signal by which the fuzzer would learn of it. */
+extern fuzz_bytes fuzz_input;
+/* Writes it, and aborts. */
 void fuzz_fail(const char* condition, const char* where, int line);
 
 #define FUZZ_CHECK(condition)                                                                      \
@@ -53,12 +56,12 @@ mcor_context* fuzz_context(const fuzz_call* call, int forgetful);
 int fuzz_finite(const double* values, int64_t count);
 void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
+void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
 /* fuzz_rooms.c. Sets box, period, walls and cubes; then globals, ranks, probe and derivatives of the same
  * call. */
 void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
 void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
-void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
 /* fuzz_plane.c. Where lines cross the free surface; and a call whose particles share a coordinate. */
 void fuzz_gauge(fuzz_bytes* bytes, const fuzz_call* call);

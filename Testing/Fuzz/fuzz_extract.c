@@ -9,73 +9,16 @@
 #include "fuzz.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define FUZZ_PARTICLES 48
-/* The input under way, to be written to the file FUZZ_FOUND of the environment where a check fails:
- * OpenCL drivers take the signal by which the fuzzer would learn of it. */
-static fuzz_bytes fuzz_input;
-
-void fuzz_fail(const char* condition, const char* where, int line)
-{
-  fprintf(stderr, "%s:%d: not true: %s\n", where, line, condition);
-  const char* name = getenv("FUZZ_FOUND");
-  FILE* file = name ? fopen(name, "wb") : NULL;
-  if (file)
-  {
-    fwrite(fuzz_input.at, 1, fuzz_input.left, file);
-    fclose(file);
-  }
-  abort();
-}
-
-unsigned fuzz_byte(fuzz_bytes* bytes)
-{
-  if (bytes->left == 0)
-  {
-    return 0;
-  }
-  --bytes->left;
-  return *bytes->at++;
-}
-
-/* Mostly ordinary, now and then a number that no one should use. */
-double fuzz_scale(fuzz_bytes* bytes)
-{
-  static const double scales[] = { 1e-30, 1e30, 1e-9, 1e9, 1e-300, 1e300, 1e-20, 1e20 };
-  const unsigned b = fuzz_byte(bytes);
-  return b < 248 ? 1 : scales[b - 248];
-}
-
-double fuzz_positive(fuzz_bytes* bytes)
-{
-  static const double odd[] = { 0, -1, NAN, INFINITY, 1e-40, 1e38, 1e-7, 1e4 };
-  const unsigned b = fuzz_byte(bytes);
-  return b < 248 ? 0.25 + 0.25 * (b % 8) : odd[b - 248];
-}
-
-/* A few values only, so that equal ones are frequent. */
-double fuzz_value(fuzz_bytes* bytes)
-{
-  static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 0.1, 1e300 };
-  const unsigned b = fuzz_byte(bytes);
-  return b < 248 ? (int)(b % 9) * 0.25 - 1 : odd[b - 248];
-}
 
 static double fuzz_threshold(fuzz_bytes* bytes)
 {
   static const double values[] = { 0.1, 0.5, 0, 1, 2, 1e-6, 0.3, 0.7 };
   const unsigned b = fuzz_byte(bytes);
   return b < 252 ? values[b % 8] : b == 252 ? -1 : b == 253 ? NAN : b == 254 ? 1e30 : INFINITY;
-}
-
-double* fuzz_array(fuzz_call* call, int slot, size_t count)
-{
-  call->arrays[slot] = malloc(count * sizeof(double) + (count == 0));
-  FUZZ_CHECK(call->arrays[slot]);
-  return call->arrays[slot];
 }
 
 static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
@@ -174,18 +117,6 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   call->iso[1] = fuzz_value(bytes);
 }
 
-int fuzz_finite(const double* values, int64_t count)
-{
-  for (int64_t i = 0; values && i < count; ++i)
-  {
-    if (!isfinite(values[i]))
-    {
-      return 0;
-    }
-  }
-  return 1;
-}
-
 static int fuzz_finite_floats(const float* values, int64_t count)
 {
   for (int64_t i = 0; values && i < count; ++i)
@@ -248,43 +179,6 @@ static void fuzz_check_surface(const mcor_surface* s, const mcor_input* in)
   }
 }
 
-void fuzz_check_bits(const void* a, const void* b, size_t bytes)
-{
-  FUZZ_CHECK(!a == !b);
-  FUZZ_CHECK(!a || bytes == 0 || memcmp(a, b, bytes) == 0);
-}
-
-void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
-{
-  FUZZ_CHECK(a->point_count == b->point_count && a->triangle_count == b->triangle_count);
-  const mcor_statistics *p = &a->statistics, *q = &b->statistics;
-  FUZZ_CHECK(p->seed_cells == q->seed_cells && p->cells_used == q->cells_used);
-  FUZZ_CHECK(p->seed_cells_not_intersected == q->seed_cells_not_intersected);
-  const size_t n = (size_t)a->point_count, t = (size_t)a->triangle_count;
-  fuzz_check_bits(a->points, b->points, n * 3 * sizeof(double));
-  fuzz_check_bits(a->triangles, b->triangles, t * 3 * sizeof(int32_t));
-  FUZZ_CHECK(a->line_count == b->line_count && a->line_point_count == b->line_point_count);
-  fuzz_check_bits(a->line_offsets, b->line_offsets, ((size_t)a->line_count + 1) * sizeof(int64_t));
-  fuzz_check_bits(a->line_points, b->line_points, (size_t)a->line_point_count * sizeof(int32_t));
-  fuzz_check_bits(a->band_value, b->band_value, t * sizeof(double));
-  fuzz_check_bits(a->normals, b->normals, n * 3 * sizeof(float));
-  fuzz_check_bits(a->gradients, b->gradients, n * 3 * sizeof(double));
-  fuzz_check_bits(a->weight_sum, b->weight_sum, n * sizeof(float));
-  fuzz_check_bits(a->boundary_eigenvalue, b->boundary_eigenvalue, n * sizeof(float));
-  fuzz_check_bits(a->correction_length, b->correction_length, n * sizeof(float));
-  fuzz_check_bits(a->residual, b->residual, n * sizeof(float));
-  fuzz_check_bits(a->boundary_flag, b->boundary_flag, n);
-  fuzz_check_bits(a->iso_value, b->iso_value, n * sizeof(double));
-  fuzz_check_bits(a->nearest_particle, b->nearest_particle, n * sizeof(int64_t));
-  fuzz_check_bits(a->point_keys, b->point_keys, n * MCOR_POINT_KEY * sizeof(uint64_t));
-  fuzz_check_bits(a->triangle_keys, b->triangle_keys, t * MCOR_TRIANGLE_KEY * sizeof(uint64_t));
-  FUZZ_CHECK(a->attribute_count == b->attribute_count);
-  for (int i = 0; i < a->attribute_count; ++i)
-  {
-    fuzz_check_bits(a->attributes[i], b->attributes[i], n * (i ? 3 : 1) * sizeof(double));
-  }
-}
-
 static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mcor_surface* surface)
 {
   memset(surface, 0, sizeof *surface);
@@ -302,26 +196,6 @@ static mcor_status fuzz_extract(mcor_context* context, const fuzz_call* call, mc
     FUZZ_CHECK(surface->point_count == 0 && !surface->points && !surface->triangles);
   }
   return status;
-}
-
-/* Contexts are kept, two for each device program: to make one takes longer than a call. `forgetful`:
- * one that keeps nothing from its last call. */
-mcor_context* fuzz_context(const fuzz_call* call, int forgetful)
-{
-  static mcor_context* contexts[2][2][3][2];
-  const mcor_options* o = &call->options;
-  mcor_context** context = &contexts[forgetful][o->sph_kernel == MCOR_M_PRIME_4]
-                                    [o->field < 3 ? o->field : 0][call->input.solid != NULL];
-  if (!*context && mcor_create_context(NULL, context) != MCOR_OK)
-  {
-    fprintf(stderr, "%s\n", mcor_last_error(*context));
-    exit(1);
-  }
-  if (forgetful)
-  {
-    mcor_release_memory(*context);
-  }
-  return *context;
 }
 
 /* Other positions, of the same range. */

@@ -11,13 +11,6 @@
 
 #define FUZZ_POINTS 24
 
-double fuzz_side(fuzz_bytes* bytes)
-{
-  static const double odd[] = { NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-30, 1e300, -1e300 };
-  const unsigned b = fuzz_byte(bytes);
-  return b < 248 ? 0.25 * (int)(b % 24) - 1 : odd[b - 248];
-}
-
 void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
 {
   static const double shares[] = { 0.5, 0.1, 0.9, 1e-3, 0.999999, 1, -1, NAN };
@@ -47,12 +40,6 @@ void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
     o->point_keys = b > 250;
     o->triangle_keys = b > 251;
   }
-}
-
-void fuzz_check_failure(const mcor_context* context, mcor_status status)
-{
-  FUZZ_CHECK(status > MCOR_OK && status < MCOR_CANCELLED && status != MCOR_DEVICE_ERROR);
-  FUZZ_CHECK(mcor_last_error(context)[0] != '\0');
 }
 
 /* Two ways to one surface, or to one failure. */

@@ -338,9 +338,10 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    const bool isHeld = array == arrays->GetNormals() ||
-      std::string(array->GetName()) == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
-    names += isHeld ? "" : (names.empty() ? "" : ", ") + std::string(array->GetName());
+    const std::string name = array->GetName();
+    const bool isHeld =
+      name == "Normals" || name == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
+    names += isHeld ? "" : (names.empty() ? "" : ", ") + name;
   }
   if (EndsWith(file, ".vtp") || EndsWith(file, ".csv") || names.empty() ||
     (isPly && !colors.GetName().empty()))

@@ -34,12 +34,6 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
   __attribute__((format(printf, 3, 4)))
 #endif
   ;
-/* Of the caller's coordinate that the call under way has as axis a: in two dimensions they are turned. */
-static inline char mcor_axis_letter(const mcor_context* context, int a)
-{
-  return "xyz"[(context->plane.axis + a) % 3];
-}
-
 double mcor_seconds(void);
 /* Of a kernel with W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);

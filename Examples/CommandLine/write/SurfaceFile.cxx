@@ -303,8 +303,7 @@ std::string SurfaceBytes(
   {
     throw std::runtime_error(file +
       " could not be written: such a file holds the points of lines, which two dimensions give, "
-      "but "
-      "this is a surface. Write a .vtp file");
+      "but this is a surface. Write a .vtp file");
   }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
   {

@@ -16,7 +16,8 @@ bool IsSurfaceFile(const std::string& file);
 std::string SurfaceFileEndings();
 
 /// The bytes of a surface in the format of the file's ending. .stl, .ply and .obj have triangles and
-/// normals, .ply also colours, and no other arrays; .csv the points of lines with all arrays. Throws std::runtime_error with one sentence.
+/// normals, .ply also colours, and no other arrays; .csv the points of lines with all arrays. Throws
+/// std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
   MessageCapture* messages);
 

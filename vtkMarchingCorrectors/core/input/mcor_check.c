@@ -4,6 +4,7 @@
 /* Checking everything a caller hands in. */
 
 #include "mcor_input.h"
+#include "mcor_plane.h"
 
 #include <math.h>
 #include <string.h>

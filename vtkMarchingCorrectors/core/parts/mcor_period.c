@@ -4,6 +4,7 @@
 /* Periodic boxes: a region of one period, which images of the particles reach. See mcor_box.c. */
 
 #include "mcor_box.h"
+#include "mcor_plane.h"
 #include "mcor_stage.h"
 
 #include <float.h>

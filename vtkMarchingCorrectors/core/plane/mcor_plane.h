@@ -48,6 +48,11 @@ static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {
   return (plane->axis + a) % 3;
 }
+/* The letter of that axis, of the call under way. */
+static inline char mcor_axis_letter(const mcor_context* context, int a)
+{
+  return "xyz"[mcor_plane_axis(&context->plane, a)];
+}
 
 /* Turns [count][3] numbers back, in place. constant: what the constant coordinate becomes. */
 void mcor_unflatten_doubles(

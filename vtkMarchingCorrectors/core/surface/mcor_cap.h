@@ -5,7 +5,7 @@
 
 /* Caps: what closes the surface at the sides of a period or a box. See mcor_cap_make.c. */
 
-#include "mcor_internal.h"
+#include "mcor_plane.h"
 
 /* Boundary flag of vertices that caps alone have. */
 #define MCOR_CAP_FLAG 8
@@ -14,7 +14,7 @@
 static inline bool mcor_caps_walls(const mcor_context* context)
 {
   return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
-    context->plane.axis == 0 && mcor_fluid_share(context) > 0;
+    !mcor_is_plane(context) && mcor_fluid_share(context) > 0;
 }
 
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
@@ -83,7 +83,7 @@ static inline void mcor_cap_node(
   node[face->axis] = face->plane;
   node[face->across[0]] = face->first[0] + u;
   node[face->across[1]] = face->first[1] + v;
-  node[2] = context->plane.axis > 0 ? 0 : node[2];
+  node[2] = mcor_is_plane(context) ? 0 : node[2];
 }
 
 /* mcor_cap_tile.c. Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole

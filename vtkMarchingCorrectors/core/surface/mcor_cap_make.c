@@ -14,7 +14,6 @@
 
 #include "mcor_box.h"
 #include "mcor_cap_job.h"
-#include "mcor_plane.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,6 @@
  * mcor_cap_make.c. */
 
 #include "mcor_cap_job.h"
-#include "mcor_plane.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -74,7 +74,7 @@ static void mcor_set_cap_extent(
     face->count[i] = (high < last ? high : last) - face->first[i] + 1;
     face->owned[i] = box->first[a] - face->first[i];
     face->end[i] = box->last[a] - face->first[i];
-    if (a == 2 && context->plane.axis > 0) /* one row of squares stands for the side's edges */
+    if (a == 2 && mcor_is_plane(context)) /* one row of squares stands for the side's edges */
     {
       face->first[i] = face->owned[i] = 0;
       face->count[i] = 2;

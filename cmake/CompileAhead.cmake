@@ -1,12 +1,13 @@
 # Compiles one program of OpenCL kernels for the built-in device: an object file with a function that runs
 # work-items of each kernel, and the kernels' names and arguments; see mcor_native.h. Run with -P and
 #
-#   COMPILER   clang, and what goes before it (a cache of compilers)
+#   COMPILER   clang
 #   FLAGS      its flags: target, instruction set, optimisation
 #   NAME       of the function
 #   PREFIX     source of the built-in functions; SOURCES: of the program, in order
 #   DEFINES    of the program, as mcor_program_options writes them
 #   OUTPUT     the object file; beside it is what it was made of
+#   KEPT       folder of such object files: one that was made of the same is taken, and not compiled
 get_filename_component(folder "${OUTPUT}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
 separate_arguments(FLAGS UNIX_COMMAND "${FLAGS}")
@@ -92,5 +93,27 @@ void ${NAME}(unsigned number, __private void* __private const* arguments, size_t
 ${cases}  }
 }
 ")
-run(${COMPILER} ${opencl} -ffp-contract=off -fno-math-errno -fPIC -fvisibility=hidden
-  -c -o "${OUTPUT}" "${OUTPUT}.cl")
+list(APPEND opencl -ffp-contract=off -fno-math-errno -fPIC -fvisibility=hidden)
+
+# OUTPUT.key tells what the object is made of, in its folder as in KEPT.
+run(${COMPILER} ${opencl} -E -P -o "${OUTPUT}.pre.cl" "${OUTPUT}.cl")
+file(SHA256 "${OUTPUT}.pre.cl" made_of)
+execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)
+string(SHA256 key "${version} ${opencl} ${made_of}")
+get_filename_component(object "${OUTPUT}" NAME)
+foreach (kept IN ITEMS "${OUTPUT}" "${KEPT}/${object}")
+  if (EXISTS "${kept}" AND EXISTS "${kept}.key")
+    file(READ "${kept}.key" kept_key)
+    if (kept_key STREQUAL key)
+      if (NOT kept STREQUAL OUTPUT)
+        configure_file("${kept}" "${OUTPUT}" COPYONLY)
+      endif ()
+      file(TOUCH "${OUTPUT}")
+      file(WRITE "${OUTPUT}.key" "${key}")
+      return ()
+    endif ()
+  endif ()
+endforeach ()
+file(REMOVE "${OUTPUT}.key")
+run(${COMPILER} ${opencl} -c -o "${OUTPUT}" "${OUTPUT}.cl")
+file(WRITE "${OUTPUT}.key" "${key}")

@@ -28,7 +28,8 @@ set(MCOR_AHEAD_FLAGS "-O3 -mllvm -inline-threshold=800" CACHE STRING
   "Flags of clang for the kernels of the built-in device")
 set(MCOR_AHEAD_INSTRUCTIONS "V3;V4;BASE" CACHE STRING
   "Instruction sets of these kernels, those of other processors are ignored: V3, V4 (x86-64), BASE (arm64)")
-mark_as_advanced(MCOR_AHEAD_USUAL MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS)
+set(MCOR_AHEAD_KEPT "" CACHE PATH "Folder of another build's compiled kernels, taken where they were made of the same")
+mark_as_advanced(MCOR_AHEAD_USUAL MCOR_AHEAD_FLAGS MCOR_AHEAD_INSTRUCTIONS MCOR_AHEAD_KEPT)
 set(mcor_ahead_flags "${MCOR_AHEAD_FLAGS}")
 if (CMAKE_CROSSCOMPILING)
   string(APPEND mcor_ahead_flags " --target=${MCOR_AHEAD_TRIPLE}")
@@ -40,9 +41,9 @@ function (mcor_compile_ahead object name flags defines)
   set(script "${PROJECT_SOURCE_DIR}/cmake/CompileAhead.cmake")
   add_custom_command(
     OUTPUT  "${object}"
-    COMMAND "${CMAKE_COMMAND}" "-DCOMPILER=${CMAKE_C_COMPILER_LAUNCHER};${MCOR_CLANG}" "-DNAME=${name}"
-            "-DFLAGS=${flags}" "-DDEFINES=${defines}" "-DPREFIX=${prefix}" "-DSOURCES=${ARGN}"
-            "-DOUTPUT=${object}" -P "${script}"
+    COMMAND "${CMAKE_COMMAND}" "-DCOMPILER=${MCOR_CLANG}" "-DNAME=${name}" "-DFLAGS=${flags}"
+            "-DDEFINES=${defines}" "-DPREFIX=${prefix}" "-DSOURCES=${ARGN}" "-DOUTPUT=${object}"
+            "-DKEPT=${MCOR_AHEAD_KEPT}" -P "${script}"
     DEPENDS ${ARGN} "${prefix}" "${script}"
     COMMENT "Compiling kernels ahead: ${name}"
     VERBATIM)

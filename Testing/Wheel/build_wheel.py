@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Builds the wheel with pip, repairs it, and installs it with its extras.
 
-    build_wheel.py SOURCES FOLDER [AHEAD]
+    build_wheel.py SOURCES FOLDER KEPT AHEAD
 
-FOLDER gets dist/ (the wheel) and venv/. AHEAD: instead of all kernels, those of a build of the project with
--DMCOR_AHEAD=AHEAD, which takes a quarter of the time. Status 77: there is no venv module, or PyPI is out of reach.
+FOLDER gets dist/ (the wheel) and venv/. KEPT, AHEAD: the project's MCOR_AHEAD_KEPT (kernels that this build compiled
+already) and MCOR_AHEAD. Status 77: there is no venv module, or PyPI is out of reach.
 """
 import os
 import shutil
@@ -38,7 +38,7 @@ def run(*command, **more):
 
 
 def main():
-    sources, folder = Path(sys.argv[1]), Path(sys.argv[2])
+    sources, folder = map(Path, sys.argv[1:3])
     shutil.rmtree(folder, ignore_errors=True)
     if subprocess.run([sys.executable, "-c", "import venv, ensurepip"], stderr=subprocess.DEVNULL).returncode:
         print("Skipped: this Python cannot make virtual environments (Debian: apt install python3-venv).")
@@ -59,8 +59,9 @@ def main():
             if name and (sources / name).is_file():
                 (tree / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(sources / name, tree / name)
-    ahead = [f"--config-settings=cmake.define.MCOR_AHEAD={sys.argv[3]}"] if len(sys.argv) > 3 else []
-    run(*pip, "wheel", "--no-deps", "-w", folder / "built", *ahead, tree)
+    run(*pip, "wheel", "--no-deps", "-w", folder / "built",
+        f"--config-settings=cmake.define.MCOR_AHEAD_KEPT={sys.argv[3]}",
+        f"--config-settings=cmake.define.MCOR_AHEAD={sys.argv[4]}", tree)
     built = list((folder / "built").glob("*.whl"))
     assert len(built) == 1 and "-py3-none-linux_" in built[0].name, built
     # auditwheel looks for patchelf on the PATH.

@@ -90,6 +90,7 @@
 #include "vtkSPHAlgorithm.h"
 #include "vtkTimeStamp.h" // For members
 
+#include <cstdint> // For members
 #include <limits> // For members
 #include <vector> // For members
 

@@ -10,6 +10,7 @@
 #include "mcor_parts.h"
 #include "vtkSPHRanks.h"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 

@@ -415,7 +415,7 @@ static void test_build_seconds(void** state)
   (void)state;
   mcor_context* context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  core_set set = core_make_block(24, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_options options = core_options(&iso);
   int told = 0;
@@ -440,7 +440,8 @@ static void test_build_seconds(void** state)
     CORE_CHECK((surface.statistics.build_seconds > 0) == builds, "run %d: %g s of building", run,
       surface.statistics.build_seconds);
     CORE_CHECK((told > 0) == builds, "run %d: building was told %d times", run, told);
-    CORE_CHECK(sum <= whole && sum > 0.8 * whole, "run %d: %g s of %g s", run, sum, whole);
+    /* Others may have the processor between the phases. */
+    CORE_CHECK(sum <= whole && sum > 0.8 * whole - 0.03, "run %d: %g s of %g s", run, sum, whole);
     mcor_free_surface(&surface);
   }
   core_free_set(&set);

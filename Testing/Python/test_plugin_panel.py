@@ -20,6 +20,7 @@ PANEL = f"{WINDOW}/propertiesDock/propertiesPanel"
 FILTER = f"{PANEL}/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel"
 PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it looks ahead
 FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
+ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # what is not shown is not greyed out
 APPLY = (f"{PANEL}/Accept", "activate", "")
 UNDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditUndo")
 REDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditRedo")
@@ -74,7 +75,7 @@ def run(paraview, events, folder):
 def first_apply(folder):
     """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
     return [
-        APPLY, FILTERS, PAUSE,
+        APPLY, FILTERS, ADVANCED, PAUSE,
         shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
         shown("sph_in_use/Values", "visible", "false"),
         change("sph_in_use/Show", "set_boolean", "true"),

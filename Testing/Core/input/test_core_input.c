@@ -209,8 +209,8 @@ static void test_particles(void** state)
 /* Lattices that do not fit; the sentence says what to do. */
 static void test_lattice_limits(void** state)
 {
-  CAPACITY("cube size|axis 0|larger", call.set.position[0] = 1e9);
-  CAPACITY("cube size|axis 2|larger", call.set.position[2] = -1e300);
+  CAPACITY("cube size|along x;|larger", call.set.position[0] = 1e9);
+  CAPACITY("cube size|along z;|larger", call.set.position[2] = -1e300);
   CAPACITY("cube size 1e-09|larger", call.options.cube_size = 1e-9);
   CAPACITY(
     "1e+15 away from the origin|cannot resolve",

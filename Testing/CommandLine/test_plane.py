@@ -100,6 +100,15 @@ class Plane(CommandLineTest):
         for line in "0", "1":
             of_line = [row for row in rows if row["Line"] == line]
             self.assertEqual(of_line[0], of_line[-1])
+        # The numbers are those of the .vtp file, to the last bit.
+        self.extract("--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
+        self.run_program(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
+        with open(table, encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        for names, array in (("X", "Y", "Z"), "Points"), (("Radius",), "Radius"), ([f"Gradients:{a}" for a in range(3)], "Gradients"):
+            values = iter(self.point_values(array))
+            self.assertEqual({tuple(float(row[name]) for name in names) for row in rows}, set(zip(*[values] * len(names))))
+        self.output.unlink()
         table.unlink()
         files.write_vtp(self.input, *files.lattice())
         self.refuse(self.run_program(self.input, table, *ISO), 1, "holds the points of lines")

@@ -20,14 +20,25 @@ PANEL = f"{WINDOW}/propertiesDock/propertiesPanel"
 FILTER = f"{PANEL}/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel"
 PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it looks ahead
 FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
+ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # what is not shown is not greyed out
 APPLY = (f"{PANEL}/Accept", "activate", "")
 UNDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditUndo")
 REDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditRedo")
+OF_SCALARS = ("SelectInputScalars", "ContourValues", "DotProductWith", "ShepardNormalization", "Trim", "NodeThreshold",
+              "BoundaryDetection", "VertexThreshold")
 CHECK = "check"  # instead of a command: a property of the widget has this value
 
 
 def shown(widget, prop, value):
     return (f"{FILTER}/{widget}", CHECK, prop, value)
+
+
+def usable(*widgets):
+    return [shown(widget, "enabled", "true") for widget in widgets]
+
+
+def greyed(*widgets):
+    return [shown(widget, "enabled", "false") for widget in widgets]
 
 
 def change(widget, command, value):
@@ -64,19 +75,21 @@ def run(paraview, events, folder):
 def first_apply(folder):
     """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
     return [
-        APPLY, FILTERS, PAUSE,
+        APPLY, FILTERS, ADVANCED, PAUSE,
         shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
         shown("sph_in_use/Values", "visible", "false"),
         change("sph_in_use/Show", "set_boolean", "true"),
         shown("sph_in_use/Values", "visible", "true"),
         shown("sph_in_use/Values/NextFluid", "text", "ParticleType = 0"),
+        *usable(*OF_SCALARS, "DetectFluid", "CubeLevelLimit"), *greyed("FreeSurfaceValue", "FluidValue", "Capping"),
         change("FreeSurface/CheckBox", "set_boolean", "true"),
         change("FluidArray/ComboBox", "set_string", "ParticleType"),
         change("CubeSizeMode/ComboBox", "set_string", "Uniform"), PAUSE,
+        *greyed(*OF_SCALARS, "DetectFluid", "CubeLevelLimit"), *usable("FreeSurfaceValue", "FluidValue"),
         shown("sph_in_use/Values/NextCells", "text", "163423"),
         shown("InteractiveBox", "visible", "false"),
         change("UseBox/CheckBox", "set_boolean", "true"),
-        shown("InteractiveBox", "visible", "true"),
+        shown("InteractiveBox", "visible", "true"), *usable("Capping"),
         change("InteractiveBox/translateX", "set_string", "0.75"),
         change("InteractiveBox/scaleX", "set_string", "1.5"), PAUSE,
         shown("sph_in_use/Values/NextCells", "text", "75211.7"),
@@ -89,7 +102,7 @@ def first_apply(folder):
 
 
 def later_applies(folder):
-    """Undo and redo of an Apply with several changes; a second array chosen and given up again."""
+    """Undo and redo of an Apply with several changes; a second array chosen and given up again; own iso values."""
     return [
         change("CubeSizeFactor/DoubleRangeWidget/DoubleLineEdit", "set_string", "1"),
         change("CubeSizeMode/ComboBox", "set_string", "Adaptive"),
@@ -105,6 +118,9 @@ def later_applies(folder):
         APPLY, *save_state(f"{folder}/dot.pvsm"),
         change("DotProductWith/ComboBox", "set_string", "(none)"), PAUSE,
         APPLY, *save_state(f"{folder}/none.pvsm"),
+        change("ContourValues/ScalarValueList/Add", "activate", ""),
+        change("DotProductWith/ComboBox", "set_string", "Vorticity"), PAUSE,
+        APPLY, *save_state(f"{folder}/touched.pvsm"),
     ]
 
 
@@ -139,6 +155,7 @@ def check_states(states):
     # The iso value follows until it is touched.
     assert differing(states, "dot", "none") == {"DotProductWith", "ContourValues"}, differing(states, "dot", "none")
     assert states["none"]["DotProductWith"][4] == "(none)" and states["none"]["ContourValues"] == applied["ContourValues"]
+    assert states["touched"]["ContourValues"] == 2 * applied["ContourValues"], states["touched"]["ContourValues"]
 
 
 def main(paraview):

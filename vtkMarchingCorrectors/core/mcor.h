@@ -367,9 +367,9 @@ extern "C"
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    double residual_max; /* max |f - iso| as evaluated on the device, in the scalar's unit */
-    /* Largest rounding of positions on the device, unit L; residuals are evaluated at rounded positions. */
-    double position_error;
+    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what position_error may add. */
+    double residual_max;
+    double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut */
     int64_t device_bytes_peak;
     char device[128], platform[128];

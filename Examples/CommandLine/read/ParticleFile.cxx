@@ -33,6 +33,7 @@
 #include "vtkXMLUnstructuredGridReader.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -134,8 +135,7 @@ std::string HintFor(const std::string& file)
 {
   const std::string ending = fs::path(file).extension().string();
   return ending == ".vtkhdf" && VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
-    ? std::string(" (VTK ") + vtkVersion::GetVTKVersion() +
-      " reads only unstructured grids)"
+    ? std::string(" (VTK ") + vtkVersion::GetVTKVersion() + " reads only unstructured grids)"
     : "";
 }
 
@@ -144,7 +144,11 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file)
 {
   vtkNew<vtkHDFReader> reader;
   reader->SetFileName(file.c_str());
-  if (!reader->CanReadFile(file.c_str()))
+  const bool isKnown = reader->CanReadFile(file.c_str());
+  // HDF5 has begun now, and ends after this: of a damaged file, it writes what it thinks even then.
+  static const int isRegistered = std::atexit([] { new Silence; });
+  (void)isRegistered;
+  if (!isKnown)
   {
     throw std::runtime_error(
       file + " cannot be read: its reader does not know what it holds" + HintFor(file));

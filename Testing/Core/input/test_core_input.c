@@ -209,8 +209,8 @@ static void test_particles(void** state)
 /* Lattices that do not fit; the sentence says what to do. */
 static void test_lattice_limits(void** state)
 {
-  CAPACITY("cube size|axis 0|larger", call.set.position[0] = 1e9);
-  CAPACITY("cube size|axis 2|larger", call.set.position[2] = -1e300);
+  CAPACITY("cube size|along x;|larger", call.set.position[0] = 1e9);
+  CAPACITY("cube size|along z;|larger", call.set.position[2] = -1e300);
   CAPACITY("cube size 1e-09|larger", call.options.cube_size = 1e-9);
   CAPACITY(
     "1e+15 away from the origin|cannot resolve",
@@ -551,9 +551,9 @@ static void repeat(bad_call* call, double length, double from)
 /* The sentence names what is to blame. */
 static void test_outliers(void** state)
 {
-  CAPACITY("cells along axis|Particle 7 has a smoothing length of 1.3e-06|median is 1.3",
+  CAPACITY("cells along x;|Particle 7 has a smoothing length of 1.3e-06|median is 1.3",
     call.set.smoothing_length[7] = 1.3e-6);
-  CAPACITY("cells along axis|Particle 7 has a smoothing length of 1.3e+06|median is 1.3",
+  CAPACITY("cells along x;|Particle 7 has a smoothing length of 1.3e+06|median is 1.3",
     call.set.smoothing_length[7] = 1.3e6);
   CAPACITY("cubes in the period|Particle 7 has a smoothing length of 1.3e-06",
            call.set.smoothing_length[7] = 1.3e-6;

@@ -102,6 +102,41 @@ static void points_see_images(void** state)
   }
 }
 
+/* Of halves of the period: a particle on its lower side is on the upper side of the upper half, too. */
+static void check_halves(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const mcor_derivatives* whole)
+{
+  mcor_globals globals;
+  mcor_options part = *options;
+  const double* x = input->positions.data;
+  CORE_OK(context, mcor_measure_probe_globals(context, input, options, &globals));
+  part.globals = &globals;
+  for (int h = 0; h < 6; ++h)
+  {
+    const int axis = h / 2;
+    const double length = options->periodic[2 * axis + 1];
+    const double low = h % 2 ? length / 2 : 0, high = h % 2 ? length : length / 2;
+    mcor_derivatives found;
+    int sides = 0;
+    memcpy(part.box, options->periodic, sizeof part.box);
+    part.box[2 * axis] = low;
+    part.box[2 * axis + 1] = high;
+    CORE_OK(context, mcor_derive(context, input, &part, MCOR_GRADIENT_CORRECTED, &found));
+    for (int64_t i = 0; i < input->count; ++i)
+    {
+      const double at = x[3 * i + axis];
+      if ((at >= low && at <= high) || at + length == high)
+      {
+        sides += at == 0;
+        check_equal(found.gradients[0] + 3 * i, whole->gradients[0] + 3 * i, 3, 0);
+      }
+    }
+    CORE_CHECK(sides > 10, "half %d: %d on the side", h, sides);
+    mcor_free_derivatives(&found);
+  }
+  mcor_free_globals(&globals);
+}
+
 /* Gradients at particles, of which some are given periods away, with images and with these as
  * particles. */
 static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
@@ -129,6 +164,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   mcor_derivatives found, expected, moved;
   CORE_OK(*state, mcor_derive(*state, &input, &options, MCOR_GRADIENT_CORRECTED, &found));
   CORE_OK(*state, mcor_derive(*state, &other, &plain, MCOR_GRADIENT_CORRECTED, &expected));
+  check_halves(*state, &input, &options, &found);
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     const double is = found.gradients[0][i], was = expected.gradients[0][3 * 13 * set.count + i];

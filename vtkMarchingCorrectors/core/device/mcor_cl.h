@@ -11,8 +11,6 @@
 
 #include <stdbool.h>
 
-#define MCOR_KERNEL_LIMIT 96
-
 #define MCOR_KEPT_BUFFERS 32 /* at most */
 
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
@@ -59,8 +57,8 @@ typedef struct mcor_cl
   cl_command_queue queue, timed_queue; /* timed: for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
   mcor_build build; /* of the programs */
-  mcor_kernel kernels[MCOR_KERNEL_LIMIT];
-  int kernel_count;
+  mcor_kernel* kernels; /* those made so far */
+  int kernel_count, kernel_room;
   int device_number, units;       /* in the list of devices; that compute side by side */
   int place, count;               /* of the processes that share devices */
   bool is_default, is_replaced;   /* none was named; the first choice could not do a build */

@@ -363,6 +363,7 @@ void mcor_close_device(mcor_context* context)
   mcor_release(context, &context->topology.cases);
   mcor_release(context, &context->topology.rows);
   mcor_drop_programs(cl, true);
+  free(cl->kernels);
   if (cl->timed_queue)
   {
     clReleaseCommandQueue(cl->timed_queue);

@@ -68,8 +68,14 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
       return MCOR_OK;
     }
   }
-  MCOR_RETURN_IF(cl->kernel_count == MCOR_KERNEL_LIMIT, context, MCOR_DEVICE_ERROR,
-    "There is no room for kernel %s.", name);
+  if (cl->kernel_count == cl->kernel_room)
+  {
+    const int room = cl->kernel_room + 64;
+    mcor_kernel* grown = realloc(cl->kernels, (size_t)room * sizeof *grown);
+    MCOR_TRY(mcor_allocated(context, grown != NULL));
+    cl->kernels = grown;
+    cl->kernel_room = room;
+  }
   *kernel = &cl->kernels[cl->kernel_count];
   const mcor_status status = mcor_make_kernel(context, name, *kernel);
   cl->kernel_count += status == MCOR_OK;

@@ -342,9 +342,9 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     const double edge = lattice->edge[a];
     const double first = floor(m->low[a] / edge) - 1, last = ceil(m->high[a] / edge) + 1;
     MCOR_RETURN_IF(!(last - first <= MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along axis %d; the limit is %d. "
+      "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. "
       "Use a larger cube size, or remove particles that are far away from the rest.",
-      edge, last - first, a, MCOR_LATTICE_LIMIT);
+      edge, last - first, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
     if (a == 2 && mcor_is_plane(context)) /* one layer of cells */
     {

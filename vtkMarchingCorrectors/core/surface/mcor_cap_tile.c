@@ -117,24 +117,22 @@ static mcor_status mcor_note_tiles(
   return MCOR_OK;
 }
 
-/* Notes the tiles that a particle reaches, where it is in nodes from the lattice's origin. A square is
- * looked at from its lowest node: that is one less. */
+/* Notes the tiles that a particle reaches, whose support is at most a cube around it, where it is in nodes from
+ * the lattice's origin. A square is looked at from its lowest node: that is one less. */
 static mcor_status mcor_note_particle(
   mcor_context* context, mcor_cap_face* face, const double x[3], double reach)
 {
   const mcor_lattice* lattice = &context->lattice;
   const double away = fabs(x[face->axis] - face->plane) * mcor_edge_of(lattice, face->axis);
-  const bool is_cube = context->run.options->sph_kernel == MCOR_M_PRIME_4;
   if (away > reach)
   {
     return MCOR_OK;
   }
-  const double across = is_cube ? reach : sqrt(reach * reach - away * away);
   double low[2], high[2];
   for (int i = 0; i < 2; ++i)
   {
     const double at = x[face->across[i]] - face->first[i];
-    const double nodes = across / mcor_edge_of(lattice, face->across[i]);
+    const double nodes = reach / mcor_edge_of(lattice, face->across[i]);
     low[i] = at - nodes - 2;
     high[i] = at + nodes + 2;
   }

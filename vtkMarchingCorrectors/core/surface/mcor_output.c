@@ -191,6 +191,17 @@ static double mcor_correction_of(const mcor_context* context, const mcor_downloa
                                        : 0;
 }
 
+/* How far rounded positions may move the value of vertex v: by position_error along the gradient. */
+static double mcor_rounding_of(const mcor_context* context, const mcor_download* d, int64_t v)
+{
+  double gradient = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    gradient = hypot(gradient, mcor_get_real(context, d->gradient, 4 * v + a));
+  }
+  return mcor_position_error(context) / mcor_length_of(d, v, context->lattice.cube) * gradient;
+}
+
 static void mcor_count_correction(
   const mcor_context* context, const mcor_download* d, int64_t v, mcor_tally* tally)
 {
@@ -209,7 +220,7 @@ static void mcor_count_correction(
   tally->sum += length;
   tally->squares += length * length;
   tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
-  tally->residual_max = residual > tally->residual_max ? residual : tally->residual_max;
+  tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(context, d, v));
   tally->above_tolerance += residual > tolerance;
 }
 

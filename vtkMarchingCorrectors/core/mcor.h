@@ -326,6 +326,8 @@ extern "C"
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
+    double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; else 0 */
+    double plane_extent;    /* of the positions of all particles along it */
     int dimension;          /* 2 or 3, see mcor_options.dimension */
     double cube_size;       /* unit L; the shortest of: */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */

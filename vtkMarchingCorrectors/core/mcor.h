@@ -527,8 +527,9 @@ extern "C"
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* 2 or 3: the dimension of a call with this input alone and this mcor_options.dimension. */
-  int mcor_find_dimension(const mcor_input* input, int dimension);
+  /* 2 or 3: the dimension of a call with this input, over all ranks unless `ranks` is NULL, and this
+   * mcor_options.dimension. Reads only the positions and the solids. */
+  int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* What may be wrong with the input although the extraction succeeded. */
   typedef enum mcor_warning

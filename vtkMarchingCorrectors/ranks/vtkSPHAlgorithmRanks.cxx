@@ -8,10 +8,12 @@
 #include "mcor_parts.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
+#include "vtkSPHRanksParticles.h"
 
 #include <limits>
 #include <string>
@@ -157,4 +159,15 @@ void vtkSPHAlgorithm::FindFluidDistributed(
       return;
     }
   }
+}
+
+int vtkSPHAlgorithm::FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
+{
+  vtkSPHRanks ranks(this->Controller);
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
+  this->FindFluidDistributed(ranks, choice, own);
+  vtkSPHRanksCalls calls(ranks);
+  const int found = vtkSPHParticles(choice, own).FindDimension(calls.Get(), this->Dimension);
+  calls.End(false);
+  return found;
 }

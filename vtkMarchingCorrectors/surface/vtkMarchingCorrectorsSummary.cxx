@@ -65,7 +65,7 @@ double vtkMarchingCorrectorsEstimateCells(
 {
   // In units of the smoothing length or, as a factor of it, the support radius.
   double cubes = 0.0;
-  const bool isPlane = mcor_find_dimension(&input, options.dimension) == 2;
+  const bool isPlane = mcor_find_dimension(&input, nullptr, options.dimension) == 2;
   for (std::int64_t i = 0; i < input.count; ++i)
   {
     if (!input.solid || !input.solid[i])

@@ -115,9 +115,15 @@ static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
   return dimension == 2 || constant == 1 ? plane : (mcor_plane){ 0 };
 }
 
-int mcor_find_dimension(const mcor_input* input, int dimension)
+int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension)
 {
-  const mcor_spread spread = mcor_spread_of(input);
+  mcor_spread spread = mcor_spread_of(input);
+  if (ranks &&
+    (ranks->reduce_doubles(ranks->user, MCOR_LEAST, spread.low, 6) ||
+      ranks->reduce_doubles(ranks->user, MCOR_GREATEST, spread.high, 6)))
+  {
+    return 3; /* another rank failed */
+  }
   return dimension == 2 || (dimension == 0 && mcor_plane_of(&spread, 0).axis > 0) ? 2 : 3;
 }
 

@@ -94,7 +94,7 @@ class Plane(CommandLineTest):
         result = self.extract("--free-surface", "--box=-inf,inf,0.26,0.26,0,inf")
         self.assertRegex(result.stderr, "the surface is empty")
         self.output.unlink()
-        self.refuse(self.extract("--free-surface", "--box=-inf,inf,0.25,0.25,0,0"), 1, "the box along z goes from 0 to 0")
+        self.refuse(self.extract("--free-surface", "--box=-inf,inf,0.25,0.25,0,0"), 1, "The box along z goes from 0 to 0")
         self.refuse(self.extract("--free-surface", "--box=-inf,inf,inf,inf,0,1"), 2, "lower number first along y")
         self.refuse(self.extract("--free-surface", "--box=-inf,inf,1,0,0,1"), 2, "lower number first along y")
 

@@ -76,9 +76,15 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
   }
   const int axis = globals.measured.plane.axis - 1;
   options.dimension = axis >= 0 ? 2 : 3;
-  if (axis >= 0) // a period across the plane means nothing
-  {
+  if (axis >= 0)
+  { // a period across the plane means nothing
     options.periodic[2 * axis] = options.periodic[2 * axis + 1] = 0.0;
+    double* box = options.box + 2 * axis;
+    if (mcor_has_box(&options) && box[0] == box[1] && box[0] == globals.measured.plane.at)
+    {
+      box[0] = -std::numeric_limits<double>::infinity(); // flat boxes cannot be divided
+      box[1] = -box[0];
+    }
   }
   return true;
 }

@@ -43,7 +43,18 @@ static void mcor_widen(mcor_spread* spread, int i, double low, double high)
   spread->high[i] = high > spread->high[i] ? high : spread->high[i];
 }
 
-/* Ends where the fluid is in no plane: how far it goes then does not matter. */
+/* Whether all are at the place where the fluid has been so far; written to be vectorised. */
+static bool mcor_is_all_at(const double* x, int count, double low, double high)
+{
+  int off = low != high;
+  for (int i = 0; i < count; ++i)
+  {
+    off |= x[i] != low;
+  }
+  return !off;
+}
+
+/* Along an axis, ends where the fluid is in no plane: how far it goes then does not matter. */
 static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spread_job* job = data;
@@ -59,8 +70,14 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
     everywhere = true;
     for (int a = 0; a < 3; ++a)
     {
+      if (spread.low[a] < spread.high[a])
+      {
+        continue;
+      }
       mcor_read_array(&positions, begin, count, a, x);
-      for (int i = 0; i < count; ++i)
+      const bool same =
+        !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
+      for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (!solid || !input->ignore_solids)

@@ -347,7 +347,8 @@ mcor_status mcor_flatten(
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }
-  return mcor_has_positions(input) ? mcor_flatten_positions(context, flat) : MCOR_OK;
+  const bool is_flat = plane->axis == 3 && plane->at == 0; /* as it is */
+  return mcor_has_positions(input) && !is_flat ? mcor_flatten_positions(context, flat) : MCOR_OK;
 }
 
 void mcor_unflatten_doubles(

@@ -265,6 +265,8 @@ void vtkSPHAlgorithm::FillChoice(vtkSPHParticlesChoice& choice) const
   choice.ExcludedArrays = this->ExcludedArrays;
 }
 
+// An update that fails has an empty output, and succeeds for the pipeline: ParaView never again updates
+// what shows the output of one that failed.
 int vtkSPHAlgorithm::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -279,7 +281,7 @@ int vtkSPHAlgorithm::RequestData(
   if (this->IsShared() && !this->AgreeOnBlocks(apart))
   {
     this->Internals->EndRun();
-    return 0;
+    return 1;
   }
   if (apart)
   {
@@ -294,7 +296,7 @@ int vtkSPHAlgorithm::RequestData(
     this->Process(vtkDataObject::GetData(inputVector[0]), output);
   }
   this->Internals->EndRun();
-  return apart || this->ErrorMessage.empty() ? 1 : 0;
+  return 1;
 }
 
 // A mcor_status; `message` says why it is not MCOR_OK, unless that is because the user cancelled. What

@@ -234,6 +234,11 @@ public:
   vtkGetMacro(Dimension, int);
   ///@}
 
+  /**
+   * 2 or 3: the dimension in which an update takes these particles. Collective where processes share it.
+   */
+  int FindDimension(vtkPointSet* particles);
+
   ///@{
   /**
    * The point array and the value in it that mark fluid particles; all others are solid. The field
@@ -472,6 +477,7 @@ protected:
   /** The same on all ranks together; these are one's own. */
   void FindFluidDistributed(
     vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
+  int FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
   /**

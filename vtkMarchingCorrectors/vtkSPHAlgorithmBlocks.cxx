@@ -114,3 +114,17 @@ void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* part
     vtkSPHParticles::FindFluid(choice, particles);
   }
 }
+
+int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)
+{
+  vtkSPHParticlesChoice choice;
+  this->FillChoice(choice);
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    return this->FindDimensionDistributed(choice, particles);
+  }
+#endif
+  this->FindFluid(choice, particles);
+  return vtkSPHParticles(choice, particles).FindDimension(nullptr, this->Dimension);
+}

@@ -385,7 +385,7 @@ int vtkSPHComponents::RequestData(
   {
     vtkErrorMacro(<< problem);
   }
-  return problem.empty() ? 1 : 0;
+  return 1; // see vtkSPHAlgorithm::RequestData
 }
 
 void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)

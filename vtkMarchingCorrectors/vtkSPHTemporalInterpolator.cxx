@@ -155,7 +155,8 @@ vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
   }
   if (request->Has(Pipeline::REQUEST_DATA()))
   {
-    return this->RequestData(input, output);
+    this->RequestData(input, output);
+    return 1; // see vtkSPHAlgorithm::RequestData
   }
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
@@ -252,7 +253,7 @@ bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
   return true;
 }
 
-int vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformation* output)
+void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformation* output)
 {
   this->ErrorMessage.clear();
   this->BlockName.clear();
@@ -261,25 +262,25 @@ int vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformatio
   vtkInternals& steps = *this->Internals;
   if (!(this->TimeScale > 0.0 && std::isfinite(this->TimeScale)))
   {
-    return this->Fail("The time scale must be greater than 0.");
+    this->Fail("The time scale must be greater than 0.");
+    return;
   }
   if (!this->FetchSteps(input))
   {
-    return 0;
+    return;
   }
   const bool isTimed = !steps.Times.empty();
   vtkDataObject* first = isTimed ? steps.Find(steps.Times.front()) : vtkDataObject::GetData(input);
   vtkDataObject* second = isTimed ? steps.Find(steps.Times.back()) : first;
   vtkDataObject* to = vtkDataObject::GetData(output);
   auto* blocks = vtkDataObjectTree::SafeDownCast(to);
-  const bool good = blocks ? this->FillBlocks(vtkDataObjectTree::SafeDownCast(first),
-                               vtkDataObjectTree::SafeDownCast(second), blocks)
-                           : this->Fill(0, first, second, vtkPolyData::SafeDownCast(to));
+  blocks ? this->FillBlocks(vtkDataObjectTree::SafeDownCast(first),
+             vtkDataObjectTree::SafeDownCast(second), blocks)
+         : this->Fill(0, first, second, vtkPolyData::SafeDownCast(to));
   if (isTimed)
   {
     to->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), steps.Time);
   }
-  return good ? 1 : 0;
 }
 
 bool vtkSPHTemporalInterpolator::FillBlocks(

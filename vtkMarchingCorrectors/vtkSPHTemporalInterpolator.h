@@ -153,7 +153,7 @@ private:
   int RequestDataObject(vtkInformation* input, vtkInformation* output);
   int RequestInformation(vtkInformation* input, vtkInformation* output);
   int RequestUpdateExtent(vtkInformation* input, vtkInformation* output);
-  int RequestData(vtkInformation* input, vtkInformation* output);
+  void RequestData(vtkInformation* input, vtkInformation* output);
   bool FetchSteps(vtkInformation* input);
   bool FillBlocks(vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output);
   bool Fill(size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output);

@@ -279,7 +279,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         if particles is not data:
             output.GetFieldData().PassData(particles.GetFieldData())
         self._process(particles, output)
-        return 0 if self.ErrorMessage else 1
+        return 1
 
     def _take_particles(self, data):
         """The data, or all blocks together, which are kept as long as they are the same."""

@@ -74,7 +74,7 @@ def _open():
         "mcor_find_fluid_value": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_double, ctypes.c_double,
                                                  pointer(ctypes.c_double)]),
         "mcor_view_priority": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_int]),
-        "mcor_find_dimension": (ctypes.c_int, [pointer(c.mcor_input), ctypes.c_int]),
+        "mcor_find_dimension": (ctypes.c_int, [pointer(c.mcor_input), ctypes.c_void_p, ctypes.c_int]),
         "mcor_find_iso_value": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_ranks),
                                                pointer(ctypes.c_double), pointer(ctypes.c_double)]),
     }

@@ -24,7 +24,7 @@ def estimate_cells(particles, given, options):
     h = np.full(particles.count, value) if isinstance(value, float) else to_numpy(value)[:, 0]
     h = h[fluid].astype(np.float64)
     drawn = is_drawn(to_numpy(particles.positions), options)[fluid]
-    plane = lib.mcor_find_dimension(ctypes.byref(given.input), options.dimension) == 2
+    plane = lib.mcor_find_dimension(ctypes.byref(given.input), None, options.dimension) == 2
     if options.level_limit:  # cubes are larger where particles are
         h /= 2 ** np.minimum(np.floor(np.log2(h / h.min())), options.level_limit)
     radius = bool(choice.SmoothingLengthIsSupportRadius) and not estimated

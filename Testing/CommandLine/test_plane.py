@@ -85,6 +85,27 @@ class Plane(CommandLineTest):
         self.output.unlink()
         self.refuse(self.extract(*box, "--capping", "--filled"), 1, "cannot be combined with filling")
 
+    def test_flat_box(self):
+        """Around the particles it is one; beside them, and in three dimensions, not."""
+        half = self.succeed("--free-surface", "--box=-inf,inf,0.25,0.25,0,inf")["statistics"]
+        thick = self.succeed("--free-surface", "--box=-inf,inf,0.2,0.3,0,inf")["statistics"]
+        self.assertGreater(half["points"], 50)
+        self.assertEqual((half["points"], half["length"]), (thick["points"], thick["length"]))
+        result = self.extract("--free-surface", "--box=-inf,inf,0.26,0.26,0,inf")
+        self.assertRegex(result.stderr, "the surface is empty")
+        self.output.unlink()
+        self.refuse(self.extract("--free-surface", "--box=-inf,inf,0.25,0.25,0,0"), 1, "The box along z goes from 0 to 0")
+        self.refuse(self.extract("--free-surface", "--box=-inf,inf,inf,inf,0,1"), 2, "lower number first along y")
+        self.refuse(self.extract("--free-surface", "--box=-inf,inf,1,0,0,1"), 2, "lower number first along y")
+
+    def test_tilted(self):
+        """A plane that is turned about the axis z counts as three-dimensional, and that is said."""
+        files.write_vtp(self.input, [(0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z) for x, y, z in self.points], self.arrays)
+        result = self.extract("--free-surface", "--iso", "0.1")
+        self.assertRegex(result.stderr, "tilted in space.*turn them into a plane of constant x, y or z.*dimension to 3")
+        result = self.extract("--free-surface", "--iso", "0.1", "--dimension", "3")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
     def test_points_as_a_table(self):
         """Of two lines, one after the other; a closed one ends with its first point."""
         table = self.directory / "surface.csv"
@@ -199,10 +220,13 @@ class Plane(CommandLineTest):
         self.assertAlmostEqual(run["length"], fine["length"], delta=0.1)
         self.assertAlmostEqual(run["area"], fine["area"], delta=0.2)
 
-    def test_walls_in_another_plane(self):
+    def write_walls_elsewhere(self):
         self.arrays["Kind"] = [int(z < -0.8) for _, _, z in self.points]
         self.points = [(x, 0.5 if z < -0.8 else y, z) for x, y, z in self.points]
         files.write_vtp(self.input, self.points, self.arrays)
+
+    def test_walls_in_another_plane(self):
+        self.write_walls_elsewhere()
         self.refuse(self.extract("--free-surface", "--fluid", "Kind=0"), 1,
                     "fluid particles have y = 0.25, but the solid ones have 0.5")
 
@@ -220,6 +244,10 @@ class Plane(CommandLineTest):
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]
+        self.assertAlmostEqual(lengths[0], 0.1 * math.sqrt(2), delta=1e-12)
+        self.write_walls_elsewhere()
+        lengths = self.succeed("--free-surface", "--dp", "0.1", "--fluid", "Kind=0", "--solids",
+                               "ignore")["statistics"]["smoothing_length_range"]
         self.assertAlmostEqual(lengths[0], 0.1 * math.sqrt(2), delta=1e-12)
 
     def test_derivatives(self):

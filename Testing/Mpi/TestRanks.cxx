@@ -234,6 +234,22 @@ const std::vector<Case> Cases = {
       f->SetBox(-0.7, 0.6, -10.0, 10.0, 0.0, 1.0);
       f->CappingOn();
     } },
+  { "lines, flat box", InPlane,
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourInPlane(f);
+      f->UseBoxOn();
+      f->SetBox(-0.7, 0.6, -10.0, 10.0, 0.5, 0.5);
+      f->CappingOn();
+    } },
+  { "filled, flat box", InPlane,
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourInPlane(f);
+      f->FilledOn();
+      f->UseBoxOn();
+      f->SetBox(-0.7, 0.6, -10.0, 0.4, 0.5, 0.5);
+    } },
   { "filled", InPlane,
     [](vtkMarchingCorrectors* f)
     {

@@ -10,6 +10,7 @@ PRELOAD is ../CommandLine/misbehave.c.
 
 import filecmp
 import json
+import math
 import os
 import signal
 import subprocess
@@ -118,6 +119,41 @@ class Program(unittest.TestCase):
                 for name in names:
                     np.testing.assert_array_equal(vtk_to_numpy(alone.GetPointData().GetArray(name)),
                                                   vtk_to_numpy(ranks.GetPointData().GetArray(name)), name)
+
+    def test_warnings(self):
+        """What the core finds strange is said once, as by one process."""
+        tilted = read(PARTICLES)
+        at = vtk_to_numpy(tilted.GetPoints().GetData())
+        at[:, 2] = 0.75 * at[:, 0]
+        write(tilted, self.path("tilted.vtp"))
+        pieces = write_pieces(self.path("tilted.vtp"), self.folder.name, 3)
+        for file, alone, words, how in ((PARTICLES, PARTICLES, "outside the range of Speed", ["--scalar", "Speed", "--iso", "99"]),
+                                        (pieces, self.path("tilted.vtp"), "tilted in space", ["--free-surface", "--iso", "0.1"])):
+            said = [[line.split("warning: ")[1] for line in done.stderr.splitlines() if words in line]
+                    for done in (self.run_alone(alone, self.path("s.vtp"), *how), self.run_ranks(file, self.path("s.vtp"), *how))]
+            self.assertEqual(len(said[0]), 1)
+            self.assertEqual(said[0], said[1])
+
+    def test_particle_distance(self):
+        """The dimension is that of all: these pieces lie in a plane, each in another one; then, all but ignored walls in one."""
+        plane = read(self.write_plane())
+        at = vtk_to_numpy(plane.GetPoints().GetData())
+        at[:, 2] = np.where(np.arange(len(at)) < len(at) // 2, 0.5, 0.6)
+        write(plane, self.path("two.vtp"))
+        pieces = write_pieces(self.path("two.vtp"), self.folder.name, 2)
+        wall = vtkDoubleArray()
+        wall.SetName("Wall")
+        for z in at[:, 2]:
+            wall.InsertNextValue(float(z > 0.55))
+        plane.GetPointData().AddArray(wall)
+        write(plane, self.path("wall.vtp"))
+        for file, how, dimension in ((pieces, [], 3),
+                                     (self.path("wall.vtp"), ["--fluid", "Wall=0", "--solids", "ignore"], 2)):
+            done = self.run_ranks(file, self.path("s.vtp"), "--free-surface", "--dp", "0.03", "--stats", self.path("s.json"), *how)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with open(self.path("s.json"), encoding="utf-8") as stream:
+                length = json.load(stream)["statistics"]["smoothing_length_range"]
+            self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
     def test_filled(self):
         """What is filled between lines, with its border in a box and a period: the file is that of one process, byte for byte."""

@@ -36,6 +36,20 @@ def draw():
     view.CameraViewUp = [0.0, 1.0, 0.0]
     Render(view)
     SaveScreenshot(OUTPUT, view, ImageResolution=[500, 300])
+    check_after_failure(extract, display, view)
+
+
+def check_after_failure(extract, display, view):
+    """An update that fails draws nothing; what follows it is drawn."""
+    def drawn():
+        Render(view)
+        return display.SMProxy.GetRepresentedDataInformation().GetNumberOfCells()
+    before = drawn()
+    extract.OnlyInABox, extract.BoxLength = 1, [0.0, 0.0, 0.0]
+    assert drawn() == 0
+    extract.OnlyInABox, extract.FreeSurfaceValue = 0, 0.3
+    after = drawn()
+    assert after == extract.GetDataInformation().GetNumberOfCells() and 0 < after != before, (before, after)
 
 
 def read(name):

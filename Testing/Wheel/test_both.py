@@ -63,6 +63,8 @@ def make_cases(folder):
         "neighbours": [lattice(folder, "b.vtp", r, h=0.3), "R", 0.4, {}],
         "few neighbours": [lattice(folder, "c.vtp", r, h=0.07), "R", 0.4, {}],
         "plane": [lattice(folder, "d.vtp", r, positions=plane), "R", 1.0, {"Dimension": 3}],
+        "tilted plane": [lattice(folder, "u.vtp", r, positions=plane @ [[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]]
+                                 @ [[1.0, 0.0, 0.0], [0.0, 0.8, 0.6], [0.0, -0.6, 0.8]]), "R", 1.0, {}],
         "units": [lattice(folder, "e.vtp", {**r, "Mass": lambda x: np.full(len(x), 1e-9),
                                             "Density": lambda x: np.ones(len(x))}), "R", 0.4, {}],
         "all trimmed": [lattice(folder, "f.vtp", r), "R", 0.4, {"VertexThreshold": 5.0}],
@@ -94,6 +96,7 @@ def make_cases(folder):
 
 WANTED = {"unused type": "'ParticleType' is not used.*44880 x 0, 55348 x 1", "iso value": "Iso value 99 is outside",
           "neighbours": "neighbours within its support", "few neighbours": "not in the unit", "plane": "lie in a plane",
+          "tilted plane": "tilted in space",
           "units": "node threshold", "all trimmed": "vertex threshold 5", "bad attribute": "'T' is NaN"}
 
 

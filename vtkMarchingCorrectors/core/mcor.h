@@ -326,6 +326,8 @@ extern "C"
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
+    double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; else 0 */
+    double plane_extent;    /* of the positions of all particles along it */
     int dimension;          /* 2 or 3, see mcor_options.dimension */
     double cube_size;       /* unit L; the shortest of: */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
@@ -525,8 +527,9 @@ extern "C"
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* 2 or 3: the dimension of a call with this input alone and this mcor_options.dimension. */
-  int mcor_find_dimension(const mcor_input* input, int dimension);
+  /* 2 or 3: the dimension of a call with this input, over all ranks unless `ranks` is NULL, and this
+   * mcor_options.dimension. Reads only the positions and the solids. */
+  int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* What may be wrong with the input although the extraction succeeded. */
   typedef enum mcor_warning

@@ -44,7 +44,7 @@ mcor_status mcor_allocated(mcor_context* context, bool complete);
 mcor_status mcor_make_room(
   mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
 /* Before an array of the host, or of a device that shares its memory, is touched. */
-#define MCOR_LARGE_ARRAY ((size_t)4 << 20)
+#define MCOR_LARGE_ARRAY ((size_t)1 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 
 /* Element i of an array of the device's real type. */

@@ -45,6 +45,7 @@ extern "C"
     double edge[3];     /* along x, y, z; the same */
     double wall_share;  /* if the options ask for it; 0: not yet measured */
     mcor_plane plane;
+    double plane_normal[3], plane_extent; /* as in mcor_statistics */
   } mcor_measure;
 
   /* What must be known about all particles to extract the surface of a box from some of them. */

@@ -46,7 +46,9 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   for (int a = 0; a < 3; ++a)
   {
     s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
+    s->plane_normal[a] = m->plane_normal[a];
   }
+  s->plane_extent = m->plane_extent;
   s->wall_share = m->solid_count > 0 && context->kept.uses_solids ? mcor_wall_share(context) : 0;
   s->dimension = mcor_is_plane(context) ? 2 : 3;
   s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));

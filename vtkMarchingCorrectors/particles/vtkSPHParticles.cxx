@@ -81,6 +81,13 @@ bool vtkSPHParticles::CollectParticles()
   return true;
 }
 
+int vtkSPHParticles::FindDimension(const mcor_ranks* ranks, int dimension)
+{
+  this->Core.positions = this->View(this->Points->GetPoints()->GetData());
+  this->CollectSolids();
+  return mcor_find_dimension(&this->Core, ranks, dimension);
+}
+
 bool vtkSPHParticles::CollectSmoothingLength()
 {
   this->Core.smoothing_length_is_support_radius =

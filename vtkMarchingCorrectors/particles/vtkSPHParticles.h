@@ -73,6 +73,11 @@ public:
   bool CollectParticles();
 
   /**
+   * As mcor_find_dimension(), of all particles if nothing marks the fluid.
+   */
+  int FindDimension(const mcor_ranks* ranks, int dimension);
+
+  /**
    * Lists the arrays to interpolate: all but those excluded and those whose names are taken by what
    * is computed.
    */

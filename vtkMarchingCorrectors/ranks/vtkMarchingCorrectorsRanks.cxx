@@ -195,7 +195,9 @@ void vtkMarchingCorrectors::FinishDistributed(
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input input = run.Input.Core;
     input.count = run.Particles;
-    this->WarnOf(run.Input, all, input, run.Options);
+    mcor_options whole = run.Options; // with globals, the core takes all of this for a part
+    whole.globals = nullptr;
+    this->WarnOf(run.Input, all, input, whole);
   }
   this->Summarize(run.Input, run.Options, surface.statistics);
   vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);

@@ -8,10 +8,12 @@
 #include "mcor_parts.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
+#include "vtkSPHRanksParticles.h"
 
 #include <limits>
 #include <string>
@@ -74,9 +76,15 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
   }
   const int axis = globals.measured.plane.axis - 1;
   options.dimension = axis >= 0 ? 2 : 3;
-  if (axis >= 0) // a period across the plane means nothing
-  {
+  if (axis >= 0)
+  { // a period across the plane means nothing
     options.periodic[2 * axis] = options.periodic[2 * axis + 1] = 0.0;
+    double* box = options.box + 2 * axis;
+    if (mcor_has_box(&options) && box[0] == box[1] && box[0] == globals.measured.plane.at)
+    {
+      box[0] = -std::numeric_limits<double>::infinity(); // flat boxes cannot be divided
+      box[1] = -box[0];
+    }
   }
   return true;
 }
@@ -157,4 +165,15 @@ void vtkSPHAlgorithm::FindFluidDistributed(
       return;
     }
   }
+}
+
+int vtkSPHAlgorithm::FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
+{
+  vtkSPHRanks ranks(this->Controller);
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
+  this->FindFluidDistributed(ranks, choice, own);
+  vtkSPHRanksCalls calls(ranks);
+  const int found = vtkSPHParticles(choice, own).FindDimension(calls.Get(), this->Dimension);
+  calls.End(false);
+  return found;
 }

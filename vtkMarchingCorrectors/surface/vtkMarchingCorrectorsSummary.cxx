@@ -20,14 +20,24 @@ double ValueOf(const mcor_array& array, std::int64_t i)
                                     : static_cast<const double*>(array.data)[i];
 }
 
-/** Whether the particle is where cells are drawn. */
-bool IsDrawn(const mcor_input& input, const mcor_options& options, std::int64_t i)
+bool HasOneLength(const mcor_input& input)
+{
+  return input.estimate_smoothing_length || !input.smoothing_length.data;
+}
+
+double LengthOf(const mcor_input& input, std::int64_t i)
+{
+  return input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
+}
+
+/** Whether the particle is in the box. */
+bool IsIn(const double box[6], const mcor_input& input, std::int64_t i)
 {
   bool isIn = true;
-  for (int a = 0; mcor_has_box(&options) && a < 3; ++a)
+  for (int a = 0; a < 3; ++a)
   {
     const double x = ValueOf(input.positions, 3 * i + a);
-    const double low = options.box[2 * a], high = options.box[2 * a + 1];
+    const double low = box[2 * a], high = box[2 * a + 1];
     isIn = isIn && x >= low && (x < high || x == low); // a flat box is around flat particles
   }
   return isIn;
@@ -49,12 +59,12 @@ std::string Name(const mcor_array& array)
 double vtkMarchingCorrectorsLeastLength(const mcor_input& input)
 {
   double least = std::numeric_limits<double>::infinity();
-  for (std::int64_t i = 0; i < input.count; ++i)
+  const bool isOne = HasOneLength(input);
+  for (std::int64_t i = 0; i < input.count && !(isOne && std::isfinite(least)); ++i)
   {
     if (!input.solid || !input.solid[i])
     {
-      least =
-        std::min(least, input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i));
+      least = std::min(least, LengthOf(input, i));
     }
   }
   return least;
@@ -65,19 +75,24 @@ double vtkMarchingCorrectorsEstimateCells(
 {
   // In units of the smoothing length or, as a factor of it, the support radius.
   double cubes = 0.0;
-  const bool isPlane = mcor_find_dimension(&input, options.dimension) == 2;
-  for (std::int64_t i = 0; i < input.count; ++i)
+  const bool isPlane = mcor_find_dimension(&input, nullptr, options.dimension) == 2;
+  const bool hasBox = mcor_has_box(&options) != 0;
+  const std::int64_t read = HasOneLength(input) && !input.solid && !hasBox
+    ? std::min<std::int64_t>(input.count, 1) // stands for all
+    : input.count;
+  for (std::int64_t i = 0; i < read; ++i)
   {
     if (!input.solid || !input.solid[i])
     {
-      double h = input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
+      double h = LengthOf(input, i);
       for (int level = 0; level < options.level_limit && h >= 2.0 * least; ++level)
       {
         h *= 0.5; // its cubes are larger
       }
-      cubes += IsDrawn(input, options, i) ? h * h * (isPlane ? 1.0 : h) : 0.0;
+      cubes += !hasBox || IsIn(options.box, input, i) ? h * h * (isPlane ? 1.0 : h) : 0.0;
     }
   }
+  cubes *= read < input.count ? static_cast<double>(input.count) : 1.0;
   const bool isKnown = !input.estimate_smoothing_length || options.cube_size <= 0.0;
   if (!std::isfinite(least) || !isKnown)
   {

@@ -132,7 +132,8 @@ std::vector<double> ToBox(const std::string& option, const std::string& text)
   }
   for (std::size_t a = 0; a < 3; ++a)
   {
-    if (!(box[2 * a] < box[2 * a + 1]))
+    const double low = box[2 * a], high = box[2 * a + 1];
+    if (!(low < high || (low == high && std::isfinite(low)))) // flat: particles in that plane
     {
       throw UsageError(
         option + " needs the lower number first along " + "xyz"[a] + ", not '" + text + "'");

@@ -38,20 +38,6 @@ bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
 }
 
-/// Whether the filter takes the particles for those of two dimensions.
-bool IsPlane(vtkSPHAlgorithm* filter, vtkPointSet* particles)
-{
-  double bounds[6];
-  particles->GetPoints()->GetBounds(bounds);
-  int constant = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    constant += bounds[2 * a] == bounds[2 * a + 1];
-  }
-  return filter->GetDimension() == vtkSPHAlgorithm::DIMENSION_2 ||
-    (filter->GetDimension() == vtkSPHAlgorithm::DIMENSION_AUTO && constant == 1);
-}
-
 /// What of the settings depends on the input: whether a text is a number or the name of an array, and
 /// where a period lies.
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
@@ -68,11 +54,6 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   else
   {
     filter->SetSmoothingLengthArrayName(job.SmoothingLength.c_str());
-  }
-  if (job.ParticleDistance > 0.0)
-  {
-    filter->SetSmoothingLength(
-      job.CoefH * std::sqrt(IsPlane(filter, particles) ? 2.0 : 3.0) * job.ParticleDistance);
   }
   if (IsConstant(job.Mass, particles, value))
   {
@@ -94,6 +75,11 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   {
     filter->SetFluidArrayName(WallArrayName);
     filter->SetFluidValue(0);
+  }
+  if (job.ParticleDistance > 0.0)
+  {
+    const double dimension = filter->FindDimension(particles);
+    filter->SetSmoothingLength(job.CoefH * std::sqrt(dimension) * job.ParticleDistance);
   }
   const std::vector<double> period = job.DetectPeriod ? DetectPeriod(particles) : job.Periodic;
   if (!period.empty())

@@ -116,6 +116,32 @@ static void flatten(core_set* set, double height)
   }
 }
 
+/* In a plane through the axis y, the last `off` of them by a smoothing length. */
+static void tilt(core_set* set, double height, int off)
+{
+  flatten(set, height);
+  for (int64_t i = 0; i < set->count; ++i)
+  {
+    double* x = set->position + 3 * i;
+    const double u = x[0], v = x[1] + (i >= set->count - off ? 1.3 : 0);
+    x[0] = 0.8 * u - 0.6 * v + 3;
+    x[1] = 0.6 * u + 0.8 * v - 5;
+  }
+}
+
+static void test_tilted_plane(void** state)
+{
+  WARNED(MCOR_WARN_PLANE, "tilted in space|(0.6, -0.8, |turn them|else set the dimension to 3",
+         tilt(&call.set, 0, 0);
+         call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_PLANE, "tilted in space|they go 0.0", tilt(&call.set, 0.003, 0);
+         call.options.vertex_threshold = 0);
+  SILENT(tilt(&call.set, 0, 0); call.options.vertex_threshold = 0; call.options.dimension = 3);
+  SILENT(tilt(&call.set, 0.2, 0); call.options.vertex_threshold = 0);
+  SILENT(tilt(&call.set, 0, 1); call.options.vertex_threshold = 0);
+  SILENT(tilt(&call.set, 0, 0); call.input.count = 90; call.iso[0] = -30; call.options.vertex_threshold = 0);
+}
+
 static void test_plane(void** state)
 {
   WARNED(MCOR_WARN_PLANE, "along y|0 times", flatten(&call.set, 0);
@@ -296,7 +322,8 @@ static void test_unused_type(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_neighbours),
-    cmocka_unit_test(test_plane), cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
+    cmocka_unit_test(test_plane), cmocka_unit_test(test_tilted_plane),
+    cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
     cmocka_unit_test(test_tolerance), cmocka_unit_test(test_precision),
     cmocka_unit_test(test_told_residual), cmocka_unit_test(test_without_input),
     cmocka_unit_test(test_unused_type) };

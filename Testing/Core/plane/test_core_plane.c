@@ -224,11 +224,11 @@ static void test_walls_in_another_plane(void** state)
     options.dimension = dimension;
     expect_error(
       *state, &input, &options, "fluid particles have y = -2, but the solid ones have 0.5");
-    assert_int_equal(mcor_find_dimension(&input, dimension), dimension == 2 ? 2 : 3);
+    assert_int_equal(mcor_find_dimension(&input, NULL, dimension), dimension == 2 ? 2 : 3);
     input.ignore_solids = 1;
     mcor_surface surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.dimension, 2);
-    assert_int_equal(mcor_find_dimension(&input, dimension), 2);
+    assert_int_equal(mcor_find_dimension(&input, NULL, dimension), 2);
     mcor_free_surface(&surface);
     input.ignore_solids = 0;
   }

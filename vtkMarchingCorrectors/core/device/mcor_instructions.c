@@ -8,10 +8,11 @@
 
 #if defined(__x86_64__)
 #include <cpuid.h>
+#include <stdatomic.h>
 
 #define MCOR_HAS(bits, wanted) (((bits) & (wanted)) == (wanted))
 
-mcor_instructions mcor_own_instructions(void)
+static mcor_instructions mcor_ask_processor(void)
 {
   const unsigned fma_saved_avx = 1u << 12 | 1u << 27 | 1u << 28;
   const unsigned bmi_avx2_bmi2 = 1u << 3 | 1u << 5 | 1u << 8;
@@ -30,6 +31,19 @@ mcor_instructions mcor_own_instructions(void)
   }
   return MCOR_HAS(state, 0xE6u) && MCOR_HAS(b, avx512_f_dq_cd_bw_vl) ? MCOR_INSTRUCTIONS_V4
                                                                      : MCOR_INSTRUCTIONS_V3;
+}
+
+/* Asked once, as each launch wants to know: in virtual machines the question takes long. */
+mcor_instructions mcor_own_instructions(void)
+{
+  static atomic_int known; /* and 1 */
+  int found = atomic_load_explicit(&known, memory_order_relaxed);
+  if (found == 0)
+  {
+    found = (int)mcor_ask_processor() + 1;
+    atomic_store_explicit(&known, found, memory_order_relaxed);
+  }
+  return (mcor_instructions)(found - 1);
 }
 
 #else

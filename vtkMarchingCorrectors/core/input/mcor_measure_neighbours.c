@@ -3,10 +3,11 @@
 
 /* How many neighbours a fluid particle has, and how near the nearest is: from a few of them, as this is
  * to notice smoothing lengths that cannot be meant. They are told of all positions while these are
- * measured. */
+ * measured. Where the few lie in a plane that is tilted in space, it is seen whether all do. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_plane.h"
 #include "mcor_ranks.h"
 
 #include <float.h>
@@ -30,6 +31,8 @@ struct mcor_watch
   double x[MCOR_WATCHED][3], h[MCOR_WATCHED], volume[MCOR_WATCHED], support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
+  double normal[3];              /* 0: they do not lie in a plane */
+  double beyond[MCOR_SLICES][2]; /* along it, from the first watched: the most, and of minus that */
 };
 
 /* Written to be vectorised. */
@@ -121,8 +124,104 @@ static void mcor_watch_particle(mcor_watch* watch, int slice, uint32_t reached, 
   }
 }
 
+/* ---- a plane that is tilted in space ---- */
+
+/* Smoothing lengths along the normal at most, and in the plane at least. */
+#define MCOR_THIN 0.1
+#define MCOR_BROAD 8
+
+static void mcor_cross(const double a[3], const double b[3], double cross[3])
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    cross[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  }
+}
+
+static double mcor_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The plane through the first of the watched, the one farthest from it, and the one farthest from the line
+ * between these. */
+static void mcor_find_normal(mcor_watch* watch)
+{
+  double from[MCOR_WATCHED][3], along[3] = { 0 }, normal[3] = { 0 }, h = DBL_MAX;
+  for (int s = 0; s < watch->count; ++s)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      from[s][a] = watch->x[s][a] - watch->x[0][a];
+    }
+    h = fmin(h, watch->h[s]);
+    if (mcor_dot(from[s], from[s]) > mcor_dot(along, along))
+    {
+      memcpy(along, from[s], sizeof along);
+    }
+  }
+  const double length = sqrt(mcor_dot(along, along));
+  for (int s = 0; s < watch->count; ++s)
+  {
+    double cross[3];
+    mcor_cross(along, from[s], cross);
+    if (mcor_dot(cross, cross) > mcor_dot(normal, normal))
+    {
+      memcpy(normal, cross, sizeof normal);
+    }
+  }
+  const double size = sqrt(mcor_dot(normal, normal));
+  bool in_plane = length > MCOR_BROAD * h && size > MCOR_BROAD * h * length;
+  for (int s = 0; s < watch->count && in_plane; ++s)
+  {
+    in_plane = fabs(mcor_dot(normal, from[s])) < MCOR_THIN * h * size;
+  }
+  for (int a = 0; a < 3 && in_plane; ++a)
+  {
+    watch->normal[a] = normal[a] / size;
+  }
+}
+
+static bool mcor_has_normal(const mcor_watch* watch)
+{
+  return mcor_dot(watch->normal, watch->normal) > 0;
+}
+
+static void mcor_watch_plane(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
+{
+  const double *n = watch->normal, at = mcor_dot(n, watch->x[0]);
+  for (int i = 0; i < count; ++i)
+  {
+    const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - at;
+    watch->beyond[slice][0] = d > watch->beyond[slice][0] ? d : watch->beyond[slice][0];
+    watch->beyond[slice][1] = -d > watch->beyond[slice][1] ? -d : watch->beyond[slice][1];
+  }
+}
+
+static mcor_status mcor_sum_up_plane(mcor_context* context, mcor_watch* watch, int slices)
+{
+  mcor_measure* m = &context->measure;
+  double* beyond = watch->beyond[0];
+  for (int s = 1; s < slices; ++s)
+  {
+    beyond[0] = fmax(beyond[0], watch->beyond[s][0]);
+    beyond[1] = fmax(beyond[1], watch->beyond[s][1]);
+  }
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, beyond, 2));
+  if (beyond[0] + beyond[1] < MCOR_THIN * m->h_median)
+  {
+    memcpy(m->plane_normal, watch->normal, sizeof m->plane_normal);
+    m->plane_extent = beyond[0] + beyond[1];
+  }
+  return MCOR_OK;
+}
+
 void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
 {
+  if (mcor_has_normal(watch))
+  {
+    mcor_watch_plane(watch, slice, count, x);
+  }
   int cell[MCOR_CHUNK] = { 0 };
   for (int a = 2; a >= 0; --a)
   {
@@ -177,7 +276,7 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, watch->count));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, nearest, watch->count));
   mcor_sum_up_watch(watch, neighbours, nearest, &context->measure);
-  return MCOR_OK;
+  return mcor_has_normal(watch) ? mcor_sum_up_plane(context, watch, slices) : MCOR_OK;
 }
 
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun)
@@ -197,6 +296,10 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
   watch->support = mcor_support_factor(context->run.options->sph_kernel);
   MCOR_TRY(mcor_choose_watched(context, input, watch));
   mcor_place_watch(watch, input->count);
+  if (!mcor_is_plane(context))
+  {
+    mcor_find_normal(watch);
+  }
   for (int s = 0; s < watch->count; ++s)
   {
     mcor_mark_reached(watch, s);

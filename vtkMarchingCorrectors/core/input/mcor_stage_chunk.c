@@ -67,7 +67,8 @@ void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
   {
     chunk->size[i] *= staging->size_scale;
   }
-  for (int i = 0; i < chunk->count && mcor_is_plane(context) && !mcor_needs_density(input); ++i)
+  const int areas = mcor_is_plane(context) && !mcor_needs_density(input) ? chunk->count : 0;
+  for (int i = 0; i < areas; ++i)
   {
     chunk->size[i] *= chunk->h[i];
   }
@@ -88,16 +89,17 @@ int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
   const mcor_stage_chunk* chunk, double* largest_weight)
 {
   const double limit = mcor_weight_limit(context);
-  for (int i = 0; i < chunk->count && !mcor_needs_density(input); ++i)
+  const int count = mcor_needs_density(input) ? 0 : chunk->count;
+  int64_t heavy = -1;
+  double largest = *largest_weight;
+  for (int i = 0; i < count; ++i)
   {
     const double weight = mcor_stage_weight(context, chunk, i);
-    if (!(weight < limit))
-    {
-      return chunk->source[i];
-    }
-    *largest_weight = weight > *largest_weight ? weight : *largest_weight;
+    heavy = heavy < 0 && !(weight < limit) ? chunk->source[i] : heavy;
+    largest = weight > largest ? weight : largest;
   }
-  return -1;
+  *largest_weight = largest;
+  return heavy;
 }
 
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level)
@@ -192,11 +194,13 @@ void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input
     chunk->size[i] = input->solid[chunk->source[i]] ? -chunk->size[i] : chunk->size[i];
   }
   mcor_store_reals(context, staging->size, to, chunk->size, chunk->count);
+  memset(level, 0, (size_t)chunk->count);
+  for (int i = 0; i < chunk->count && m->support_min < m->support_max; ++i)
+  {
+    level[i] = (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach);
+  }
   for (int i = 0; i < chunk->count; ++i)
   {
-    level[i] = m->support_min < m->support_max
-      ? (uint8_t)mcor_level_of(m->support_max, chunk->h[i] * reach)
-      : 0;
     chunk->h[i] = scaled_cube / chunk->h[i];
   }
   mcor_store_reals(context, staging->inv_h, to, chunk->h, chunk->count);

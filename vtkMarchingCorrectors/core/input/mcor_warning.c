@@ -140,7 +140,15 @@ static bool mcor_warn_plane(mcor_suspicion* s)
         "xyz"[a], e[a], e[a] / h);
     }
   }
-  return false;
+  const double* normal = n->plane_normal;
+  const bool tilted = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
+  return tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES &&
+    mcor_say(s,
+      "The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, %.4g), and "
+      "they go %.3g along it, %.2g times the smoothing length. They count as three-dimensional, so "
+      "the weights in the fluid are not about 1. In a two-dimensional simulation, turn them into a "
+      "plane of constant x, y or z that all share exactly; else set the dimension to 3.",
+      normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
 }
 
 /* What no value of the field can pass: a Shepard mean with positive kernels is between the values of

@@ -43,7 +43,18 @@ static void mcor_widen(mcor_spread* spread, int i, double low, double high)
   spread->high[i] = high > spread->high[i] ? high : spread->high[i];
 }
 
-/* Ends where the fluid is in no plane: how far it goes then does not matter. */
+/* Whether all are at the place where the fluid has been so far; written to be vectorised. */
+static bool mcor_is_all_at(const double* x, int count, double low, double high)
+{
+  int off = low != high;
+  for (int i = 0; i < count; ++i)
+  {
+    off |= x[i] != low;
+  }
+  return !off;
+}
+
+/* Along an axis, ends where the fluid is in no plane: how far it goes then does not matter. */
 static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spread_job* job = data;
@@ -59,8 +70,14 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
     everywhere = true;
     for (int a = 0; a < 3; ++a)
     {
+      if (spread.low[a] < spread.high[a])
+      {
+        continue;
+      }
       mcor_read_array(&positions, begin, count, a, x);
-      for (int i = 0; i < count; ++i)
+      const bool same =
+        !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
+      for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (!solid || !input->ignore_solids)
@@ -115,9 +132,15 @@ static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
   return dimension == 2 || constant == 1 ? plane : (mcor_plane){ 0 };
 }
 
-int mcor_find_dimension(const mcor_input* input, int dimension)
+int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension)
 {
-  const mcor_spread spread = mcor_spread_of(input);
+  mcor_spread spread = mcor_spread_of(input);
+  if (ranks &&
+    (ranks->reduce_doubles(ranks->user, MCOR_LEAST, spread.low, 6) ||
+      ranks->reduce_doubles(ranks->user, MCOR_GREATEST, spread.high, 6)))
+  {
+    return 3; /* another rank failed */
+  }
   return dimension == 2 || (dimension == 0 && mcor_plane_of(&spread, 0).axis > 0) ? 2 : 3;
 }
 
@@ -324,7 +347,8 @@ mcor_status mcor_flatten(
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }
-  return mcor_has_positions(input) ? mcor_flatten_positions(context, flat) : MCOR_OK;
+  const bool is_flat = plane->axis == 3 && plane->at == 0; /* as it is */
+  return mcor_has_positions(input) && !is_flat ? mcor_flatten_positions(context, flat) : MCOR_OK;
 }
 
 void mcor_unflatten_doubles(

@@ -222,6 +222,24 @@ class Layouts(Case):
         write_gadget(self.at("snap.hdf5"), table=True)
         self.assertTrue((io.read(self.at("snap.hdf5")).quantity("mass") == 0.001).all())
 
+    def test_period(self):
+        """As GADGET-4's and AREPO's configuration tells."""
+        def period(**config):
+            write_gadget(self.at("snap.hdf5"))
+            with h5py.File(self.at("snap.hdf5"), "a") as file:
+                file.create_group("Config").attrs.update(config)
+                if "DOUBLEPRECISION" in config:
+                    file.create_group("Parameters").attrs["PeriodicBoundariesOn"] = np.int32(1)
+            particles = io.read(self.at("snap.hdf5"))
+            return particles.period, particles.dimension
+
+        self.assertEqual(period(), (None, 3))
+        self.assertEqual(period(PERIODIC=b""), ([0, 4] * 3, 3))
+        self.assertEqual(period(PERIODIC=b"", LONG_Y_BITS=2.0), ([0, 4, 0, 1, 0, 4], 3))
+        self.assertEqual(period(DOUBLEPRECISION=1.0, LONG_X=2.5, REFLECTIVE_Y=1.0, TWODIMS=b""), ([0, 10, 0, 0, 0, 4], 2))
+        self.assertEqual(period(DOUBLEPRECISION=1.0, REFLECTIVE_X=2.0, REFLECTIVE_Y=2.0, REFLECTIVE_Z=2.0), (None, 3))
+        self.assertIsNone(period(PERIODIC=b"", LONG_X=float("nan"))[0])
+
     def test_swift(self):
         write_gadget(self.at("swift.hdf5"), swift=True, periodic=True)
         particles = io.read(self.at("swift.hdf5"))

@@ -9,6 +9,7 @@ MCOR_WINDOWS_WHEEL: one that is built; else Python/build-wheels builds it. Statu
 out of reach. Where CPython's own site is not: its library and extension modules are taken from a wheel that has
 them (panda3d), its modules in Python from a CPython of the same version here.
 """
+import compileall
 import glob
 import os
 import shutil
@@ -21,7 +22,7 @@ import zipfile
 from pathlib import Path
 
 SOURCES, HERE = Path(os.environ["MCOR_TEST_SOURCES"]), Path(__file__).parent
-PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4")  # NumPy 2 wants functions that wine 8 has not
+PACKAGES = ("panda3d==1.10.16", "numpy==1.26.4", "pip==24.0")  # NumPy 2 wants functions that wine 8 has not
 INTEL = ("intel-opencl-rt==2026.2.0", "tbb==2023.2.0")
 PYVISTA = ("pyvista==0.49.1", "vtk==9.3.1", PACKAGES[1])
 VERSION = (3, 11)
@@ -50,11 +51,15 @@ def make_python(folder):
             skip("the Python package index is out of reach.")
     python = folder / "été 測試" / "python"
     shutil.copytree(sysconfig.get_path("stdlib"), python / "Lib",
-                    ignore=shutil.ignore_patterns("site-packages", "lib-dynload", "test", "config-*", "__pycache__"))
+                    ignore=shutil.ignore_patterns("*-packages", "lib-dynload", "test", "config-*", "EXTERNALLY-MANAGED"))
     with zipfile.ZipFile(next((folder / "wheels").glob("panda3d-*.whl"))) as archive:
         for name in archive.namelist():
             if name.startswith("deploy_libs/") and name.endswith((".dll", ".pyd")) and "api-ms-win" not in name:
                 (python / Path(name).name).write_bytes(archive.read(name))
+    packages = python / "Lib" / "site-packages"
+    with zipfile.ZipFile(next((folder / "wheels").glob("pip-*.whl"))) as archive:
+        archive.extractall(packages)
+    compileall.compile_dir(packages, quiet=1)
     (folder / "main.c").write_text(WIDE_MAIN)
     subprocess.run(["x86_64-w64-mingw32-gcc", "-municode", "-O1", folder / "main.c", "-o", python / "python.exe"], check=True)
     return python / "python.exe"
@@ -69,10 +74,8 @@ def run(*command, **more):
 
 
 def install(python, wheels, environment, *packages):
-    """By the pip that each CPython has with it."""
-    pip, = (python.parent / "Lib" / "ensurepip" / "_bundled").glob("pip-*.whl")
     begin = time.monotonic()
-    run("wine", python, f"{pip}/pip", "--disable-pip-version-check", "--no-cache-dir", "install", "--no-index",
+    run("wine", python, "-m", "pip", "--disable-pip-version-check", "--no-cache-dir", "install", "--no-index",
         "--find-links", wheels, "--no-compile", "--no-warn-script-location", *packages, env=environment)
     print(f"pip install {Path(packages[0]).name}: {time.monotonic() - begin:.1f} s")
 

@@ -51,32 +51,40 @@ def numbers_of(types):
 
 
 def describe_header(file):
-    header = get(file, "Header")
-    header = {} if header is None else dict(header.attrs)
+    header = dict(attributes(file, "Header"))
     found = {"time": number(header, "Time"), "redshift": number(header, "Redshift"),
              "hubble_parameter": number(header, "HubbleParam"), "units": {}}
     box = np.ravel(header.get("BoxSize", []))
     found["box_size"] = [float(side) for side in (box if len(box) == 3 else box[:1].repeat(3))] if len(box) else None
-    units = get(file, "Units")
-    for source in (header, dict(units.attrs) if units is not None else {}):
+    for source in (header, attributes(file, "Units")):
         for name, value in source.items():
             if name.startswith("Unit") and np.size(value) == 1:
                 found["units"][name] = number({name: value}, name)
-    cosmology = get(file, "Cosmology")
-    found["scale_factor"] = number(cosmology.attrs, "Scale-factor") if cosmology is not None else None
+    found["scale_factor"] = number(attributes(file, "Cosmology"), "Scale-factor")
     if found["scale_factor"] is None and found["redshift"]:
         found["scale_factor"] = 1 / (1 + found["redshift"])
     return header, found
 
 
+def attributes(file, name):
+    group = get(file, name)
+    return {} if group is None else group.attrs
+
+
 def period_of(file, box):
-    """Only where the file says that it is periodic: open runs have a BoxSize, too."""
-    parameters, config = get(file, "Parameters"), get(file, "Config")
-    periodic = parameters is not None and number(parameters.attrs, "InitialConditions:periodic", 0) == 1 \
-        or config is not None and "PERIODIC" in config.attrs
-    if not periodic or box is None or not all(np.isfinite(side) and side > 0 for side in box):
+    """Only where the file says that it is periodic: open runs have a BoxSize, too. AREPO is, along axes that its Config does
+    not make REFLECTIVE. The box has BoxSize times LONG_X (AREPO), or by 2^LONG_X_BITS (GADGET-4)."""
+    parameters, config = attributes(file, "Parameters"), attributes(file, "Config")
+    periodic = number(parameters, "InitialConditions:periodic", 0) == 1 or "PERIODIC" in config \
+        or len(config) and "PeriodicBoundariesOn" in parameters
+    if not periodic or box is None:
         return None
-    return [bound for side in box for bound in (0.0, side)]
+    box = [side * number(config, f"LONG_{axis}", 1) * 0.5 ** number(config, f"LONG_{axis}_BITS", 0)
+           for side, axis in zip(box, "XYZ")]
+    if not all(np.isfinite(side) and side > 0 for side in box):
+        return None
+    ends = [0.0 if f"REFLECTIVE_{axis}" in config else side for side, axis in zip(box, "XYZ")]
+    return [bound for end in ends for bound in (0.0, end)] if any(ends) else None
 
 
 # GIZMO's numbers, those of a kernel that is here.
@@ -85,13 +93,13 @@ GIZMO_KERNELS = {3: "cubic", 4: "quartic", 5: "quintic", 6: "Wendland C2", 7: "W
 
 def kernel_of(file, header):
     """As SWIFT names it, by GIZMO's number, or by GADGET-4's macro; None where the file does not tell."""
-    scheme, config = get(file, "HydroScheme"), get(file, "Config")
-    if scheme is not None and "Kernel function" in scheme.attrs:
-        return text(scheme.attrs["Kernel function"])
+    scheme = attributes(file, "HydroScheme")
+    if "Kernel function" in scheme:
+        return text(scheme["Kernel function"])
     identity = number(header, "Kernel_Function_ID")
     if identity is not None:
         return GIZMO_KERNELS.get(int(identity), f"GIZMO's number {identity}")
-    macros = [] if config is None else [name for name in config.attrs if name.endswith("_KERNEL")]
+    macros = [name for name in attributes(file, "Config") if name.endswith("_KERNEL")]
     return next(filter(find_kernel, macros), None)
 
 
@@ -103,10 +111,9 @@ def read_gadget(path, types):
         header, parameters = describe_header(file)
         files = files_of(path, int(number(header, "NumFilesPerSnapshot", 1)))
         period = period_of(file, parameters["box_size"])
-        scheme = get(file, "HydroScheme")
-        gamma = number(scheme.attrs, "Kernel gamma") if scheme is not None else None
+        gamma = number(attributes(file, "HydroScheme"), "Kernel gamma")
         kernel = kernel_of(file, header)
-        dimension = number(header, "Dimension", 3)
+        dimension = 2 if "TWODIMS" in attributes(file, "Config") else number(header, "Dimension", 3)
     parts, names = [], None
     for kind in wanted:
         found, own = find_parts(files, f"PartType{kind}")

@@ -19,10 +19,9 @@ mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fra
   return mcor_report(context, mcor_phase_name(phase), fraction, end);
 }
 
-double mcor_position_error(const mcor_context* context)
+double mcor_rounding(const mcor_context* context)
 {
-  const double unit = ldexp(context->lattice.cube, -context->lattice.fix_bits);
-  return 0.5 * sqrt(mcor_is_plane(context) ? 2 : 3) * unit;
+  return 0.5 * ldexp(context->lattice.cube, -context->lattice.fix_bits);
 }
 
 /* Numbers that are known at the end. */
@@ -52,7 +51,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   s->wall_share = m->solid_count > 0 && context->kept.uses_solids ? mcor_wall_share(context) : 0;
   s->dimension = mcor_is_plane(context) ? 2 : 3;
   s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));
-  s->position_error = mcor_position_error(context);
+  s->position_error = sqrt(s->dimension) * mcor_rounding(context);
   s->highest_level = lattice->top;
   s->scalar_min = m->scalar_min;
   s->scalar_max = m->scalar_max;

@@ -191,15 +191,15 @@ static double mcor_correction_of(const mcor_context* context, const mcor_downloa
                                        : 0;
 }
 
-/* How far rounded positions may move the value of vertex v: by position_error along the gradient. */
+/* How far rounded positions may move the value of vertex v. */
 static double mcor_rounding_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
-  double gradient = 0;
+  double gradient = 0; /* along all axes: each is rounded */
   for (int a = 0; a < 3; ++a)
   {
-    gradient = hypot(gradient, mcor_get_real(context, d->gradient, 4 * v + a));
+    gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
   }
-  return mcor_position_error(context) / mcor_length_of(d, v, context->lattice.cube) * gradient;
+  return mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient;
 }
 
 static void mcor_count_correction(

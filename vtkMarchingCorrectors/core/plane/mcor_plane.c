@@ -127,7 +127,7 @@ static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
     const double low = fmin(spread->low[a], spread->low[3 + a]),
                  high = fmax(spread->high[a], spread->high[3 + a]);
     constant += low == high;
-    plane = low == high ? (mcor_plane){ a + 1, low } : plane;
+    plane = low == high ? (mcor_plane){ a + 1, low + 0.0 } : plane; /* never -0 */
   }
   return dimension == 2 || constant == 1 ? plane : (mcor_plane){ 0 };
 }

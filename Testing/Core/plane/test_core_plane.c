@@ -467,8 +467,8 @@ int main(int argc, char** argv)
     cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_circle),
     cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
     cmocka_unit_test(test_minus_zero), cmocka_unit_test(test_sentences_of_sides),
-    cmocka_unit_test(test_walls_in_another_plane),
-    cmocka_unit_test(test_derivatives_and_gauges), cmocka_unit_test(test_pairs_and_reuse),
-    cmocka_unit_test(test_bits), cmocka_unit_test(test_boxes_and_periods) };
+    cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
+    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
+    cmocka_unit_test(test_boxes_and_periods) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

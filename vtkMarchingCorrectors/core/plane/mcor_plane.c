@@ -75,8 +75,7 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
         continue;
       }
       mcor_read_array(&positions, begin, count, a, x);
-      const bool same =
-        !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
+      const bool same = !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
       for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);

@@ -197,6 +197,7 @@ void vtkMarchingCorrectors::FinishDistributed(
     input.count = run.Particles;
     mcor_options whole = run.Options; // with globals, the core takes all of this for a part
     whole.globals = nullptr;
+    whole.dimension = this->Dimension; // as asked for, not as found
     this->WarnOf(run.Input, all, input, whole);
   }
   this->Summarize(run.Input, run.Options, surface.statistics);

@@ -139,7 +139,8 @@ static void test_tilted_plane(void** state)
   SILENT(tilt(&call.set, 0, 0); call.options.vertex_threshold = 0; call.options.dimension = 3);
   SILENT(tilt(&call.set, 0.2, 0); call.options.vertex_threshold = 0);
   SILENT(tilt(&call.set, 0, 1); call.options.vertex_threshold = 0);
-  SILENT(tilt(&call.set, 0, 0); call.input.count = 90; call.iso[0] = -30; call.options.vertex_threshold = 0);
+  SILENT(tilt(&call.set, 0, 0); call.input.count = 90; call.iso[0] = -30;
+         call.options.vertex_threshold = 0);
 }
 
 static void test_plane(void** state)

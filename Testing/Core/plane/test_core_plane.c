@@ -135,6 +135,32 @@ static void test_trimming(void** state)
   core_free_set(&set);
 }
 
+/* -0 is 0, wherever the particles with it are in the order. */
+static void test_minus_zero(void** state)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    core_set set = plane_make(10, 0.1, 1, axis, 0, 7);
+    const double iso = 0;
+    const mcor_input input = core_input(&set);
+    const mcor_options options = plane_options(&iso);
+    mcor_surface zero = core_extract(*state, &input, &options);
+    assert_true(zero.line_count > 0);
+    for (int which = 0; which < 2; ++which)
+    {
+      for (int64_t i = 0; i < set.count; ++i)
+      {
+        set.position[3 * i + axis] = i % 2 == which ? -0.0 : 0.0;
+      }
+      mcor_surface other = core_extract(*state, &input, &options);
+      assert_int_equal(core_hash(&other), core_hash(&zero));
+      mcor_free_surface(&other);
+    }
+    mcor_free_surface(&zero);
+    core_free_set(&set);
+  }
+}
+
 static void expect_error(
   mcor_context* context, const mcor_input* input, const mcor_options* options, const char* words)
 {
@@ -440,8 +466,9 @@ int main(int argc, char** argv)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
     cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_circle),
     cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
-    cmocka_unit_test(test_sentences_of_sides), cmocka_unit_test(test_walls_in_another_plane),
-    cmocka_unit_test(test_derivatives_and_gauges), cmocka_unit_test(test_pairs_and_reuse),
-    cmocka_unit_test(test_bits), cmocka_unit_test(test_boxes_and_periods) };
+    cmocka_unit_test(test_minus_zero), cmocka_unit_test(test_sentences_of_sides),
+    cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
+    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
+    cmocka_unit_test(test_boxes_and_periods) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -31,8 +31,9 @@ struct mcor_watch
   double x[MCOR_WATCHED][3], h[MCOR_WATCHED], volume[MCOR_WATCHED], support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
-  double normal[3];              /* 0: they do not lie in a plane */
-  double beyond[MCOR_SLICES][2]; /* along it, from the first watched: the most, and of minus that */
+  double normal[3];                          /* 0: they do not lie in a plane */
+  /* Along it, from the first of them: the most, and the most of minus that. */
+  double beyond[MCOR_SLICES][2];
 };
 
 /* Written to be vectorised. */

@@ -140,8 +140,13 @@ static bool mcor_warn_plane(mcor_suspicion* s)
         "xyz"[a], e[a], e[a] / h);
     }
   }
-  const double* normal = n->plane_normal;
-  const bool tilted = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
+  double normal[3];
+  bool tilted = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    normal[a] = floor(n->plane_normal[a] * 1e4 + 0.5) / 1e4;
+    tilted = tilted || normal[a] != 0;
+  }
   return tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES &&
     mcor_say(s,
       "The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, %.4g), and "

@@ -75,8 +75,7 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
         continue;
       }
       mcor_read_array(&positions, begin, count, a, x);
-      const bool same =
-        !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
+      const bool same = !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
       for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
@@ -127,7 +126,7 @@ static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
     const double low = fmin(spread->low[a], spread->low[3 + a]),
                  high = fmax(spread->high[a], spread->high[3 + a]);
     constant += low == high;
-    plane = low == high ? (mcor_plane){ a + 1, low } : plane;
+    plane = low == high ? (mcor_plane){ a + 1, low + 0.0 } : plane; /* never -0 */
   }
   return dimension == 2 || constant == 1 ? plane : (mcor_plane){ 0 };
 }

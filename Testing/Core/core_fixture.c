@@ -373,6 +373,7 @@ void core_extend_program(mcor_context* context, const char* source)
     }
     if (!known)
     {
+      CORE_OK(context, mcor_reserve_kernel(context));
       mcor_kernel* kernel = &cl->kernels[cl->kernel_count++];
       cl_int error;
       *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_FIELD };

@@ -209,6 +209,10 @@ static void case_check_accuracy(case_run* run, int trimmed)
   const oracle_comparison* c = &run->comparison;
   const int single = run->options.precision == MCOR_FLOAT32;
   const double residual = single ? 5e-6 : 1e-6;
+  const mcor_statistics* told = &run->surface.statistics;
+  const double range = told->scalar_max - told->scalar_min;
+  case_expect(run, c->residual * range <= told->residual_max + 1e-6 * range,
+    "residual %.3g of the range, and %.3g was told", c->residual, told->residual_max / range);
   case_expect(run, c->residual <= residual, "residual %.3g: %s", c->residual, c->first);
   case_expect(
     run, c->weight_error <= (single ? 1e-5 : 1e-6), "weight off by %.3g", c->weight_error);

@@ -369,10 +369,11 @@ extern "C"
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what position_error may add. */
+    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what position_error may add. Not of
+     * caps, nor of the trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
-    int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut */
+    int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut, off the iso value */
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;

@@ -260,9 +260,11 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
   assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
   const double range = oracle_scalar_range(&particles);
   int64_t exact = 0, linear = 0;
+  double worst = 0;
   for (int64_t i = 0; i < surface.point_count; ++i)
   {
     const int flag = surface.boundary_flag[i];
+    worst = fmax(worst, flag == 2 ? 0 : fabs((double)surface.residual[i]));
     oracle_sample sample;
     oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
     CORE_CHECK(flag == 0 || flag == 1 || flag == 2 || flag == 4, "flag %d", flag);
@@ -283,6 +285,9 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
     (long long)exact, (long long)linear);
   assert_int_equal(surface.statistics.trim_vertices, exact + linear);
   assert_int_equal(surface.statistics.trim_vertices_linear, linear);
+  const double told = surface.statistics.residual_max;
+  CORE_CHECK(worst <= 1.0001 * told && told <= worst + 1e-6 * range,
+    "residual %g, told %g, of a range of %g", worst, told, range);
   oracle_free_field(&field);
   mcor_free_surface(&surface);
   core_free_set(&set);

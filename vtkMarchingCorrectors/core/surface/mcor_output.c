@@ -208,20 +208,23 @@ static void mcor_count_correction(
   const double tolerance =
     context->run.options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
   const int flag = mcor_flag_of(context, d, v);
+  tally->linear += flag == 2;
+  if (flag != 2)
+  {
+    const double residual = fabs(mcor_get_real(context, d->value, v));
+    tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(context, d, v));
+    tally->above_tolerance += residual > tolerance;
+  }
   if (flag == 1 || flag == 2)
   {
     ++tally->trim_vertices;
-    tally->linear += flag == 2;
     return;
   }
   const double length = mcor_correction_of(context, d, v);
-  const double residual = fabs(mcor_get_real(context, d->value, v));
   tally->count += 1;
   tally->sum += length;
   tally->squares += length * length;
   tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
-  tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(context, d, v));
-  tally->above_tolerance += residual > tolerance;
 }
 
 static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)

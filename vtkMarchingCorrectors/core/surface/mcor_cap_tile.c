@@ -10,9 +10,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Tiles of a side at most, 64 million nodes; of which its directory has places. */
-#define MCOR_CAP_TILE_LIMIT (1 << 18)
+/* Of which a side's directory has places, at most. */
 #define MCOR_CAP_PLACE_LIMIT (1 << 24)
+
+/* Tiles of a side at most: 4 to 64 million nodes. A few particles that reach further are a mistake, or make
+ * cubes that are. */
+static int mcor_tile_limit(const mcor_context* context)
+{
+  const int particles = context->grid.count / 2;
+  return particles < 1 << 14 ? 1 << 14 : particles < 1 << 18 ? particles : 1 << 18;
+}
 
 int mcor_cap_plane(const mcor_context* context, int axis, int upper)
 {
@@ -104,16 +111,16 @@ static mcor_status mcor_note_tiles(
       *tile = 1;
     }
   }
-  const bool is_much = face->tile_count > MCOR_CAP_TILE_LIMIT;
+  const int limit = mcor_tile_limit(context), nodes = limit * MCOR_CAP_TILE * MCOR_CAP_TILE;
+  const bool is_much = face->tile_count > limit;
   MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
     "Use a larger cube size, or do not fill.",
-    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, context->lattice.cube);
+    nodes, context->lattice.cube);
   MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes of a side along %c are within reach of particles, with cube size "
     "%g: too many for a cap. Use a larger cube size, or no caps.",
-    MCOR_CAP_TILE_LIMIT * MCOR_CAP_TILE * MCOR_CAP_TILE, mcor_axis_letter(context, face->axis),
-    context->lattice.cube);
+    nodes, mcor_axis_letter(context, face->axis), context->lattice.cube);
   return MCOR_OK;
 }
 

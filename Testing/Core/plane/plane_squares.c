@@ -39,6 +39,7 @@ typedef struct plane_squares
   plane_node* nodes;
   plane_edge* edges;
   int64_t node_count, node_capacity, edge_count, edge_capacity;
+  int64_t ambiguous, doubtful; /* squares; those where rounding may decide */
 } plane_squares;
 
 /* Whether a brick is split, which is off the lattice where there is none. */
@@ -222,6 +223,9 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
   }
   memcpy(at[count], at[0], sizeof at[0]);
   node[count] = node[0];
+  s->doubtful += close;
+  s->ambiguous += valid && count == 4 && node[0].above == node[2].above &&
+    node[1].above == node[3].above && node[0].above != node[1].above;
   for (int i = 0; i < count; ++i)
   {
     edge[i] =
@@ -355,8 +359,13 @@ static void plane_compare_lines(
       }
     }
   }
-  CORE_CHECK(lines == same || s->field->options->topology == MCOR_TOPOLOGY_FIELD,
-    "%lld of %lld lines are those of the squares", (long long)same, (long long)lines);
+  const int by_field = s->field->options->topology == MCOR_TOPOLOGY_FIELD;
+  CORE_CHECK(lines == same || by_field, "%lld of %lld lines are those of the squares",
+    (long long)same, (long long)lines);
+  CORE_CHECK(!by_field || s->top > 0 || s->doubtful > 0 || s->field->region ||
+      surface->statistics.ambiguous_faces == s->ambiguous,
+    "%lld squares are ambiguous, not %lld", (long long)s->ambiguous,
+    (long long)surface->statistics.ambiguous_faces);
 }
 
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface)

@@ -34,7 +34,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
     const ulong between = all ? ~0UL
       : plane                 ? p[0]
                               : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
-    const ulong layer = !plane ? ~0UL : axis == 2 ? 0xffffUL : 0; /* of faces that are squares */
+    const ulong layer = plane ? 0xffffUL : ~0UL; /* of squares; others of a plane are not ambiguous */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;

@@ -58,7 +58,8 @@ typedef struct mcor_cl
   cl_program programs[MCOR_PROGRAM_COUNT];
   mcor_build build;     /* of the programs */
   mcor_kernel* kernels; /* those made so far */
-  int kernel_count, kernel_room;
+  int kernel_count;
+  int64_t kernel_room;
   int device_number, units;       /* in the list of devices; that compute side by side */
   int place, count;               /* of the processes that share devices */
   bool is_default, is_replaced;   /* none was named; the first choice could not do a build */
@@ -169,7 +170,6 @@ mcor_status mcor_fill_range(
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);
 mcor_status mcor_copy(
   mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t to_offset, size_t bytes);
-mcor_status mcor_reserve_kernel(mcor_context* context); /* room for one more */
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);

@@ -57,20 +57,6 @@ static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mco
   return MCOR_OK;
 }
 
-mcor_status mcor_reserve_kernel(mcor_context* context)
-{
-  mcor_cl* cl = &context->cl;
-  if (cl->kernel_count == cl->kernel_room)
-  {
-    const int room = cl->kernel_room + 64;
-    mcor_kernel* grown = realloc(cl->kernels, (size_t)room * sizeof *grown);
-    MCOR_TRY(mcor_allocated(context, grown != NULL));
-    cl->kernels = grown;
-    cl->kernel_room = room;
-  }
-  return MCOR_OK;
-}
-
 static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** kernel)
 {
   mcor_cl* cl = &context->cl;
@@ -82,7 +68,8 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
       return MCOR_OK;
     }
   }
-  MCOR_TRY(mcor_reserve_kernel(context));
+  MCOR_TRY(mcor_make_room(context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room,
+    sizeof *cl->kernels));
   *kernel = &cl->kernels[cl->kernel_count];
   const mcor_status status = mcor_make_kernel(context, name, *kernel);
   cl->kernel_count += status == MCOR_OK;

@@ -127,12 +127,11 @@ void vtkSPHTemporalInterpolator::SetInputData(vtkDataObject* particles)
   this->SetInputDataInternal(0, particles);
 }
 
-int vtkSPHTemporalInterpolator::Fail(const std::string& message)
+void vtkSPHTemporalInterpolator::Fail(const std::string& message)
 {
   const std::string sentence = this->BlockName + message;
   this->ErrorMessage += (this->ErrorMessage.empty() ? "" : "\n") + sentence;
   vtkErrorMacro(<< sentence);
-  return 0;
 }
 
 vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
@@ -246,7 +245,8 @@ bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
     {
       std::ostringstream sentence;
       sentence << "The step at time " << *lacking << " could not be read.";
-      return this->Fail(sentence.str()) != 0;
+      this->Fail(sentence.str());
+      return false;
     }
     steps.Keep(*lacking, from->GetProducer()->GetOutputDataObject(from->GetIndex()));
   }
@@ -274,54 +274,58 @@ void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformati
   vtkDataObject* second = isTimed ? steps.Find(steps.Times.back()) : first;
   vtkDataObject* to = vtkDataObject::GetData(output);
   auto* blocks = vtkDataObjectTree::SafeDownCast(to);
-  blocks ? this->FillBlocks(vtkDataObjectTree::SafeDownCast(first),
-             vtkDataObjectTree::SafeDownCast(second), blocks)
-         : this->Fill(0, first, second, vtkPolyData::SafeDownCast(to));
+  if (blocks)
+  {
+    this->FillBlocks(
+      vtkDataObjectTree::SafeDownCast(first), vtkDataObjectTree::SafeDownCast(second), blocks);
+  }
+  else
+  {
+    this->Fill(0, first, second, vtkPolyData::SafeDownCast(to));
+  }
   if (isTimed)
   {
     to->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), steps.Time);
   }
 }
 
-bool vtkSPHTemporalInterpolator::FillBlocks(
+void vtkSPHTemporalInterpolator::FillBlocks(
   vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output)
 {
   if (!first || !second)
   {
-    return this->Fail("Only one of two steps has blocks.") != 0;
+    this->Fail("Only one of two steps has blocks.");
+    return;
   }
   output->CopyStructure(first);
   const std::vector<std::string> names = vtkSPHNameBlocks(first);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(first->NewTreeIterator());
   iterator->InitTraversal();
-  bool good = true;
   for (size_t i = 0; i < names.size(); ++i, iterator->GoToNextItem())
   {
     this->BlockName = names[i] + ": ";
     vtkNew<vtkPolyData> particles;
-    good =
-      this->Fill(i, iterator->GetCurrentDataObject(), second->GetDataSet(iterator), particles) &&
-      good;
+    this->Fill(i, iterator->GetCurrentDataObject(), second->GetDataSet(iterator), particles);
     output->SetDataSetFrom(iterator, particles);
   }
   this->BlockName.clear();
-  return good;
 }
 
-bool vtkSPHTemporalInterpolator::Fill(
+void vtkSPHTemporalInterpolator::Fill(
   size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output)
 {
   vtkPointSet* sets[2] = { vtkPointSet::SafeDownCast(first), vtkPointSet::SafeDownCast(second) };
   if (!output || !sets[0] || !sets[1])
   {
-    return this->Fail("It does not hold points in all steps.") != 0;
+    this->Fail("It does not hold points in all steps.");
+    return;
   }
   const std::vector<double>& times = this->Internals->Times;
   if (times.size() < 2)
   {
     vtkSPHTemporalCopy(sets[0], output);
-    return true;
+    return;
   }
   if (this->Internals->Pairs.size() <= block)
   {
@@ -335,14 +339,14 @@ bool vtkSPHTemporalInterpolator::Fill(
   this->UsedVelocityArrayName = pair.VelocityName;
   if (!matched)
   {
-    return this->Fail(pair.Error) != 0;
+    this->Fail(pair.Error);
+    return;
   }
   for (const std::string& warning : pair.Warnings)
   {
     vtkWarningMacro(<< this->BlockName << warning);
   }
   pair.Interpolate(this->Internals->Time, output);
-  return true;
 }
 
 void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)

@@ -155,9 +155,9 @@ private:
   int RequestUpdateExtent(vtkInformation* input, vtkInformation* output);
   void RequestData(vtkInformation* input, vtkInformation* output);
   bool FetchSteps(vtkInformation* input);
-  bool FillBlocks(vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output);
-  bool Fill(size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output);
-  int Fail(const std::string& message);
+  void FillBlocks(vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output);
+  void Fill(size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output);
+  void Fail(const std::string& message);
 
   std::string ErrorMessage;
   std::string BlockName; // begins the messages about a block of composite data

@@ -13,8 +13,8 @@
 /* Of which a side's directory has places, at most. */
 #define MCOR_CAP_PLACE_LIMIT (1 << 24)
 
-/* Tiles of a side at most: 4 to 64 million nodes. A few particles that reach further are a mistake, or make
- * cubes that are. */
+/* Tiles of a side at most: 4 to 64 million nodes. Where few particles reach more, a smoothing length or the cube
+ * size is a mistake. */
 static int mcor_tile_limit(const mcor_context* context)
 {
   const int particles = context->grid.count / 2;

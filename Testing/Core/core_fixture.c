@@ -373,8 +373,9 @@ void core_extend_program(mcor_context* context, const char* source)
     }
     if (!known)
     {
-      CORE_OK(context, mcor_make_room(context, (void**)&cl->kernels, cl->kernel_count,
-        &cl->kernel_room, sizeof *cl->kernels));
+      CORE_OK(context,
+        mcor_make_room(
+          context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
       mcor_kernel* kernel = &cl->kernels[cl->kernel_count++];
       cl_int error;
       *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_FIELD };

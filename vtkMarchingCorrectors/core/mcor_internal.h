@@ -164,7 +164,8 @@ mcor_status mcor_report_launch(mcor_context* context);
 /* mcor_statistics.c. Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
-double mcor_rounding(const mcor_context* context); /* of positions on the device, at most, along each axis */
+double mcor_rounding(
+  const mcor_context* context); /* of positions on the device, at most, along each axis */
 
 /* mcor_reuse.c. What of the last call still holds; whether the caller's version stands for the same
  * particles as then. */

@@ -68,8 +68,8 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
       return MCOR_OK;
     }
   }
-  MCOR_TRY(mcor_make_room(context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room,
-    sizeof *cl->kernels));
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
   *kernel = &cl->kernels[cl->kernel_count];
   const mcor_status status = mcor_make_kernel(context, name, *kernel);
   cl->kernel_count += status == MCOR_OK;

@@ -117,9 +117,8 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   return mcor_say(s,
     "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
     "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
-    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel),
-    usual[kernel][plane], wendland ? 2.2 : 1.7, why,
-    *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
+    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel][plane],
+    wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
 static bool mcor_warn_plane(mcor_suspicion* s)

@@ -91,8 +91,8 @@
 #include "vtkTimeStamp.h" // For members
 
 #include <cstdint> // For members
-#include <limits>  // For members
-#include <vector>  // For members
+#include <limits> // For members
+#include <vector> // For members
 
 class vtkMarchingCorrectorsInput;
 class vtkPointSet;

@@ -80,7 +80,7 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    MCOR_PAIRS = 1 /* the paper's: cells between pairs of particles that are at most an (unscaled)
+    MCOR_PAIRS = 1     /* the paper's: cells between pairs of particles that are at most an (unscaled)
                         * smoothing length apart and straddle the iso value. MCOR_WEIGHT_SUM has no
                         * values at particles, so seeds are always complete */
   } mcor_seed_mode;
@@ -226,17 +226,17 @@ extern "C"
                               * the fluid's own weight is below 0.001, or below 0.05 with M'4, whose
                               * negative lobes give the mean poles. */
     double
-      wall_share; /* above 0: the surface, a free surface too, also ends where the solids' share
+      wall_share;     /* above 0: the surface, a free surface too, also ends where the solids' share
                         * of the weight exceeds this, unless solids are ignored; 0.5: where they weigh
                         * more than the fluid. 0: it does not end at solids. Or MCOR_WALL_SHARE_AUTO
                         * (the default), MCOR_WALL_SHARE_MEASURED */
-    int preview;  /* nonzero: vertices by linear interpolation, no correction */
+    int preview;      /* nonzero: vertices by linear interpolation, no correction */
     /* Two dimensions, nonzero: triangles fill the region above the least iso value, inside of what trimming
      * leaves, divided by the lines of the other values: see mcor_surface.band_value. They share the points of
      * lines; their other points are nodes of the virtual grid, and where trimming cuts its edges. iso_value is
      * given, too. Seeds are complete, and all squares have the smallest size. Three dimensions are refused. */
     int filled;
-    double tolerance;     /* |f - iso| reached by the correction / range of A; default 1e-6 */
+    double tolerance; /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision;  /* of the field evaluation on the device; MCOR_FLOAT32 by default */
     int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: no limit. Memory
@@ -248,8 +248,7 @@ extern "C"
      * the box are evaluated. With MCOR_PAIRS and no ranks, the whole surface is evaluated up to the
      * correction, because cells grow from wherever pairs are. mcor_probe and mcor_derive read the box only
      * with globals. */
-    double box
-      [6]; /* x0, x1, y0, y1, z0, z1; unit L; flat (y0 = y1) only around particles in that plane */
+    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L; flat (y0 = y1) only around particles in that plane */
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
      * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that of
@@ -327,12 +326,11 @@ extern "C"
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
-    double
-      plane_normal[3];    /* of a plane that all particles are near, in three dimensions; else 0 */
-    double plane_extent;  /* of the positions of all particles along it */
-    int dimension;        /* 2 or 3, see mcor_options.dimension */
-    double cube_size;     /* unit L; the shortest of: */
-    double cube_edges[3]; /* along x, y, z: unequal where no cube size divides all periods */
+    double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; else 0 */
+    double plane_extent;    /* of the positions of all particles along it */
+    int dimension;          /* 2 or 3, see mcor_options.dimension */
+    double cube_size;       /* unit L; the shortest of: */
+    double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
     /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; of
      * ranks that share a vertex, one counts it. Counts of bricks, nodes, faces and evaluations include the
@@ -375,8 +373,7 @@ extern "C"
      * caps, nor of the trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
-    int64_t trim_vertices,
-      trim_vertices_linear; /* linear: kept at the linear cut, off the iso value */
+    int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut, off the iso value */
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
@@ -409,8 +406,7 @@ extern "C"
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
-    double*
-      band_value; /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the
+    double* band_value; /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the
                          * field there, with which the band begins. The last band has no end. At points
                          * inside, iso_value is this, and residual what the field is above it */
     /* Optional arrays, NULL where not asked for. */
